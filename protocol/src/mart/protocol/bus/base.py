@@ -1,0 +1,80 @@
+"""What a service may ask of a bus. Everything that is opened here is closed by its holder, or with the bus."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from mart.protocol.keys import Topic
+
+
+@dataclass(frozen=True)
+class Sample:
+    key: str
+    payload: bytes
+
+
+class Request(Protocol):
+    """A query that waits for an answer; `reply` may be called once, from any thread, also later."""
+
+    @property
+    def key(self) -> str: ...
+
+    @property
+    def payload(self) -> bytes: ...
+
+    def reply(self, payload: bytes) -> None: ...
+
+
+# Handlers run on the bus's own threads: they may only hand over (store, enqueue, notify), never wait.
+Handler = Callable[[Sample], None]
+RequestHandler = Callable[[Request], None]
+AliveHandler = Callable[[str, bool], None]  # (liveliness key, alive)
+
+
+class Closable(Protocol):
+    def close(self) -> None: ...
+
+
+class Publisher(Protocol):
+    def put(self, payload: bytes) -> None: ...
+
+    def close(self) -> None: ...
+
+
+class Bus(ABC):
+    @abstractmethod
+    def publisher(self, topic: Topic) -> Publisher: ...
+
+    @abstractmethod
+    def subscribe(self, key_expression: str, handler: Handler) -> Closable: ...
+
+    @abstractmethod
+    def serve(self, topic: Topic, handler: RequestHandler) -> Closable: ...
+
+    @abstractmethod
+    def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
+        """The first answer. Blocks this thread; raises Unavailable where nobody answers in time."""
+
+    @abstractmethod
+    def announce(self, alive_key: str) -> Closable:
+        """Holds a liveliness token until closed (or until this process dies)."""
+
+    @abstractmethod
+    def watch(self, alive_expression: str, handler: AliveHandler) -> Closable:
+        """Reports tokens that exist now, then every change."""
+
+    @abstractmethod
+    def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
+        """The liveliness keys that exist now, sorted."""
+
+    @abstractmethod
+    def close(self) -> None: ...
+
+    def __enter__(self) -> Bus:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()

@@ -1,0 +1,63 @@
+"""The `mart` command: gathers the subcommands that installed parts register as entry points (`mart.commands`).
+
+A failure is one line on standard error and an exit code that is not 0.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping
+from importlib.metadata import entry_points
+from typing import Any
+
+import click
+
+from mart.protocol.errors import MartError
+
+_GROUP = "mart.commands"
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object on standard output.")
+
+
+class _Installed(click.Group):
+    """Loads a subcommand only when it is used: `mart --help` must not import a simulator."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted(entry.name for entry in entry_points(group=_GROUP))
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        for entry in entry_points(group=_GROUP, name=cmd_name):
+            command = entry.load()
+            assert isinstance(command, click.Command)
+            return command
+        return None
+
+
+@click.group(cls=_Installed, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="mart-protocol", prog_name="mart")
+def cli() -> None:
+    """MART: collaborative teleoperation and imitation learning for multi-arm manipulation."""
+
+
+def print_result(result: Mapping[str, Any], text: str, as_json: bool) -> None:
+    """One JSON object, or the same in words for people."""
+    click.echo(json.dumps(result) if as_json else text)
+
+
+def main() -> None:
+    try:
+        code = cli(standalone_mode=False)
+    except MartError as error:
+        _fail(str(error), 1)
+    except click.ClickException as error:
+        _fail(error.format_message(), error.exit_code)
+    except (click.Abort, KeyboardInterrupt):
+        _fail("Stopped.", 130)
+    else:
+        sys.exit(code if isinstance(code, int) else 0)
+
+
+def _fail(sentence: str, code: int) -> None:
+    click.echo(f"mart: {sentence}", err=True)
+    sys.exit(code)

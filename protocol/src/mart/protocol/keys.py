@@ -1,0 +1,147 @@
+"""Every key expression of the wire, with its quality of service. Nobody else writes a key.
+
+QoS is a property of the message type, so it stands beside the key: commands and states are small and replaceable
+(newest wins, dropped under congestion); events and saved facts are rare and must arrive (blocking); video is large
+and goes last.
+"""
+
+from __future__ import annotations
+
+import enum
+import re
+from dataclasses import dataclass
+
+from mart.protocol.errors import InvalidInput
+
+ROOT = "mart"
+_SEGMENT = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
+
+
+class Priority(enum.Enum):
+    REAL_TIME = "real_time"
+    HIGH = "high"
+    NORMAL = "normal"
+    LOW = "low"
+    BACKGROUND = "background"
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A key and how its messages travel. `express`: never wait to fill a batch. `must_arrive`: block, don't drop."""
+
+    key: str
+    priority: Priority
+    express: bool = False
+    must_arrive: bool = False
+
+
+def command(room: str, arm: str) -> Topic:
+    return Topic(_key(room, "arm", arm, "command"), Priority.REAL_TIME, express=True)
+
+
+def intent(room: str, arm: str) -> Topic:
+    """Where a scripted expert wants an emulated phone to lead an arm; carries a Command, never reaches the sim."""
+    return Topic(_key(room, "arm", arm, "intent"), Priority.NORMAL, express=True)
+
+
+def commands(room: str) -> str:
+    """All command keys of a room, for subscribers."""
+    return f"{ROOT}/{_segment('room', room)}/arm/*/command"
+
+
+def state(room: str) -> Topic:
+    return Topic(_key(room, "state"), Priority.HIGH, express=True)
+
+
+def status(room: str) -> Topic:
+    return Topic(_key(room, "status"), Priority.NORMAL)
+
+
+def event(room: str) -> Topic:
+    return Topic(_key(room, "event"), Priority.NORMAL, must_arrive=True)
+
+
+def video(room: str, camera: str) -> Topic:
+    return Topic(_key(room, "view", camera, "video"), Priority.LOW)
+
+
+def videos(room: str) -> str:
+    return f"{ROOT}/{_segment('room', room)}/view/*/video"
+
+
+def model(room: str) -> Topic:
+    """Queryable: the compiled model."""
+    return Topic(_key(room, "model"), Priority.LOW, must_arrive=True)
+
+
+def seat(room: str) -> Topic:
+    """Queryable: SeatRequest → RoomReply."""
+    return Topic(_key(room, "seat"), Priority.NORMAL, must_arrive=True)
+
+
+def episode(room: str) -> Topic:
+    """Queryable: EpisodeRequest → RoomReply."""
+    return Topic(_key(room, "episode"), Priority.NORMAL, must_arrive=True)
+
+
+def rollout(replica: str) -> Topic:
+    """Queryable: RolloutRequest → RolloutReply. A replica is a sim without a room."""
+    return Topic(_key(replica, "rollout"), Priority.BACKGROUND, must_arrive=True)
+
+
+def signal(room: str, arm: str, peer: str) -> Topic:
+    """Queryable: Offer → Answer. `peer` is browser, phone or viewer."""
+    return Topic(_key(room, "signal", arm, peer), Priority.NORMAL, must_arrive=True)
+
+
+def open_seat(gateway: str) -> Topic:
+    """Queryable: OpenSeat → OpenSeatReply. `gateway` is the id of a gateway service."""
+    return Topic(f"{ROOT}/@gateway/{_segment('gateway', gateway)}/open", Priority.NORMAL, must_arrive=True)
+
+
+def alive(kind: str, id: str) -> str:
+    """Liveliness token of one running service: `kind` is sim, replica, gateway, recorder, web, router, …"""
+    return f"{ROOT}/@live/{_segment('kind', kind)}/{_segment('id', id)}"
+
+
+def alive_of(kind: str) -> str:
+    return f"{ROOT}/@live/{_segment('kind', kind)}/*"
+
+
+EVERY_STATE = f"{ROOT}/*/state"
+EVERY_STATUS = f"{ROOT}/*/status"
+EVERY_EVENT = f"{ROOT}/*/event"
+EVERY_COMMAND = f"{ROOT}/*/arm/*/command"
+EVERY_VIDEO = f"{ROOT}/*/view/*/video"
+EVERY_ALIVE = f"{ROOT}/@live/*/*"
+
+
+def room_of(key: str) -> str:
+    """The room (or replica) that a key belongs to."""
+    return key.split("/")[1]
+
+
+def last_of(key: str) -> str:
+    """The last segment: the id in a liveliness key."""
+    return key.rsplit("/", 1)[-1]
+
+
+def camera_of(video_key: str) -> str:
+    return video_key.split("/")[3]
+
+
+def arm_of(command_key: str) -> str:
+    return command_key.split("/")[3]
+
+
+def _key(*segments: str) -> str:
+    return "/".join((ROOT, *(_segment("name", segment) for segment in segments)))
+
+
+def _segment(what: str, value: str) -> str:
+    if not _SEGMENT.fullmatch(value):
+        raise InvalidInput(
+            f"{what} {value!r} was given; use 1 to 64 lower-case letters, digits, '-' or '_', starting with a letter "
+            "or digit."
+        )
+    return value

@@ -1,0 +1,172 @@
+"""Every message of the wire, importable from one place, with the helpers that turn them into domain values."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mart.protocol.errors import InvalidInput, MartError, from_wire
+from mart.protocol.pose import Pose
+from mart.v1.command_pb2 import (
+    OPERATOR_HOLD,
+    OPERATOR_HUMAN,
+    OPERATOR_POLICY,
+    OPERATOR_SCRIPT,
+    OPERATOR_UNSPECIFIED,
+    Command,
+    CommandStamps,
+    Operator,
+)
+from mart.v1.pose_pb2 import Pose as PoseMessage
+from mart.v1.rollout_pb2 import RolloutReply, RolloutRequest, WorldState
+from mart.v1.room_pb2 import (
+    BARRIER_PHASE_PAUSED,
+    BARRIER_PHASE_RUNNING,
+    BARRIER_PHASE_STALLED,
+    BARRIER_PHASE_STOPPED,
+    EPISODE_PHASE_COUNTDOWN,
+    EPISODE_PHASE_ENDED,
+    EPISODE_PHASE_PRACTICE,
+    EPISODE_PHASE_RECORDING,
+    OUTCOME_DISCARDED,
+    OUTCOME_FAILURE,
+    OUTCOME_SUCCESS,
+    OUTCOME_UNSPECIFIED,
+    BarrierPhase,
+    Episode,
+    EpisodePhase,
+    EpisodeRequest,
+    Error,
+    Event,
+    Outcome,
+    RoomReply,
+    RoomStatus,
+    Seat,
+    SeatRequest,
+    Waiting,
+)
+from mart.v1.signal_pb2 import Answer, Offer, OpenSeat, OpenSeatReply
+from mart.v1.state_pb2 import ArmState, Model, Observation, Progress, State, Subtask, TickStamps
+
+__all__ = [
+    "BARRIER_PHASE_PAUSED",
+    "BARRIER_PHASE_RUNNING",
+    "BARRIER_PHASE_STALLED",
+    "BARRIER_PHASE_STOPPED",
+    "EPISODE_PHASE_COUNTDOWN",
+    "EPISODE_PHASE_ENDED",
+    "EPISODE_PHASE_PRACTICE",
+    "EPISODE_PHASE_RECORDING",
+    "OPERATOR_HOLD",
+    "OPERATOR_HUMAN",
+    "OPERATOR_POLICY",
+    "OPERATOR_SCRIPT",
+    "OPERATOR_UNSPECIFIED",
+    "OUTCOME_DISCARDED",
+    "OUTCOME_FAILURE",
+    "OUTCOME_SUCCESS",
+    "OUTCOME_UNSPECIFIED",
+    "Answer",
+    "ArmState",
+    "BarrierPhase",
+    "Command",
+    "CommandStamps",
+    "Episode",
+    "EpisodePhase",
+    "EpisodeRequest",
+    "Error",
+    "Event",
+    "Model",
+    "Observation",
+    "Offer",
+    "OpenSeat",
+    "OpenSeatReply",
+    "Operator",
+    "Outcome",
+    "PoseMessage",
+    "Progress",
+    "RolloutReply",
+    "RolloutRequest",
+    "RoomReply",
+    "RoomStatus",
+    "Seat",
+    "SeatRequest",
+    "State",
+    "Subtask",
+    "TickStamps",
+    "Waiting",
+    "WorldState",
+    "barrier_word",
+    "error_message",
+    "operator_from_word",
+    "operator_word",
+    "outcome_from_word",
+    "outcome_word",
+    "phase_word",
+    "pose_from_message",
+    "pose_message",
+    "raise_error",
+]
+
+
+def pose_message(pose: Pose) -> PoseMessage:
+    x, y, z = pose.position.tolist()
+    qw, qx, qy, qz = pose.quaternion_wxyz.tolist()
+    return PoseMessage(x=x, y=y, z=z, qw=qw, qx=qx, qy=qy, qz=qz)
+
+
+def pose_from_message(message: PoseMessage) -> Pose:
+    """Raises InvalidInput where the numbers are not finite or the quaternion is not of unit norm."""
+    return Pose(
+        np.array([message.x, message.y, message.z]),
+        np.array([message.qw, message.qx, message.qy, message.qz]),
+    )
+
+
+def error_message(error: MartError) -> Error:
+    return Error(code=error.code, message=str(error))
+
+
+def raise_error(error: Error) -> None:
+    """Raises what the other side reported; does nothing where `error` is empty."""
+    if error.code or error.message:
+        raise from_wire(error.code, error.message)
+
+
+def operator_word(operator: Operator.ValueType) -> str:
+    """human, policy, script or hold."""
+    return _word(Operator.Name(operator), "OPERATOR_")
+
+
+def outcome_word(outcome: Outcome.ValueType) -> str:
+    """success, failure, discarded or unspecified."""
+    return _word(Outcome.Name(outcome), "OUTCOME_")
+
+
+def phase_word(phase: EpisodePhase.ValueType) -> str:
+    """practice, countdown, recording or ended."""
+    return _word(EpisodePhase.Name(phase), "EPISODE_PHASE_")
+
+
+def barrier_word(phase: BarrierPhase.ValueType) -> str:
+    """running, stalled, paused or stopped."""
+    return _word(BarrierPhase.Name(phase), "BARRIER_PHASE_")
+
+
+def operator_from_word(word: str) -> Operator.ValueType:
+    """Raises InvalidInput for anything but human, policy, script or hold."""
+    name = f"OPERATOR_{word.upper()}"
+    if name == "OPERATOR_UNSPECIFIED" or name not in Operator.keys():
+        raise InvalidInput(f"Operator {word!r} was given; it must be human, policy, script or hold.")
+    return Operator.Value(name)
+
+
+def outcome_from_word(word: str) -> Outcome.ValueType:
+    """Raises InvalidInput for anything but success, failure or discarded."""
+    name = f"OUTCOME_{word.upper()}"
+    if name == "OUTCOME_UNSPECIFIED" or name not in Outcome.keys():
+        raise InvalidInput(f"Outcome {word!r} was given; it must be success, failure or discarded.")
+    return Outcome.Value(name)
+
+
+def _word(name: str, prefix: str) -> str:
+    return name.removeprefix(prefix).lower()

@@ -1,0 +1,86 @@
+"""How every service starts and stops: settings → log → bus → liveliness → run → orderly stop."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import signal
+import sys
+import threading
+from collections.abc import Awaitable, Callable, Iterator
+from dataclasses import dataclass
+from types import FrameType
+
+from mart.protocol import keys
+from mart.protocol.bus.aio import AsyncBus
+from mart.protocol.bus.base import Bus
+from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.settings import Settings
+
+_log = logging.getLogger(__name__)
+_STOP_SIGNALS = (signal.SIGTERM, signal.SIGINT)
+
+
+@dataclass(frozen=True)
+class Service:
+    """A running service of one kind. `stop` is set when the process is asked to end."""
+
+    kind: str
+    id: str
+    bus: Bus
+    stop: threading.Event
+
+
+@contextlib.contextmanager
+def running(settings: Settings, kind: str, id: str) -> Iterator[Service]:
+    """A service with a thread of its own (sim, recorder). Its liveliness token lives as long as the block."""
+    configure_logging(settings.log_level, kind)
+    stop = threading.Event()
+
+    def request_stop(_number: int, _frame: FrameType | None) -> None:
+        stop.set()
+
+    before = {number: signal.signal(number, request_stop) for number in _STOP_SIGNALS}
+    try:
+        with ZenohBus.connect(settings.router) as bus:
+            token = bus.announce(keys.alive(kind, id))
+            _log.info("%s %s is up at %s", kind, id, settings.router)
+            try:
+                yield Service(kind, id, bus, stop)
+            finally:
+                token.close()
+                _log.info("%s %s stops", kind, id)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def run_async(settings: Settings, kind: str, id: str, main: Callable[[AsyncBus], Awaitable[None]]) -> None:
+    """An asyncio service (gateway, web): `main` is cancelled when the process is asked to end."""
+
+    async def supervise() -> None:
+        loop = asyncio.get_running_loop()
+        with contextlib.closing(await asyncio.to_thread(ZenohBus.connect, settings.router)) as bus:
+            token = bus.announce(keys.alive(kind, id))
+            task = asyncio.ensure_future(main(AsyncBus(bus, loop)))
+            for number in _STOP_SIGNALS:
+                loop.add_signal_handler(number, task.cancel)
+            _log.info("%s %s is up at %s", kind, id, settings.router)
+            with contextlib.suppress(asyncio.CancelledError):
+                await task
+            token.close()
+            _log.info("%s %s stops", kind, id)
+
+    configure_logging(settings.log_level, kind)
+    asyncio.run(supervise())
+
+
+def configure_logging(level: str, kind: str) -> None:
+    """One line an entry, to standard error: time, level, service, text."""
+    logging.basicConfig(
+        level=level.upper(),
+        stream=sys.stderr,
+        format=f"%(asctime)s %(levelname)-7s {kind:<9} %(message)s",
+        force=True,
+    )

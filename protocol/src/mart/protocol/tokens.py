@@ -1,0 +1,89 @@
+"""Seat tokens: signed, short-lived rights, checked wherever they are used.
+
+A token is a JWT (HS256) over {room, arm, epoch, role, holder_id, expiry}. The secret is made at first start, kept
+readable by its owner alone and shared by the web service, which signs, and the gateways, which check.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+import jwt
+
+from mart.protocol.errors import Forbidden, InvalidInput
+
+_ALGORITHM = "HS256"
+_SECRET_BYTES = 32
+_MAX_TOKEN_CHARACTERS = 2048
+
+
+class Role(StrEnum):
+    BROWSER = "browser"  # sees and may drive
+    PHONE = "phone"  # drives
+    VIEWER = "viewer"  # sees
+
+
+@dataclass(frozen=True)
+class SeatToken:
+    room: str
+    arm: str
+    epoch: int
+    role: Role
+    holder_id: str
+    expires_s: float  # Unix time
+
+
+def sign(token: SeatToken, secret: bytes) -> str:
+    claims = {
+        "room": token.room,
+        "arm": token.arm,
+        "epoch": token.epoch,
+        "role": token.role.value,
+        "sub": token.holder_id,
+        "exp": int(token.expires_s),
+    }
+    return jwt.encode(claims, secret, algorithm=_ALGORITHM)
+
+
+def verify(text: str, secret: bytes) -> SeatToken:
+    """Raises Forbidden where the token is missing, forged, expired or incomplete."""
+    if not text or len(text) > _MAX_TOKEN_CHARACTERS:
+        raise Forbidden("No seat token was given; take a seat in the lobby to get one.")
+    try:
+        claims = jwt.decode(
+            text, secret, algorithms=[_ALGORITHM], options={"require": ["exp", "sub", "room", "arm", "epoch", "role"]}
+        )
+        return SeatToken(
+            room=str(claims["room"]),
+            arm=str(claims["arm"]),
+            epoch=int(claims["epoch"]),
+            role=Role(claims["role"]),
+            holder_id=str(claims["sub"]),
+            expires_s=float(claims["exp"]),
+        )
+    except jwt.ExpiredSignatureError as error:
+        raise Forbidden("This seat token has expired; reload the page to get a new one.") from error
+    except (jwt.InvalidTokenError, ValueError) as error:
+        raise Forbidden("This seat token is not valid; take a seat in the lobby to get one.") from error
+
+
+def load_or_create_secret(path: Path) -> bytes:
+    """The shared secret at `path`, made at first use with mode 0600; raises InvalidInput where it is too short."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    except FileExistsError:
+        pass
+    else:
+        with os.fdopen(handle, "w") as file:
+            file.write(secrets.token_hex(_SECRET_BYTES))
+    secret = path.read_text().strip().encode()
+    if len(secret) < _SECRET_BYTES:
+        raise InvalidInput(
+            f"The secret in {path} has {len(secret)} characters; at least {_SECRET_BYTES} are needed: delete the file."
+        )
+    return secret

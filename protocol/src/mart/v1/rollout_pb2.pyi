@@ -1,0 +1,85 @@
+from mart.v1 import room_pb2 as _room_pb2
+from mart.v1 import state_pb2 as _state_pb2
+from google.protobuf.internal import containers as _containers
+from google.protobuf import descriptor as _descriptor
+from google.protobuf import message as _message
+from collections.abc import Iterable as _Iterable, Mapping as _Mapping
+from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
+
+DESCRIPTOR: _descriptor.FileDescriptor
+
+class RolloutRequest(_message.Message):
+    __slots__ = ("reset", "step", "close", "resimulate")
+    class Reset(_message.Message):
+        __slots__ = ("task", "control_hz", "arms", "seeds")
+        TASK_FIELD_NUMBER: _ClassVar[int]
+        CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
+        ARMS_FIELD_NUMBER: _ClassVar[int]
+        SEEDS_FIELD_NUMBER: _ClassVar[int]
+        task: str
+        control_hz: float
+        arms: int
+        seeds: _containers.RepeatedScalarFieldContainer[int]
+        def __init__(self, task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., seeds: _Optional[_Iterable[int]] = ...) -> None: ...
+    class Step(_message.Message):
+        __slots__ = ("session", "actions")
+        SESSION_FIELD_NUMBER: _ClassVar[int]
+        ACTIONS_FIELD_NUMBER: _ClassVar[int]
+        session: str
+        actions: bytes
+        def __init__(self, session: _Optional[str] = ..., actions: _Optional[bytes] = ...) -> None: ...
+    class Close(_message.Message):
+        __slots__ = ("session",)
+        SESSION_FIELD_NUMBER: _ClassVar[int]
+        session: str
+        def __init__(self, session: _Optional[str] = ...) -> None: ...
+    class Resimulate(_message.Message):
+        __slots__ = ("model_sha256", "task", "control_hz", "arms", "first_state", "actions")
+        MODEL_SHA256_FIELD_NUMBER: _ClassVar[int]
+        TASK_FIELD_NUMBER: _ClassVar[int]
+        CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
+        ARMS_FIELD_NUMBER: _ClassVar[int]
+        FIRST_STATE_FIELD_NUMBER: _ClassVar[int]
+        ACTIONS_FIELD_NUMBER: _ClassVar[int]
+        model_sha256: str
+        task: str
+        control_hz: float
+        arms: int
+        first_state: bytes
+        actions: bytes
+        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., first_state: _Optional[bytes] = ..., actions: _Optional[bytes] = ...) -> None: ...
+    RESET_FIELD_NUMBER: _ClassVar[int]
+    STEP_FIELD_NUMBER: _ClassVar[int]
+    CLOSE_FIELD_NUMBER: _ClassVar[int]
+    RESIMULATE_FIELD_NUMBER: _ClassVar[int]
+    reset: RolloutRequest.Reset
+    step: RolloutRequest.Step
+    close: RolloutRequest.Close
+    resimulate: RolloutRequest.Resimulate
+    def __init__(self, reset: _Optional[_Union[RolloutRequest.Reset, _Mapping]] = ..., step: _Optional[_Union[RolloutRequest.Step, _Mapping]] = ..., close: _Optional[_Union[RolloutRequest.Close, _Mapping]] = ..., resimulate: _Optional[_Union[RolloutRequest.Resimulate, _Mapping]] = ...) -> None: ...
+
+class WorldState(_message.Message):
+    __slots__ = ("observations", "progress", "integration_state", "arms", "sim_time_s")
+    OBSERVATIONS_FIELD_NUMBER: _ClassVar[int]
+    PROGRESS_FIELD_NUMBER: _ClassVar[int]
+    INTEGRATION_STATE_FIELD_NUMBER: _ClassVar[int]
+    ARMS_FIELD_NUMBER: _ClassVar[int]
+    SIM_TIME_S_FIELD_NUMBER: _ClassVar[int]
+    observations: _containers.RepeatedCompositeFieldContainer[_state_pb2.Observation]
+    progress: _state_pb2.Progress
+    integration_state: bytes
+    arms: _containers.RepeatedCompositeFieldContainer[_state_pb2.ArmState]
+    sim_time_s: float
+    def __init__(self, observations: _Optional[_Iterable[_Union[_state_pb2.Observation, _Mapping]]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., integration_state: _Optional[bytes] = ..., arms: _Optional[_Iterable[_Union[_state_pb2.ArmState, _Mapping]]] = ..., sim_time_s: _Optional[float] = ...) -> None: ...
+
+class RolloutReply(_message.Message):
+    __slots__ = ("error", "session", "worlds", "state_digests")
+    ERROR_FIELD_NUMBER: _ClassVar[int]
+    SESSION_FIELD_NUMBER: _ClassVar[int]
+    WORLDS_FIELD_NUMBER: _ClassVar[int]
+    STATE_DIGESTS_FIELD_NUMBER: _ClassVar[int]
+    error: _room_pb2.Error
+    session: str
+    worlds: _containers.RepeatedCompositeFieldContainer[WorldState]
+    state_digests: bytes
+    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., session: _Optional[str] = ..., worlds: _Optional[_Iterable[_Union[WorldState, _Mapping]]] = ..., state_digests: _Optional[bytes] = ...) -> None: ...

@@ -1,0 +1,300 @@
+from mart.v1 import command_pb2 as _command_pb2
+from mart.v1 import state_pb2 as _state_pb2
+from google.protobuf.internal import containers as _containers
+from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
+from google.protobuf import descriptor as _descriptor
+from google.protobuf import message as _message
+from collections.abc import Iterable as _Iterable, Mapping as _Mapping
+from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
+
+DESCRIPTOR: _descriptor.FileDescriptor
+
+class BarrierPhase(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    BARRIER_PHASE_UNSPECIFIED: _ClassVar[BarrierPhase]
+    BARRIER_PHASE_RUNNING: _ClassVar[BarrierPhase]
+    BARRIER_PHASE_STALLED: _ClassVar[BarrierPhase]
+    BARRIER_PHASE_PAUSED: _ClassVar[BarrierPhase]
+    BARRIER_PHASE_STOPPED: _ClassVar[BarrierPhase]
+
+class EpisodePhase(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    EPISODE_PHASE_UNSPECIFIED: _ClassVar[EpisodePhase]
+    EPISODE_PHASE_PRACTICE: _ClassVar[EpisodePhase]
+    EPISODE_PHASE_COUNTDOWN: _ClassVar[EpisodePhase]
+    EPISODE_PHASE_RECORDING: _ClassVar[EpisodePhase]
+    EPISODE_PHASE_ENDED: _ClassVar[EpisodePhase]
+
+class Outcome(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    OUTCOME_UNSPECIFIED: _ClassVar[Outcome]
+    OUTCOME_SUCCESS: _ClassVar[Outcome]
+    OUTCOME_FAILURE: _ClassVar[Outcome]
+    OUTCOME_DISCARDED: _ClassVar[Outcome]
+BARRIER_PHASE_UNSPECIFIED: BarrierPhase
+BARRIER_PHASE_RUNNING: BarrierPhase
+BARRIER_PHASE_STALLED: BarrierPhase
+BARRIER_PHASE_PAUSED: BarrierPhase
+BARRIER_PHASE_STOPPED: BarrierPhase
+EPISODE_PHASE_UNSPECIFIED: EpisodePhase
+EPISODE_PHASE_PRACTICE: EpisodePhase
+EPISODE_PHASE_COUNTDOWN: EpisodePhase
+EPISODE_PHASE_RECORDING: EpisodePhase
+EPISODE_PHASE_ENDED: EpisodePhase
+OUTCOME_UNSPECIFIED: Outcome
+OUTCOME_SUCCESS: Outcome
+OUTCOME_FAILURE: Outcome
+OUTCOME_DISCARDED: Outcome
+
+class Seat(_message.Message):
+    __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged")
+    ARM_FIELD_NUMBER: _ClassVar[int]
+    OPERATOR_FIELD_NUMBER: _ClassVar[int]
+    EPOCH_FIELD_NUMBER: _ClassVar[int]
+    HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    READY_FIELD_NUMBER: _ClassVar[int]
+    ENGAGED_FIELD_NUMBER: _ClassVar[int]
+    arm: str
+    operator: _command_pb2.Operator
+    epoch: int
+    holder_id: str
+    name: str
+    ready: bool
+    engaged: bool
+    def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., epoch: _Optional[int] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., ready: _Optional[bool] = ..., engaged: _Optional[bool] = ...) -> None: ...
+
+class Waiting(_message.Message):
+    __slots__ = ("arm", "since_s")
+    ARM_FIELD_NUMBER: _ClassVar[int]
+    SINCE_S_FIELD_NUMBER: _ClassVar[int]
+    arm: str
+    since_s: float
+    def __init__(self, arm: _Optional[str] = ..., since_s: _Optional[float] = ...) -> None: ...
+
+class Episode(_message.Message):
+    __slots__ = ("number", "phase", "remaining_s", "ticks", "elapsed_s", "outcome", "seed", "interrupted", "reason")
+    NUMBER_FIELD_NUMBER: _ClassVar[int]
+    PHASE_FIELD_NUMBER: _ClassVar[int]
+    REMAINING_S_FIELD_NUMBER: _ClassVar[int]
+    TICKS_FIELD_NUMBER: _ClassVar[int]
+    ELAPSED_S_FIELD_NUMBER: _ClassVar[int]
+    OUTCOME_FIELD_NUMBER: _ClassVar[int]
+    SEED_FIELD_NUMBER: _ClassVar[int]
+    INTERRUPTED_FIELD_NUMBER: _ClassVar[int]
+    REASON_FIELD_NUMBER: _ClassVar[int]
+    number: int
+    phase: EpisodePhase
+    remaining_s: float
+    ticks: int
+    elapsed_s: float
+    outcome: Outcome
+    seed: int
+    interrupted: bool
+    reason: str
+    def __init__(self, number: _Optional[int] = ..., phase: _Optional[_Union[EpisodePhase, str]] = ..., remaining_s: _Optional[float] = ..., ticks: _Optional[int] = ..., elapsed_s: _Optional[float] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., seed: _Optional[int] = ..., interrupted: _Optional[bool] = ..., reason: _Optional[str] = ...) -> None: ...
+
+class RoomStatus(_message.Message):
+    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands")
+    ROOM_FIELD_NUMBER: _ClassVar[int]
+    TASK_FIELD_NUMBER: _ClassVar[int]
+    CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
+    TICK_FIELD_NUMBER: _ClassVar[int]
+    REAL_TIME_FACTOR_FIELD_NUMBER: _ClassVar[int]
+    BARRIER_FIELD_NUMBER: _ClassVar[int]
+    WAITING_FOR_FIELD_NUMBER: _ClassVar[int]
+    SEATS_FIELD_NUMBER: _ClassVar[int]
+    EPISODE_FIELD_NUMBER: _ClassVar[int]
+    PROGRESS_FIELD_NUMBER: _ClassVar[int]
+    EPISODES_SAVED_FIELD_NUMBER: _ClassVar[int]
+    EPISODES_GOOD_FIELD_NUMBER: _ClassVar[int]
+    WALL_NS_FIELD_NUMBER: _ClassVar[int]
+    BOOT_FIELD_NUMBER: _ClassVar[int]
+    REJECTED_COMMANDS_FIELD_NUMBER: _ClassVar[int]
+    room: str
+    task: str
+    control_hz: float
+    tick: int
+    real_time_factor: float
+    barrier: BarrierPhase
+    waiting_for: _containers.RepeatedCompositeFieldContainer[Waiting]
+    seats: _containers.RepeatedCompositeFieldContainer[Seat]
+    episode: Episode
+    progress: _state_pb2.Progress
+    episodes_saved: int
+    episodes_good: int
+    wall_ns: int
+    boot: int
+    rejected_commands: int
+    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ...) -> None: ...
+
+class SeatRequest(_message.Message):
+    __slots__ = ("claim", "release", "assign")
+    class Claim(_message.Message):
+        __slots__ = ("arm", "holder_id", "name", "operator")
+        ARM_FIELD_NUMBER: _ClassVar[int]
+        HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
+        NAME_FIELD_NUMBER: _ClassVar[int]
+        OPERATOR_FIELD_NUMBER: _ClassVar[int]
+        arm: str
+        holder_id: str
+        name: str
+        operator: _command_pb2.Operator
+        def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ...) -> None: ...
+    class Release(_message.Message):
+        __slots__ = ("arm", "holder_id")
+        ARM_FIELD_NUMBER: _ClassVar[int]
+        HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
+        arm: str
+        holder_id: str
+        def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ...) -> None: ...
+    class Assign(_message.Message):
+        __slots__ = ("arm", "operator")
+        ARM_FIELD_NUMBER: _ClassVar[int]
+        OPERATOR_FIELD_NUMBER: _ClassVar[int]
+        arm: str
+        operator: _command_pb2.Operator
+        def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ...) -> None: ...
+    CLAIM_FIELD_NUMBER: _ClassVar[int]
+    RELEASE_FIELD_NUMBER: _ClassVar[int]
+    ASSIGN_FIELD_NUMBER: _ClassVar[int]
+    claim: SeatRequest.Claim
+    release: SeatRequest.Release
+    assign: SeatRequest.Assign
+    def __init__(self, claim: _Optional[_Union[SeatRequest.Claim, _Mapping]] = ..., release: _Optional[_Union[SeatRequest.Release, _Mapping]] = ..., assign: _Optional[_Union[SeatRequest.Assign, _Mapping]] = ...) -> None: ...
+
+class EpisodeRequest(_message.Message):
+    __slots__ = ("ready", "finish", "reset")
+    class Ready(_message.Message):
+        __slots__ = ("arm", "holder_id", "ready")
+        ARM_FIELD_NUMBER: _ClassVar[int]
+        HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
+        READY_FIELD_NUMBER: _ClassVar[int]
+        arm: str
+        holder_id: str
+        ready: bool
+        def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ..., ready: _Optional[bool] = ...) -> None: ...
+    class Finish(_message.Message):
+        __slots__ = ("holder_id", "outcome")
+        HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
+        OUTCOME_FIELD_NUMBER: _ClassVar[int]
+        holder_id: str
+        outcome: Outcome
+        def __init__(self, holder_id: _Optional[str] = ..., outcome: _Optional[_Union[Outcome, str]] = ...) -> None: ...
+    class Reset(_message.Message):
+        __slots__ = ("holder_id",)
+        HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
+        holder_id: str
+        def __init__(self, holder_id: _Optional[str] = ...) -> None: ...
+    READY_FIELD_NUMBER: _ClassVar[int]
+    FINISH_FIELD_NUMBER: _ClassVar[int]
+    RESET_FIELD_NUMBER: _ClassVar[int]
+    ready: EpisodeRequest.Ready
+    finish: EpisodeRequest.Finish
+    reset: EpisodeRequest.Reset
+    def __init__(self, ready: _Optional[_Union[EpisodeRequest.Ready, _Mapping]] = ..., finish: _Optional[_Union[EpisodeRequest.Finish, _Mapping]] = ..., reset: _Optional[_Union[EpisodeRequest.Reset, _Mapping]] = ...) -> None: ...
+
+class Error(_message.Message):
+    __slots__ = ("code", "message")
+    CODE_FIELD_NUMBER: _ClassVar[int]
+    MESSAGE_FIELD_NUMBER: _ClassVar[int]
+    code: str
+    message: str
+    def __init__(self, code: _Optional[str] = ..., message: _Optional[str] = ...) -> None: ...
+
+class RoomReply(_message.Message):
+    __slots__ = ("error", "status", "seat")
+    ERROR_FIELD_NUMBER: _ClassVar[int]
+    STATUS_FIELD_NUMBER: _ClassVar[int]
+    SEAT_FIELD_NUMBER: _ClassVar[int]
+    error: Error
+    status: RoomStatus
+    seat: Seat
+    def __init__(self, error: _Optional[_Union[Error, _Mapping]] = ..., status: _Optional[_Union[RoomStatus, _Mapping]] = ..., seat: _Optional[_Union[Seat, _Mapping]] = ...) -> None: ...
+
+class Event(_message.Message):
+    __slots__ = ("wall_ns", "room", "tick", "barrier_changed", "seat_changed", "episode_started", "episode_ended", "episode_saved", "world_reset", "notice")
+    class BarrierChanged(_message.Message):
+        __slots__ = ("phase", "waiting_for")
+        PHASE_FIELD_NUMBER: _ClassVar[int]
+        WAITING_FOR_FIELD_NUMBER: _ClassVar[int]
+        phase: BarrierPhase
+        waiting_for: _containers.RepeatedCompositeFieldContainer[Waiting]
+        def __init__(self, phase: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ...) -> None: ...
+    class EpisodeStarted(_message.Message):
+        __slots__ = ("number", "seed", "seats", "task", "control_hz", "model_sha256")
+        NUMBER_FIELD_NUMBER: _ClassVar[int]
+        SEED_FIELD_NUMBER: _ClassVar[int]
+        SEATS_FIELD_NUMBER: _ClassVar[int]
+        TASK_FIELD_NUMBER: _ClassVar[int]
+        CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
+        MODEL_SHA256_FIELD_NUMBER: _ClassVar[int]
+        number: int
+        seed: int
+        seats: _containers.RepeatedCompositeFieldContainer[Seat]
+        task: str
+        control_hz: float
+        model_sha256: str
+        def __init__(self, number: _Optional[int] = ..., seed: _Optional[int] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., model_sha256: _Optional[str] = ...) -> None: ...
+    class EpisodeEnded(_message.Message):
+        __slots__ = ("number", "outcome", "ticks", "reason", "last_tick")
+        NUMBER_FIELD_NUMBER: _ClassVar[int]
+        OUTCOME_FIELD_NUMBER: _ClassVar[int]
+        TICKS_FIELD_NUMBER: _ClassVar[int]
+        REASON_FIELD_NUMBER: _ClassVar[int]
+        LAST_TICK_FIELD_NUMBER: _ClassVar[int]
+        number: int
+        outcome: Outcome
+        ticks: int
+        reason: str
+        last_tick: int
+        def __init__(self, number: _Optional[int] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., ticks: _Optional[int] = ..., reason: _Optional[str] = ..., last_tick: _Optional[int] = ...) -> None: ...
+    class EpisodeSaved(_message.Message):
+        __slots__ = ("number", "path", "verified", "verdict", "size_bytes", "outcome")
+        NUMBER_FIELD_NUMBER: _ClassVar[int]
+        PATH_FIELD_NUMBER: _ClassVar[int]
+        VERIFIED_FIELD_NUMBER: _ClassVar[int]
+        VERDICT_FIELD_NUMBER: _ClassVar[int]
+        SIZE_BYTES_FIELD_NUMBER: _ClassVar[int]
+        OUTCOME_FIELD_NUMBER: _ClassVar[int]
+        number: int
+        path: str
+        verified: bool
+        verdict: str
+        size_bytes: int
+        outcome: Outcome
+        def __init__(self, number: _Optional[int] = ..., path: _Optional[str] = ..., verified: _Optional[bool] = ..., verdict: _Optional[str] = ..., size_bytes: _Optional[int] = ..., outcome: _Optional[_Union[Outcome, str]] = ...) -> None: ...
+    class WorldReset(_message.Message):
+        __slots__ = ("seed",)
+        SEED_FIELD_NUMBER: _ClassVar[int]
+        seed: int
+        def __init__(self, seed: _Optional[int] = ...) -> None: ...
+    class Notice(_message.Message):
+        __slots__ = ("level", "text")
+        LEVEL_FIELD_NUMBER: _ClassVar[int]
+        TEXT_FIELD_NUMBER: _ClassVar[int]
+        FROM_FIELD_NUMBER: _ClassVar[int]
+        level: str
+        text: str
+        def __init__(self, level: _Optional[str] = ..., text: _Optional[str] = ..., **kwargs) -> None: ...
+    WALL_NS_FIELD_NUMBER: _ClassVar[int]
+    ROOM_FIELD_NUMBER: _ClassVar[int]
+    TICK_FIELD_NUMBER: _ClassVar[int]
+    BARRIER_CHANGED_FIELD_NUMBER: _ClassVar[int]
+    SEAT_CHANGED_FIELD_NUMBER: _ClassVar[int]
+    EPISODE_STARTED_FIELD_NUMBER: _ClassVar[int]
+    EPISODE_ENDED_FIELD_NUMBER: _ClassVar[int]
+    EPISODE_SAVED_FIELD_NUMBER: _ClassVar[int]
+    WORLD_RESET_FIELD_NUMBER: _ClassVar[int]
+    NOTICE_FIELD_NUMBER: _ClassVar[int]
+    wall_ns: int
+    room: str
+    tick: int
+    barrier_changed: Event.BarrierChanged
+    seat_changed: Seat
+    episode_started: Event.EpisodeStarted
+    episode_ended: Event.EpisodeEnded
+    episode_saved: Event.EpisodeSaved
+    world_reset: Event.WorldReset
+    notice: Event.Notice
+    def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ...) -> None: ...
