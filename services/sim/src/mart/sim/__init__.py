@@ -1,0 +1,1 @@
+"""MART's simulator: the shared world, the barrier that advances it, and scripted experts."""

@@ -1,0 +1,15 @@
+"""One file per task: geometry, resets, observations, success."""
+
+from __future__ import annotations
+
+from mart.protocol.tasks import Task
+from mart.sim.tasks.scene import Judgement, Scene
+from mart.sim.tasks.two_arm_multi_cube_lifting import MultiCubeLifting
+
+__all__ = ["Judgement", "Scene", "scene_of"]
+
+_SCENES: dict[str, type[Scene]] = {"two_arm_multi_cube_lifting": MultiCubeLifting}
+
+
+def scene_of(task: Task) -> Scene:
+    return _SCENES[task.name](task)

@@ -1,0 +1,67 @@
+"""What the simulator needs to know about a task, beyond the catalogue's row."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import SHARED_VIEWPOINT, Arm, Task
+from mart.sim.world.scenery import Camera
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """How a task stands at one instant. `failed` says in words why it can no longer succeed."""
+
+    subtasks: dict[str, bool]
+    success_now: bool
+    failed: str | None
+
+
+class Scene(ABC):
+    """Geometry, resets, observations and success of one task; holds no state: that is all in mjData."""
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+
+    @abstractmethod
+    def add_objects(self, spec: mujoco.MjSpec) -> None:
+        """Adds the things on the table."""
+
+    @abstractmethod
+    def place_objects(self, model: mujoco.MjModel, data: mujoco.MjData, random: np.random.Generator) -> None:
+        """Puts them where an episode begins."""
+
+    @abstractmethod
+    def observe(self, model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, NDArray[np.float64]]:
+        """The declared observations that are not the arms' own."""
+
+    @abstractmethod
+    def judge(self, model: mujoco.MjModel, data: mujoco.MjData) -> Judgement:
+        """Subtasks, success and failure at this instant."""
+
+    def start_pose_in_base(self, arm: Arm, random: np.random.Generator) -> Pose:
+        """Where the arm's tool is when an episode begins: in front of its base, up, pointing down, give or take 3 cm."""
+        position = np.array([0.45, 0.0, 0.20]) + random.uniform(-0.03, 0.03, 3)
+        return Pose(position, Pose.identity().quaternion_wxyz)
+
+    def cameras(self) -> tuple[Camera, ...]:
+        """One for each seat, named like its arm, and the shared one."""
+        seats = tuple(seat_camera(arm, side=-1 if i % 2 == 0 else 1) for i, arm in enumerate(self.task.arms))
+        return (*seats, Camera(SHARED_VIEWPOINT, (0.0, -0.9, 1.2), (0.0, 0.02, 0.0), 38.0))
+
+
+def seat_camera(arm: Arm, side: int) -> Camera:
+    """Beside the own base, looking along the arm at the work; behind the shoulder the own elbow would be in the way.
+
+    side: -1 or +1, the sign of the camera's y in the base frame.
+    """
+    base = arm.pose_base_in_world
+    x, y, z = base.transform_points((-0.08, 0.70 * side, 0.85))
+    target_x, target_y, target_z = base.transform_points((0.67, 0.03 * side, 0.05))
+    return Camera(arm.name, (x, y, z), (target_x, target_y, target_z), 40.0)

@@ -1,0 +1,45 @@
+"""One arm's part of a world's state, measured in its own frames."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.protocol.pose import Pose
+from mart.sim.world.gripper import STROKE_M
+
+
+class MeasuredArm:
+    """Views into mjData; they follow it."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, name: str) -> None:
+        base, tool = model.body(f"{name}/base").id, model.site(f"{name}/tool").id
+        joints = int(model.joint(f"{name}/joint1").qposadr[0])
+        fingers = [int(model.joint(f"{name}/{side}_finger").qposadr[0]) for side in ("left", "right")]
+        rotation_base_in_world = np.zeros(9)
+        mujoco.mju_quat2Mat(rotation_base_in_world, model.body_quat[base])
+        self._rotation_base_in_world = rotation_base_in_world.reshape(3, 3)
+        self._position_base_in_world = model.body_pos[base].copy()
+        self._tool_position, self._tool_rotation = data.site_xpos[tool], data.site_xmat[tool].reshape(3, 3)
+        self._joints = data.qpos[joints : joints + 7]
+        self._fingers = data.qpos[fingers[0] : fingers[1] + 1]
+
+    def tool_pose_in_base(self) -> Pose:
+        turn = self._rotation_base_in_world.T
+        return Pose.from_matrix(
+            turn @ self._tool_rotation, turn @ (self._tool_position - self._position_base_in_world)
+        )
+
+    def gripper(self) -> float:
+        """0 open … 1 closed."""
+        return float(np.clip(1.0 - self._fingers.sum() / (2 * STROKE_M), 0.0, 1.0))
+
+    def joint_positions(self) -> NDArray[np.float64]:
+        """Shape (7,), radians."""
+        return self._joints.copy()
+
+    def place(self, joint_positions: NDArray[np.float64]) -> None:
+        """At rest at these joint positions, shape (7,), gripper open."""
+        self._joints[:] = joint_positions
+        self._fingers[:] = STROKE_M

@@ -1,0 +1,46 @@
+"""Puts room, arms and a task's things together and compiles them."""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+
+from mart.protocol.errors import InvalidInput
+from mart.sim.tasks.scene import Scene
+from mart.sim.world import osc, panda, scenery
+from mart.sim.world.meshes import Detail
+
+_LARGEST_TIMESTEP_S = 0.002
+_CONTROL_HZ = (5.0, 100.0)
+
+
+def substeps(control_hz: float) -> tuple[int, float]:
+    """How one control period is cut: (number of substeps, seconds of each).
+
+    The substep is 2 ms or the longest shorter one that divides the period: 20 Hz 25 x 2 ms, 30 Hz 17 x 1.961 ms,
+    60 Hz 9 x 1.852 ms. Raises InvalidInput outside 5 to 100 Hz.
+    """
+    low, high = _CONTROL_HZ
+    if not low <= control_hz <= high:
+        raise InvalidInput(f"A control rate of {control_hz} Hz was given; it must be from {low:g} to {high:g} Hz.")
+    period_s = 1.0 / control_hz
+    number = math.ceil(period_s / _LARGEST_TIMESTEP_S - 1e-9)
+    return number, period_s / number
+
+
+def build(scene: Scene, timestep_s: float, detail: Detail = "hull", gains: osc.Gains | None = None) -> mujoco.MjModel:
+    spec = mujoco.MjSpec()
+    spec.modelname = scene.task.name
+    spec.compiler.degree = False
+    scenery.configure(spec, timestep_s)
+    scenery.add_room(spec, scene.task)
+    panda.add_assets(spec, detail)
+    for index, arm in enumerate(scene.task.arms):
+        panda.add_panda(spec, arm, index, detail)
+    scene.add_objects(spec)
+    for camera in scene.cameras():
+        scenery.add_camera(spec, camera)
+    spec.nuserdata = osc.BLOCK_SIZE * len(scene.task.arms) + 1  # the last one counts ticks of success
+    osc.describe(spec, scene.task.arm_names, gains or osc.Gains())
+    return spec.compile()

@@ -1,0 +1,208 @@
+"""One world: a task's scene, its arms and their controller, advanced one control period at a time.
+
+Pure: no wall clock, no threads, no bus; randomness comes from the seed given to `reset`. Everything that decides the
+future is in the integration state (positions, velocities, warm start, commands, the count of successful ticks), so
+setting a state and stepping the same actions gives the same bits as the first time.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cached_property
+
+import mujoco
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mart.protocol.errors import Corrupt, InvalidInput
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Task, get_task
+from mart.sim.tasks import Judgement, Scene, scene_of
+from mart.sim.world import kinematics, model, osc, panda
+from mart.sim.world.arm import MeasuredArm
+from mart.sim.world.gripper import STROKE_M, finger_target_m
+from mart.sim.world.meshes import Detail
+from mart.sim.world.progress import Progress, next_success_ticks
+
+Array = NDArray[np.float64]
+
+ACTION_SIZE = 7  # 6 of motion, 1 of gripper
+_STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+_FATAL = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
+
+
+class Diverged(Corrupt):
+    """The simulation went out of numerical bounds; only a reset helps."""
+
+    def __init__(self, sim_time_s: float) -> None:
+        super().__init__(f"The world ran out of numerical bounds at {sim_time_s:.3f} s: reset it.")
+
+
+class World:
+    """A compiled task and its state. Build with `World.build`, then `reset` before anything else.
+
+    Actions: shape (arms, 7), each number in [-1, 1] (clipped): translation along the arm's base axes over `limit_m`,
+    rotation vector about them over `limit_rad`, gripper -1 open … +1 closed. They count from the tool's measured pose.
+    """
+
+    def __init__(self, scene: Scene, control_hz: float, detail: Detail = "hull") -> None:
+        osc.install()
+        self._scene = scene
+        self._substeps, timestep_s = model.substeps(control_hz)
+        self.control_period_s = 1.0 / control_hz
+        self.limit_m, self.limit_rad = scene.task.limits.per_tick(self.control_period_s)
+        self.model = model.build(scene, timestep_s, detail)
+        self.data = mujoco.MjData(self.model)
+        self._action_scale = np.array([self.limit_m] * 3 + [self.limit_rad] * 3 + [-STROKE_M])
+        self._arms = {arm.name: MeasuredArm(self.model, self.data, arm.name) for arm in scene.task.arms}
+        blocks = self.data.userdata[: osc.BLOCK_SIZE * len(self.arms)].reshape(len(self.arms), osc.BLOCK_SIZE)
+        self._modes, self._commands, self._postures = blocks[:, osc.MODE], blocks[:, osc.COMMAND], blocks[:, osc.POSTURE]
+
+    @classmethod
+    def build(
+        cls, task_name: str, control_hz: float = 20.0, arms: int | None = None, detail: Detail = "hull"
+    ) -> World:
+        """Raises NotFound for an unknown task, InvalidInput for a rate or a number of arms that cannot be."""
+        return cls(scene_of(get_task(task_name, arms)), control_hz, detail)
+
+    @property
+    def task(self) -> Task:
+        return self._scene.task
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        return self.task.arm_names
+
+    @property
+    def sim_time_s(self) -> float:
+        return float(self.data.time)
+
+    @cached_property
+    def _mjb(self) -> bytes:
+        buffer = np.empty(mujoco.mj_sizeModel(self.model), np.uint8)
+        mujoco.mj_saveModel(self.model, None, buffer)
+        return buffer.tobytes()
+
+    def model_bytes(self) -> bytes:
+        """The compiled model (MJB), as it goes over the wire and into episode files."""
+        return self._mjb
+
+    @cached_property
+    def model_sha256(self) -> str:
+        return hashlib.sha256(self._mjb).hexdigest()
+
+    def reset(self, seed: int) -> None:
+        """Begins an episode: things and arms where this seed puts them, arms at rest and holding."""
+        random = np.random.default_rng(seed)
+        mujoco.mj_resetData(self.model, self.data)
+        self._scene.place_objects(self.model, self.data, random)
+        for index, arm in enumerate(self.task.arms):
+            tool_in_world = arm.pose_base_in_world @ self._scene.start_pose_in_base(arm, random)
+            joints = kinematics.solve(self.model, arm.name, tool_in_world, np.array(panda.HOME_RAD))
+            self._arms[arm.name].place(joints)
+            self._postures[index] = joints
+        self._commands[:] = (*(0.0,) * 6, finger_target_m(0.0))
+        self._modes[:] = osc.NEW_DELTA
+        mujoco.mj_forward(self.model, self.data)
+
+    def tool_pose_in_base(self, arm: str) -> Pose:
+        """Measured."""
+        return self._arm(arm).tool_pose_in_base()
+
+    def gripper(self, arm: str) -> float:
+        """Measured, 0 open … 1 closed."""
+        return self._arm(arm).gripper()
+
+    def action_for(self, arm: str, target_tool_in_base: Pose, gripper: float) -> Array:
+        """The action, shape (7,), that goes towards an absolute target as far as workspace and limits allow.
+
+        gripper: 0 open … 1 closed. To hold an arm, keep asking with one fixed target: taking the measured pose as the
+        target every tick lets a loaded arm sink.
+        """
+        measured = self.tool_pose_in_base(arm)
+        shift = self.task.workspace.clamp(target_tool_in_base.position) - measured.position
+        turn = Pose(np.zeros(3), target_tool_in_base.quaternion_wxyz) @ Pose(
+            np.zeros(3), measured.inverse().quaternion_wxyz
+        )
+        return np.concatenate(
+            [
+                _within_unit(shift / self.limit_m),
+                _within_unit(turn.log()[3:] / self.limit_rad),
+                [2.0 * min(max(gripper, 0.0), 1.0) - 1.0],
+            ]
+        )
+
+    def step(self, actions: ArrayLike) -> None:
+        """Advances one control period.
+
+        Raises InvalidInput where the shape is not (arms, 7) or a number is not finite, Diverged where the physics left
+        its bounds.
+        """
+        actions = np.asarray(actions, dtype=np.float64)
+        if actions.shape != (len(self.arms), ACTION_SIZE):
+            raise InvalidInput(f"Actions of shape {actions.shape} were given; ({len(self.arms)}, {ACTION_SIZE}) is needed.")
+        if not np.isfinite(actions).all():
+            raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
+        self._commands[:] = np.clip(actions, -1.0, 1.0) * self._action_scale
+        self._modes[:] = osc.NEW_DELTA
+        mujoco.mj_step(self.model, self.data, self._substeps)
+        mujoco.mj_kinematics(self.model, self.data)  # poses of the new state, not of the last substep's beginning
+        if any(self.data.warning[warning].number for warning in _FATAL):
+            raise Diverged(self.sim_time_s)
+        self.data.userdata[-1] = next_success_ticks(int(self.data.userdata[-1]), self._judge().success_now)
+
+    def integration_state(self) -> bytes:
+        """MuJoCo's full integration state, float64 little-endian: all that decides the future."""
+        state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
+        mujoco.mj_getState(self.model, self.data, state, _STATE)
+        return state.astype("<f8").tobytes()
+
+    def set_integration_state(self, state: bytes) -> None:
+        """Raises InvalidInput where the size is not this model's or a number is not finite."""
+        expected = 8 * mujoco.mj_stateSize(self.model, _STATE)
+        if len(state) != expected:
+            raise InvalidInput(f"A state of {len(state)} bytes was given; this model's has {expected}.")
+        numbers = np.frombuffer(state, dtype="<f8").astype(np.float64)
+        if not np.isfinite(numbers).all():
+            raise InvalidInput("A state with NaN or infinity was given; every number must be finite.")
+        mujoco.mj_resetData(self.model, self.data)
+        mujoco.mj_setState(self.model, self.data, numbers, _STATE)
+        mujoco.mj_kinematics(self.model, self.data)
+
+    def observations(self) -> dict[str, Array]:
+        """All that any operator sees, in the catalogue's order."""
+        seen = self._scene.observe(self.model, self.data)
+        for name, arm in self._arms.items():
+            pose = arm.tool_pose_in_base()
+            seen[f"{name}/tool_position_in_base"] = pose.position
+            seen[f"{name}/tool_quaternion_in_base"] = pose.quaternion_wxyz
+            seen[f"{name}/joint_positions"] = arm.joint_positions()
+            seen[f"{name}/gripper"] = np.array([arm.gripper()])
+        return {observation.name: seen[observation.name] for observation in self.task.observations}
+
+    def observations_for(self, arm: str) -> dict[str, Array]:
+        """What this arm's operator sees."""
+        seen = self.observations()
+        return {observation.name: seen[observation.name] for observation in self.task.observations_of(arm)}
+
+    def progress(self) -> Progress:
+        judgement = self._judge()
+        ticks = int(self.data.userdata[-1])
+        return Progress(
+            subtasks=judgement.subtasks,
+            success_now=judgement.success_now,
+            success_ticks=ticks,
+            success=ticks >= self.task.success_hold_ticks,
+            failed=judgement.failed,
+        )
+
+    def _judge(self) -> Judgement:
+        return self._scene.judge(self.model, self.data)
+
+    def _arm(self, name: str) -> MeasuredArm:
+        return self._arms[self.task.arm(name).name]
+
+
+def _within_unit(vector: Array) -> Array:
+    """The vector, shortened to length 1 where it is longer."""
+    return vector / max(1.0, float(np.linalg.norm(vector)))
