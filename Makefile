@@ -1,0 +1,118 @@
+# MART's verbs. Each works from a fresh clone on Debian 12 with Python 3.11 and make; `make` lists them.
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+MAKEFLAGS += --no-print-directory --no-builtin-rules
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/pip --disable-pip-version-check -qq
+
+# Every part is a distribution of its own; this is the one list of them.
+DISTRIBUTIONS := protocol services/sim services/teleop-gateway services/recorder services/web platform
+PARTS := $(patsubst %/pyproject.toml,%,$(wildcard $(addsuffix /pyproject.toml,$(DISTRIBUTIONS))))
+PART_SOURCES := $(addsuffix /pyproject.toml,$(PARTS)) $(wildcard services/sim/setup.py services/sim/src/mart/sim/world/*.c)
+
+PROTO_DIR := protocol/proto
+PROTOS := $(wildcard $(PROTO_DIR)/mart/v1/*.proto)
+PROTOC = $(BIN)/python -m grpc_tools.protoc --proto_path=$(PROTO_DIR) --python_out=$(1) --pyi_out=$(1) $(PROTOS)
+
+TASK ?=
+COMPOSE = $(shell docker compose version >/dev/null 2>&1 && echo docker compose || echo docker-compose)
+
+##@ Use
+
+.PHONY: run
+run: $(VENV)/.parts ## Run the whole platform with one room and print the lobby's address; TASK=… chooses the task
+	@$(BIN)/mart run $(if $(TASK),--task $(TASK))
+
+.PHONY: demo
+demo: $(VENV)/.tools ## Record three episodes with emulated phones and real browsers, one JSON line each
+	@$(BIN)/mart demo
+
+.PHONY: up
+up: ## Run the platform as containers and print the lobby's address and the join code
+	@tools/compose-up $(COMPOSE)
+
+.PHONY: down
+down: ## Stop the containers; episodes, secrets and certificates stay in their volumes
+	@$(COMPOSE) down
+
+##@ Work on it
+
+.PHONY: setup
+setup: $(VENV)/.tools ## Make .venv with every part and tool, and install missing system packages
+
+.PHONY: test
+test: $(VENV)/.tools ## Run every test but those that need a container engine
+	@$(BIN)/pytest
+
+.PHONY: test-compose
+test-compose: $(VENV)/.tools ## Build the images and collect an episode through the containers; needs an engine
+	@$(BIN)/pytest tests/compose
+
+.PHONY: check
+check: $(VENV)/.tools check-proto ## Check style, types, import rules and that generated code is fresh
+	@$(BIN)/ruff check
+	@$(BIN)/ruff format --check
+	@$(BIN)/mypy
+	@$(BIN)/lint-imports
+
+.PHONY: format
+format: $(VENV)/.tools ## Format the code and mend what the linter can mend
+	@$(BIN)/ruff check --fix-only --quiet
+	@$(BIN)/ruff format
+
+.PHONY: bench
+bench: $(VENV)/.tools ## Run every benchmark; results go to benchmarks/results
+	@for file in benchmarks/*.py; do $(BIN)/python "$$file"; done
+
+.PHONY: bench-%
+bench-%: $(VENV)/.tools ## Run one benchmark, for example bench-barrier
+	@$(BIN)/python benchmarks/$(subst -,_,$*).py
+
+.PHONY: proto
+proto: $(VENV)/.tools ## Generate the Python code of the protobuf schemas
+	@$(call PROTOC,protocol/src)
+
+.PHONY: check-proto
+check-proto: $(VENV)/.tools
+	@fresh=$$(mktemp -d); trap 'rm -rf "$$fresh"' EXIT; $(call PROTOC,"$$fresh"); \
+	diff -r --brief --exclude=__pycache__ "$$fresh/mart/v1" protocol/src/mart/v1 \
+	|| { echo "The generated protobuf code is stale: run 'make proto' and commit the result." >&2; exit 1; }
+
+.PHONY: constraints
+constraints: ## Pin the newest versions of everything anew, from a real installation
+	@tools/pin $(PYTHON) $(PARTS)
+
+.PHONY: clean
+clean: ## Remove everything that was built or recorded by tests; recorded episodes stay
+	@rm -rf $(VENV) test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	@find protocol services platform -name '*.egg-info' -prune -exec rm -rf {} + -o -name '*.so' -delete
+
+.PHONY: help
+help: ## List the verbs
+	@awk -F ':.*## ' '/^##@/ { printf "\n%s\n", substr($$0, 5) } /^[a-z%-]+:.*## / { sub("%", "NAME", $$1); printf "  make %-13s %s\n", $$1, $$2 }' Makefile
+
+# What the verbs above stand on. A stamp is newer than all that it was made from, or it is made again.
+
+$(VENV)/bin/python:
+	@tools/system-packages build
+	@$(PYTHON) -m venv $(VENV)
+
+# mujoco-core carries the headers that the sim's C code is compiled against, so it comes before the parts.
+$(VENV)/.build: $(VENV)/bin/python constraints.txt
+	@$(PIP) install --constraint constraints.txt pip setuptools wheel mujoco-core
+	@touch $@
+
+$(VENV)/.parts: $(VENV)/.build $(PART_SOURCES)
+	@tools/system-packages render
+	@$(PIP) install --constraint constraints.txt --no-build-isolation $(addprefix --editable ,$(PARTS))
+	@touch $@
+
+$(VENV)/.tools: $(VENV)/.parts pyproject.toml
+	@tools/system-packages browser
+	@$(PIP) install --constraint constraints.txt --group dev
+	@touch $@

@@ -1,0 +1,23 @@
+"""What holds for every test: no MART_ setting from outside, and slow kinds last."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+# A broken unit explains a broken session, so units run first.
+_LAST = ("system", "browser", "compose")
+
+
+def pytest_configure() -> None:
+    for name in [name for name in os.environ if name.startswith("MART_")]:
+        del os.environ[name]
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    def rank(item: pytest.Item) -> int:
+        folder = item.path.relative_to(config.rootpath / "tests").parts[0]
+        return _LAST.index(folder) + 1 if folder in _LAST else 0
+
+    items.sort(key=rank)
