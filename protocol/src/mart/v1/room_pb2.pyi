@@ -213,7 +213,7 @@ class RoomReply(_message.Message):
     def __init__(self, error: _Optional[_Union[Error, _Mapping]] = ..., status: _Optional[_Union[RoomStatus, _Mapping]] = ..., seat: _Optional[_Union[Seat, _Mapping]] = ...) -> None: ...
 
 class Event(_message.Message):
-    __slots__ = ("wall_ns", "room", "tick", "barrier_changed", "seat_changed", "episode_started", "episode_ended", "episode_saved", "world_reset", "notice")
+    __slots__ = ("wall_ns", "room", "tick", "barrier_changed", "seat_changed", "episode_started", "episode_ended", "episode_saved", "world_reset", "notice", "latency")
     class BarrierChanged(_message.Message):
         __slots__ = ("phase", "waiting_for")
         PHASE_FIELD_NUMBER: _ClassVar[int]
@@ -277,6 +277,26 @@ class Event(_message.Message):
         level: str
         text: str
         def __init__(self, level: _Optional[str] = ..., text: _Optional[str] = ..., **kwargs) -> None: ...
+    class Latency(_message.Message):
+        __slots__ = ("arm", "p50_ms", "p95_ms", "frames", "stages")
+        class Stage(_message.Message):
+            __slots__ = ("name", "p50_ms")
+            NAME_FIELD_NUMBER: _ClassVar[int]
+            P50_MS_FIELD_NUMBER: _ClassVar[int]
+            name: str
+            p50_ms: float
+            def __init__(self, name: _Optional[str] = ..., p50_ms: _Optional[float] = ...) -> None: ...
+        ARM_FIELD_NUMBER: _ClassVar[int]
+        P50_MS_FIELD_NUMBER: _ClassVar[int]
+        P95_MS_FIELD_NUMBER: _ClassVar[int]
+        FRAMES_FIELD_NUMBER: _ClassVar[int]
+        STAGES_FIELD_NUMBER: _ClassVar[int]
+        arm: str
+        p50_ms: float
+        p95_ms: float
+        frames: int
+        stages: _containers.RepeatedCompositeFieldContainer[Event.Latency.Stage]
+        def __init__(self, arm: _Optional[str] = ..., p50_ms: _Optional[float] = ..., p95_ms: _Optional[float] = ..., frames: _Optional[int] = ..., stages: _Optional[_Iterable[_Union[Event.Latency.Stage, _Mapping]]] = ...) -> None: ...
     WALL_NS_FIELD_NUMBER: _ClassVar[int]
     ROOM_FIELD_NUMBER: _ClassVar[int]
     TICK_FIELD_NUMBER: _ClassVar[int]
@@ -287,6 +307,7 @@ class Event(_message.Message):
     EPISODE_SAVED_FIELD_NUMBER: _ClassVar[int]
     WORLD_RESET_FIELD_NUMBER: _ClassVar[int]
     NOTICE_FIELD_NUMBER: _ClassVar[int]
+    LATENCY_FIELD_NUMBER: _ClassVar[int]
     wall_ns: int
     room: str
     tick: int
@@ -297,4 +318,5 @@ class Event(_message.Message):
     episode_saved: Event.EpisodeSaved
     world_reset: Event.WorldReset
     notice: Event.Notice
-    def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ...) -> None: ...
+    latency: Event.Latency
+    def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ..., latency: _Optional[_Union[Event.Latency, _Mapping]] = ...) -> None: ...
