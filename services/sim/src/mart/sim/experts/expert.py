@@ -1,0 +1,85 @@
+"""A scripted operator of one arm. Pure: it is shown what that arm's operator sees and says what it wants."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Task
+from mart.sim.experts.hand import Hand
+from mart.sim.experts.plan import Plan, Sight, Waypoint
+from mart.sim.experts.plans import plan_of
+from mart.sim.experts.skill import Skill
+
+_SAME_WAYPOINT_M = 0.05  # a waypoint that jumps further than this is a new movement
+
+
+@dataclass(frozen=True)
+class Intent:
+    """What the operator wants now. While not `engaged` the clutch is let go, and the arm should hold."""
+
+    target_tool_in_base: Pose
+    gripper: float
+    engaged: bool
+
+
+class Expert:
+    """Good for one episode. Copes with sights that arrive some ticks late, repeatedly or not at all.
+
+    Time is the sim's: an expert that is shown the same moment again wants the same thing again.
+    """
+
+    def __init__(self, task: Task, arm: str, skill: Skill, random: np.random.Generator) -> None:
+        self._arm = task.arm(arm)
+        self._plan_of = plan_of(task)
+        self._skill = skill
+        self._random = random
+        self._hand = Hand(skill, random)
+        self._plan: Plan | None = None
+        self._waypoint: Waypoint | None = None
+        self._seen_s = 0.0
+        self._rest_until_s = 0.0
+
+    def act(self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float) -> Intent:
+        """observations: what the task declares for this arm; see `World.observations_for`."""
+        sight = self._look(observations, sim_time_s)
+        measured = sight.pose_tool_in_base
+        elapsed_s = max(0.0, sim_time_s - self._seen_s)
+        self._seen_s = max(self._seen_s, sim_time_s)
+        waypoint = self._next_waypoint(sight)
+        if sim_time_s < self._rest_until_s:
+            return Intent(self._hand.rest(measured), waypoint.gripper, engaged=False)
+        target = self._hand.move(waypoint.pose_tool_in_base, measured, waypoint.pace, elapsed_s)
+        return Intent(target, waypoint.gripper, engaged=True)
+
+    def _look(self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float) -> Sight:
+        name = self._arm.name
+        tool = Pose(
+            observations[f"{name}/tool_position_in_base"], observations[f"{name}/tool_quaternion_in_base"]
+        )
+        arrived = self._waypoint is not None and self._hand.has_reached(self._waypoint.pose_tool_in_base, tool)
+        return Sight(observations, sim_time_s, tool, float(observations[f"{name}/gripper"][0]), arrived)
+
+    def _next_waypoint(self, sight: Sight) -> Waypoint:
+        if self._plan is None or self._waypoint is None:
+            self._plan = self._plan_of(self._arm, self._skill, sight)
+            self._waypoint = next(self._plan)
+            self._seen_s = sight.sim_time_s
+            self._rest_until_s = sight.sim_time_s + self._skill.reaction_s * self._random.uniform(0.7, 1.3)
+            return self._waypoint
+        if sight.sim_time_s < self._rest_until_s:
+            return self._waypoint
+        waypoint = self._plan.send(sight)
+        if self._is_new(waypoint) and self._random.random() < self._skill.pause_probability:
+            self._rest_until_s = sight.sim_time_s + self._skill.pause_s * self._random.uniform(0.5, 1.5)
+        self._waypoint = waypoint
+        return waypoint
+
+    def _is_new(self, waypoint: Waypoint) -> bool:
+        assert self._waypoint is not None
+        way_m, _ = waypoint.pose_tool_in_base.distance_to(self._waypoint.pose_tool_in_base)
+        return way_m > _SAME_WAYPOINT_M
