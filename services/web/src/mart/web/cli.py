@@ -1,0 +1,32 @@
+"""`mart web`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from mart.protocol.cli import json_option, print_result
+
+
+@click.command()
+@click.option("--host", "web_host", help="Address to listen at.  [default: 127.0.0.1, this computer alone]")
+@click.option("--port", "web_port", type=click.IntRange(0, 65535), help="Port to listen at.  [default: 8443]")
+@click.option("--public-host", help="Names or addresses that people and phones use, separated by commas.")
+@json_option
+def web(as_json: bool, **options: Any) -> None:
+    """Serve the lobby and the operators' and phones' pages over HTTPS."""
+    from mart.protocol.service import run_async
+    from mart.web.join_code import load_or_make_join_code
+    from mart.web.names import in_url
+    from mart.web.server import listen, serve
+    from mart.web.settings import WebSettings
+
+    settings = WebSettings(**{name: value for name, value in options.items() if value is not None})
+    join_code = load_or_make_join_code(settings.join_code_path, settings.join_code)
+    with listen(settings.web_host, settings.web_port) as listener:
+        port = listener.getsockname()[1]
+        name = next(iter(settings.public_names), settings.web_host)
+        url = f"https://{in_url(name)}:{port}/"
+        print_result({"url": url, "join_code": join_code}, f"Lobby {url}  join code {join_code}", as_json)
+        run_async(settings, "web", "web", lambda bus: serve(settings, bus, listener, join_code))

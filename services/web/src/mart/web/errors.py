@@ -1,0 +1,70 @@
+"""Branches of the error tree that only HTTP knows, and the status that each branch becomes."""
+
+from __future__ import annotations
+
+from mart.protocol.errors import Conflict, Forbidden, InvalidInput, MartError, NotFound, Unavailable
+
+
+class NotJoined(Forbidden):
+    """No session, or one that has ended."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "You have not joined yet, or your visit has ended; join in the lobby with the join code."
+        )
+
+
+class WrongOrigin(Forbidden):
+    """The request was not sent by a page of this site."""
+
+    def __init__(self, origin: str | None) -> None:
+        given = f"came from {origin[:80]!r}" if origin else "did not say where it came from"
+        super().__init__(f"This request {given}; only this site's own pages may ask for changes.")
+
+
+class WrongHost(InvalidInput):
+    """The site was addressed by a name that is not its own."""
+
+    def __init__(self, host: str, names: tuple[str, ...]) -> None:
+        super().__init__(
+            f"This site was addressed as {host[:80]!r}; it is called {', '.join(names)}. "
+            "Another name is added with --public-host."
+        )
+
+
+class TooLarge(InvalidInput):
+    def __init__(self, limit_bytes: int) -> None:
+        super().__init__(f"The request's body is too long; at most {limit_bytes} bytes are allowed.")
+
+
+class TooMany(MartError):
+    """Asked too often."""
+
+    def __init__(self, what: str, retry_s: float) -> None:
+        super().__init__(f"Too many {what} from here; try again in {retry_s:.0f} s.")
+        self.retry_s = retry_s
+
+    @property
+    def code(self) -> str:
+        return "TooMany"
+
+
+_STATUS: tuple[tuple[type[MartError], int], ...] = (
+    (NotJoined, 401),
+    (TooLarge, 413),
+    (TooMany, 429),
+    (WrongHost, 421),
+    (InvalidInput, 400),
+    (Forbidden, 403),
+    (NotFound, 404),
+    (Conflict, 409),
+    (Unavailable, 503),
+)
+
+
+def http_status(error: MartError) -> int:
+    return next((status for kind, status in _STATUS if isinstance(error, kind)), 500)
+
+
+def error_json(error: MartError) -> dict[str, dict[str, str]]:
+    return {"error": {"code": error.code, "message": str(error)}}

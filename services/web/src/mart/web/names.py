@@ -1,0 +1,49 @@
+"""What this site is called: the names and addresses that a browser may use for it."""
+
+from __future__ import annotations
+
+import ipaddress
+import socket
+from collections.abc import Iterable
+
+import ifaddr
+
+LOOPBACK = ("localhost", "127.0.0.1", "::1")
+
+
+def site_names(public_names: Iterable[str]) -> tuple[str, ...]:
+    """The public names first, then the loopback's, the host's and every local network address; without repeats."""
+    host = socket.gethostname().lower()
+    local = (host, f"{host}.local") if "." not in host else (host,)
+    return tuple(
+        dict.fromkeys((*(name.lower() for name in public_names), *LOOPBACK, *local, *lan_addresses()))
+    )
+
+
+def lan_addresses() -> tuple[str, ...]:
+    """IPv4 addresses of this machine on its networks, the private ones first."""
+    found = [
+        ipaddress.IPv4Address(address.ip)
+        for adapter in ifaddr.get_adapters()
+        for address in adapter.ips
+        if isinstance(address.ip, str)
+    ]
+    usable = {address for address in found if not (address.is_loopback or address.is_link_local)}
+    return tuple(
+        str(address) for address in sorted(usable, key=lambda address: (not address.is_private, address))
+    )
+
+
+def host_name(host_header: str) -> str:
+    """The name in a Host header or an Origin's authority, without the port and without an IPv6 address's brackets."""
+    if host_header.startswith("["):
+        return host_header[1:].partition("]")[0].lower()
+    return host_header.partition(":")[0].lower()
+
+
+def is_loopback(name: str) -> bool:
+    return name in LOOPBACK
+
+
+def in_url(name: str) -> str:
+    return f"[{name}]" if ":" in name else name

@@ -1,0 +1,176 @@
+"""The rooms on the bus: what they say keeps the lobby current, what people want becomes a query."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections import deque
+from collections.abc import Iterator
+
+from mart.protocol import clock, codec, keys
+from mart.protocol.bus.aio import AsyncBus
+from mart.protocol.bus.base import Closable, Sample
+from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.messages import (
+    OPERATOR_HUMAN,
+    EpisodeRequest,
+    Event,
+    Operator,
+    Outcome,
+    RoomReply,
+    RoomStatus,
+    Seat,
+    SeatRequest,
+    raise_error,
+)
+from mart.web.lobby import Json, Lobby, event_json
+from mart.web.people import Person
+
+_log = logging.getLogger(__name__)
+
+QUERY_TIMEOUT_S = 3.0
+_MAX_STATUS_BYTES = 64 * 1024
+_MAX_WAITING_EVENTS = 64
+
+
+class Listener:
+    """Told when anything changes. Holds the events that were not taken yet, newest 64."""
+
+    def __init__(self) -> None:
+        self._changed = asyncio.Event()
+        self._events: deque[Json] = deque(maxlen=_MAX_WAITING_EVENTS)
+
+    def tell(self, event: Json | None = None) -> None:
+        if event is not None:
+            self._events.append(event)
+        self._changed.set()
+
+    async def wait(self, timeout_s: float) -> None:
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self._changed.wait(), timeout_s)
+        self._changed.clear()
+
+    def take_events(self) -> list[Json]:
+        taken = list(self._events)
+        self._events.clear()
+        return taken
+
+
+class Rooms:
+    """Open from its making until `close`."""
+
+    def __init__(self, bus: AsyncBus) -> None:
+        self.lobby = Lobby()
+        self._bus = bus
+        self._services: dict[str, set[str]] = {}
+        self._listeners: set[Listener] = set()
+        self._unreadable = 0
+        self._last_warning_s = float("-inf")
+        self._opened: list[Closable] = [
+            bus.watch(keys.EVERY_ALIVE, self._on_alive),
+            bus.subscribe(keys.EVERY_STATUS, self._on_status),
+            bus.subscribe(keys.EVERY_EVENT, self._on_event),
+        ]
+
+    def close(self) -> None:
+        while self._opened:
+            self._opened.pop().close()
+
+    def services(self) -> dict[str, list[str]]:
+        """Who is alive: kind → ids."""
+        return {kind: sorted(ids) for kind, ids in sorted(self._services.items()) if ids}
+
+    @contextlib.contextmanager
+    def listen(self) -> Iterator[Listener]:
+        listener = Listener()
+        self._listeners.add(listener)
+        try:
+            yield listener
+        finally:
+            self._listeners.discard(listener)
+
+    async def claim(self, room: str, arm: str, person: Person) -> Seat:
+        claim = SeatRequest.Claim(
+            arm=arm, holder_id=person.holder_id, name=person.name, operator=OPERATOR_HUMAN
+        )
+        return await self._ask_seat(room, arm, SeatRequest(claim=claim))
+
+    async def release(self, room: str, arm: str, person: Person) -> Seat:
+        release = SeatRequest.Release(arm=arm, holder_id=person.holder_id)
+        return await self._ask_seat(room, arm, SeatRequest(release=release))
+
+    async def assign(self, room: str, arm: str, operator: Operator) -> Seat:
+        return await self._ask_seat(
+            room, arm, SeatRequest(assign=SeatRequest.Assign(arm=arm, operator=operator))
+        )
+
+    async def set_ready(self, room: str, arm: str, person: Person, ready: bool) -> None:
+        request = EpisodeRequest.Ready(arm=arm, holder_id=person.holder_id, ready=ready)
+        await self._ask_episode(room, EpisodeRequest(ready=request))
+
+    async def finish(self, room: str, person: Person, outcome: Outcome) -> None:
+        request = EpisodeRequest.Finish(holder_id=person.holder_id, outcome=outcome)
+        await self._ask_episode(room, EpisodeRequest(finish=request))
+
+    async def reset(self, room: str, person: Person) -> None:
+        await self._ask_episode(room, EpisodeRequest(reset=EpisodeRequest.Reset(holder_id=person.holder_id)))
+
+    async def _ask_seat(self, room: str, arm: str, request: SeatRequest) -> Seat:
+        self.lobby.seat(room, arm, clock.monotonic_s())
+        reply = await self._ask(keys.seat(room), codec.encode(request))
+        return reply.seat if reply.seat.arm else self.lobby.seat(room, arm, clock.monotonic_s())
+
+    async def _ask_episode(self, room: str, request: EpisodeRequest) -> None:
+        self.lobby.status(room, clock.monotonic_s())
+        await self._ask(keys.episode(room), codec.encode(request))
+
+    async def _ask(self, topic: keys.Topic, payload: bytes) -> RoomReply:
+        reply = codec.decode(
+            RoomReply, await self._bus.query(topic, payload, QUERY_TIMEOUT_S), _MAX_STATUS_BYTES
+        )
+        raise_error(reply.error)
+        if reply.status.room:
+            self._see(reply.status)
+        return reply
+
+    def _on_status(self, sample: Sample) -> None:
+        try:
+            status = codec.decode(RoomStatus, sample.payload, _MAX_STATUS_BYTES)
+            if status.room != keys.room_of(sample.key):
+                raise InvalidInput(f"A status of room {status.room!r} was given on {sample.key}.")
+            self._see(status)
+        except MartError as error:
+            self._warn(sample.key, error)
+
+    def _on_event(self, sample: Sample) -> None:
+        try:
+            told = event_json(codec.decode(Event, sample.payload, _MAX_STATUS_BYTES))
+        except MartError as error:
+            self._warn(sample.key, error)
+        else:
+            if told is not None:
+                self._tell(told)
+
+    def _on_alive(self, key: str, alive: bool) -> None:
+        kind, name = key.split("/")[-2:]
+        running = self._services.setdefault(kind, set())
+        (running.add if alive else running.discard)(name)
+        if kind == "sim":
+            self.lobby.set_alive(name, alive)
+        self._tell()
+
+    def _see(self, status: RoomStatus) -> None:
+        self.lobby.see(status, clock.monotonic_s())
+        self._tell()
+
+    def _tell(self, event: Json | None = None) -> None:
+        for listener in self._listeners:
+            listener.tell(event)
+
+    def _warn(self, key: str, error: MartError) -> None:
+        self._unreadable += 1
+        now_s = clock.monotonic_s()
+        if now_s - self._last_warning_s >= 1.0:
+            self._last_warning_s = now_s
+            _log.warning("Ignored a message on %s (%d so far): %s", key, self._unreadable, error)

@@ -1,0 +1,128 @@
+"""Tokens, pairing and offers: how a browser or a phone gets to its seat's gateway."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import segno
+from fastapi import APIRouter, Header, Request
+from pydantic import BaseModel
+
+from mart.protocol import clock
+from mart.protocol.errors import Forbidden
+from mart.protocol.messages import Seat
+from mart.protocol.tokens import Role, SeatToken, sign, verify
+from mart.web.lobby import Json
+from mart.web.names import host_name, in_url, is_loopback
+from mart.web.pairing import LIFETIME_S, Pairing
+from mart.web.people import Person
+from mart.web.routes.common import Address, Joined, TheSite, now_unix_s
+from mart.web.signaling import answer_offer
+from mart.web.site import Site
+
+router = APIRouter(prefix="/api")
+
+_BROWSER_TOKEN_S = 300.0  # a page asks for a new one whenever it connects
+_PHONE_TOKEN_S = 12 * 3600.0  # a phone cannot ask again; the seat's epoch ends it earlier
+_UNREACHABLE = (
+    "This service listens on this computer alone, so a phone cannot reach it. Start it with "
+    "`--host 0.0.0.0`, or give `--public-host` the name that phones should use."
+)
+
+
+class Code(BaseModel):
+    code: str
+
+
+class Description(BaseModel):
+    sdp: str
+
+
+@router.get("/rooms/{room}/seats/{arm}/token")
+async def token(room: str, arm: str, site: TheSite, person: Joined) -> Json:
+    seat = _seat(site, room, arm)
+    role = Role.BROWSER if seat.holder_id == person.holder_id else Role.VIEWER
+    signed = _sign(
+        site, SeatToken(room, arm, seat.epoch, role, person.holder_id, now_unix_s() + _BROWSER_TOKEN_S)
+    )
+    return {"token": signed, "role": role.value, "epoch": seat.epoch}
+
+
+@router.post("/rooms/{room}/seats/{arm}/pair")
+async def pair(room: str, arm: str, request: Request, site: TheSite, person: Joined) -> Json:
+    seat = _own_seat(site, room, arm, person)
+    pairing = Pairing(room, arm, seat.epoch, person.holder_id, person.name)
+    code = site.pairing.issue(pairing, clock.monotonic_s())
+    host = _host_for_phone(request.headers["host"], site.lan_host)
+    url = f"https://{host}/phone#{code}"
+    return {
+        "code": code,
+        "url": url,
+        "expires_s": LIFETIME_S,
+        "qr_svg": segno.make(url, error="m", micro=False).svg_inline(dark="#000", light="#fff", border=3),
+        "hint": _UNREACHABLE if is_loopback(host_name(host)) else "",
+    }
+
+
+@router.post("/pair")
+async def redeem(body: Code, site: TheSite, address: Address) -> Json:
+    now_s = clock.monotonic_s()
+    key = f"pair {address}"
+    site.wrong_codes.check(key, now_s)
+    try:
+        pairing = site.pairing.redeem(body.code, now_s)
+    except Forbidden:
+        site.wrong_codes.count(key, now_s)
+        raise
+    seat = SeatToken(
+        pairing.room, pairing.arm, pairing.epoch, Role.PHONE, pairing.holder_id, now_unix_s() + _PHONE_TOKEN_S
+    )
+    return {
+        "token": _sign(site, seat),
+        "room": pairing.room,
+        "arm": pairing.arm,
+        "epoch": pairing.epoch,
+        "name": pairing.name,
+        "role": Role.PHONE.value,
+    }
+
+
+@router.post("/rooms/{room}/seats/{arm}/offer")
+async def offer(
+    room: str, arm: str, body: Description, site: TheSite, authorization: Annotated[str, Header()] = ""
+) -> Json:
+    text = authorization.removeprefix("Bearer ")
+    seat_token = verify(text, site.secret)
+    if (seat_token.room, seat_token.arm) != (room, arm):
+        raise Forbidden(
+            f"This seat token is for {seat_token.arm} in {seat_token.room}, not for {arm} in {room}."
+        )
+    if seat_token.epoch != _seat(site, room, arm).epoch:
+        raise Forbidden(
+            "This seat has changed hands since you got your token; take a seat in the lobby again."
+        )
+    site.offers.spend(f"{seat_token.holder_id} {seat_token.role}", clock.monotonic_s())
+    gateways = site.rooms.services().get("gateway", [])
+    return {"sdp": await answer_offer(site.bus, gateways, seat_token, text, body.sdp)}
+
+
+def _seat(site: Site, room: str, arm: str) -> Seat:
+    return site.rooms.lobby.seat(room, arm, clock.monotonic_s())
+
+
+def _own_seat(site: Site, room: str, arm: str, person: Person) -> Seat:
+    seat = _seat(site, room, arm)
+    if seat.holder_id != person.holder_id:
+        raise Forbidden(f"{arm} in {room} is not your seat; only its holder can pair a phone with it.")
+    return seat
+
+
+def _sign(site: Site, token: SeatToken) -> str:
+    return sign(token, site.secret)
+
+
+def _host_for_phone(host_header: str, lan_host: str) -> str:
+    name = host_name(host_header)
+    if lan_host and is_loopback(name):
+        return host_header.replace(in_url(name), in_url(lan_host), 1)
+    return host_header

@@ -1,0 +1,62 @@
+"""Rooms, their seats and their episodes."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from fastapi import APIRouter
+from pydantic import BaseModel
+
+from mart.protocol import clock
+from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import OUTCOME_DISCARDED, OUTCOME_FAILURE, OUTCOME_SUCCESS, operator_from_word
+from mart.web.lobby import Json, seat_json
+from mart.web.routes.common import Joined, TheSite
+
+router = APIRouter(prefix="/api")
+
+_OUTCOMES = {"success": OUTCOME_SUCCESS, "failure": OUTCOME_FAILURE, "discard": OUTCOME_DISCARDED}
+
+
+class Take(BaseModel):
+    operator: Literal["human", "script", "hold"]
+
+
+class Act(BaseModel):
+    action: Literal["ready", "unready", "success", "failure", "discard", "reset"]
+    arm: str = ""
+
+
+@router.get("/rooms")
+async def rooms(site: TheSite, person: Joined) -> Json:
+    return {"rooms": site.rooms.lobby.rooms_json(person.holder_id, clock.monotonic_s())}
+
+
+@router.post("/rooms/{room}/seats/{arm}")
+async def take_seat(room: str, arm: str, body: Take, site: TheSite, person: Joined) -> Json:
+    if body.operator == "human":
+        seat = await site.rooms.claim(room, arm, person)
+    else:
+        seat = await site.rooms.assign(room, arm, operator_from_word(body.operator))
+    return {"seat": seat_json(seat, person.holder_id)}
+
+
+@router.delete("/rooms/{room}/seats/{arm}")
+async def leave_seat(room: str, arm: str, site: TheSite, person: Joined) -> Json:
+    return {"seat": seat_json(await site.rooms.release(room, arm, person), person.holder_id)}
+
+
+@router.post("/rooms/{room}/episode")
+async def act(room: str, body: Act, site: TheSite, person: Joined) -> Json:
+    match body.action:
+        case "ready" | "unready":
+            if not body.arm:
+                raise InvalidInput(
+                    f"{body.action!r} was given without an arm; name the arm whose seat you hold."
+                )
+            await site.rooms.set_ready(room, body.arm, person, body.action == "ready")
+        case "reset":
+            await site.rooms.reset(room, person)
+        case _:
+            await site.rooms.finish(room, person, _OUTCOMES[body.action])
+    return {"room": site.rooms.lobby.room_json(room, person.holder_id, clock.monotonic_s())}

@@ -1,0 +1,40 @@
+"""Settings of the web service."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import Field
+
+from mart.protocol.settings import Settings
+
+
+class WebSettings(Settings):
+    web_host: str = Field(
+        "127.0.0.1", description="Address to listen at; 0.0.0.0 lets phones and other laptops in."
+    )
+    web_port: int = Field(8443, ge=0, le=65535)
+    public_host: str = Field("", description="Names and addresses that people use, separated by commas.")
+    join_code: str = Field("", description="Fixed join code; default: one made at first start.")
+    certificate: Path | None = Field(
+        None, description="PEM certificate chain; default: one made at first start."
+    )
+    certificate_key: Path | None = Field(
+        None, description="PEM private key, where it is not in the same file."
+    )
+
+    @property
+    def public_names(self) -> tuple[str, ...]:
+        return tuple(name.strip() for name in self.public_host.split(",") if name.strip())
+
+    @property
+    def certificates_dir(self) -> Path:
+        return self.data_dir / "certificates"
+
+    @property
+    def sessions_path(self) -> Path:
+        return self.data_dir / "web" / "sessions.sqlite"
+
+    @property
+    def join_code_path(self) -> Path:
+        return self.data_dir / "join-code"
