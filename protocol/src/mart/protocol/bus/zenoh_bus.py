@@ -35,6 +35,7 @@ _PRIORITY = {
 class ZenohBus(Bus):
     def __init__(self, session: zenoh.Session) -> None:
         self._session = session
+        self._declared: set[_Declared] = set()  # a handle that nobody holds would undeclare itself
 
     @classmethod
     def connect(cls, endpoint: str, wait_for_router: bool = True) -> ZenohBus:
@@ -69,13 +70,13 @@ class ZenohBus(Bus):
         def deliver(sample: zenoh.Sample) -> None:
             handler(Sample(str(sample.key_expr), sample.payload.to_bytes()))
 
-        return _Declared(self._session.declare_subscriber(key_expression, _logged(deliver)))
+        return self._keep(self._session.declare_subscriber(key_expression, _logged(deliver)))
 
     def serve(self, topic: Topic, handler: RequestHandler) -> Closable:
         def deliver(query: zenoh.Query) -> None:
             handler(_ZenohRequest(query))
 
-        return _Declared(self._session.declare_queryable(topic.key, _logged(deliver)))
+        return self._keep(self._session.declare_queryable(topic.key, _logged(deliver)))
 
     def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
         replies = self._session.get(
@@ -89,21 +90,34 @@ class ZenohBus(Bus):
         )
 
     def announce(self, alive_key: str) -> Closable:
-        return _Declared(self._session.liveliness().declare_token(alive_key))
+        return self._keep(self._session.liveliness().declare_token(alive_key))
 
     def watch(self, alive_expression: str, handler: AliveHandler) -> Closable:
+        present: set[str] = set()
+
         def deliver(sample: zenoh.Sample) -> None:
-            handler(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
+            key, alive = str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT
+            if alive == (key in present):
+                return  # a token declared while we subscribe comes twice: as history and as news
+            (present.add if alive else present.discard)(key)
+            handler(key, alive)
 
         subscriber = self._session.liveliness().declare_subscriber(alive_expression, _logged(deliver), history=True)
-        return _Declared(subscriber)
+        return self._keep(subscriber)
 
     def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
         replies = self._session.liveliness().get(alive_expression, timeout=timeout_s)
         return sorted(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
 
     def close(self) -> None:
+        for declared in list(self._declared):
+            declared.close()
         self._session.close()  # type: ignore[no-untyped-call]
+
+    def _keep(self, handle: Any) -> Closable:
+        declared = _Declared(handle, self._declared.discard)
+        self._declared.add(declared)
+        return declared
 
 
 class _ZenohPublisher:
@@ -131,12 +145,14 @@ class _ZenohRequest:
 class _Declared:
     """Undeclares explicitly: leaving it to the garbage collector has deadlocked (zenoh-python #434)."""
 
-    def __init__(self, declared: Any) -> None:
-        self._declared = declared
+    def __init__(self, handle: Any, forget: Callable[[_Declared], None]) -> None:
+        self._handle = handle
+        self._forget = forget
 
     def close(self) -> None:
-        with contextlib.suppress(zenoh.ZError):  # the session went first
-            self._declared.undeclare()
+        self._forget(self)
+        with contextlib.suppress(zenoh.ZError):  # closed before
+            self._handle.undeclare()
 
 
 def _open(settings: dict[str, Any], endpoint: str) -> zenoh.Session:

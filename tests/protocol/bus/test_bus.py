@@ -1,0 +1,170 @@
+"""One suite for every bus: what holds in memory holds on Zenoh."""
+
+from __future__ import annotations
+
+import queue
+import socket
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from mart.protocol import keys
+from mart.protocol.bus.base import Bus, Request, Sample
+from mart.protocol.bus.memory import MemoryNetwork
+from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.errors import Unavailable
+
+Connect = Callable[[], Bus]
+WAIT_S = 5.0
+
+
+@pytest.fixture(params=["memory", "zenoh"])
+def connect(request: pytest.FixtureRequest) -> Iterator[Connect]:
+    opened: list[Bus] = []
+
+    def keep(bus: Bus) -> Bus:
+        opened.append(bus)
+        return bus
+
+    if request.param == "memory":
+        network = MemoryNetwork()
+        yield lambda: keep(network.connect())
+    else:
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+        router = ZenohBus.route(endpoint)
+        yield lambda: keep(ZenohBus.connect(endpoint))
+        opened.append(router)
+    for bus in opened:
+        bus.close()
+
+
+class Inbox:
+    """Collects samples; `next()` waits for one."""
+
+    def __init__(self) -> None:
+        self._samples: queue.Queue[Sample] = queue.Queue()
+
+    def __call__(self, sample: Sample) -> None:
+        self._samples.put(sample)
+
+    def next(self) -> Sample:
+        return self._samples.get(timeout=WAIT_S)
+
+    @property
+    def empty(self) -> bool:
+        return self._samples.empty()
+
+
+def answering(answer: Callable[[bytes], bytes]) -> Callable[[Request], None]:
+    return lambda request: request.reply(answer(request.payload))
+
+
+def settled(bus: Bus, topic: keys.Topic) -> None:
+    """A round trip through the router: declarations made before it are known there."""
+    server = bus.serve(topic, answering(lambda payload: payload))
+    assert bus.query(topic, b"?", WAIT_S) == b"?"
+    server.close()
+
+
+def test_a_put_reaches_every_subscriber_of_its_key(connect: Connect) -> None:
+    a, b = connect(), connect()
+    inboxes = [Inbox(), Inbox()]
+    b.subscribe(keys.state("room-1").key, inboxes[0])
+    b.subscribe(keys.EVERY_STATE, inboxes[1])
+    settled(b, keys.model("room-1"))
+    a.publisher(keys.state("room-1")).put(b"hello")
+    assert [inbox.next() for inbox in inboxes] == [Sample("mart/room-1/state", b"hello")] * 2
+
+
+def test_a_wildcard_takes_its_segment_and_no_other(connect: Connect) -> None:
+    a, b = connect(), connect()
+    inbox = Inbox()
+    b.subscribe(keys.commands("room-1"), inbox)
+    settled(b, keys.model("room-1"))
+    a.publisher(keys.command("room-2", "arm0")).put(b"other room")
+    a.publisher(keys.state("room-1")).put(b"other key")
+    a.publisher(keys.command("room-1", "arm1")).put(b"mine")
+    assert inbox.next() == Sample("mart/room-1/arm/arm1/command", b"mine")
+    assert inbox.empty
+
+
+def test_puts_of_one_publisher_arrive_in_order(connect: Connect) -> None:
+    a, b = connect(), connect()
+    inbox = Inbox()
+    b.subscribe(keys.event("room-1").key, inbox)
+    settled(b, keys.model("room-1"))
+    publisher = a.publisher(keys.event("room-1"))
+    for number in range(200):
+        publisher.put(str(number).encode())
+    assert [inbox.next().payload for _ in range(200)] == [str(number).encode() for number in range(200)]
+
+
+def test_a_large_payload_arrives_whole(connect: Connect) -> None:
+    a, b = connect(), connect()
+    inbox = Inbox()
+    b.subscribe(keys.event("room-1").key, inbox)
+    settled(b, keys.model("room-1"))
+    payload = bytes(range(256)) * 12_000
+    a.publisher(keys.event("room-1")).put(payload)
+    assert inbox.next().payload == payload
+
+
+def test_a_closed_subscription_hears_nothing_more(connect: Connect) -> None:
+    a, b = connect(), connect()
+    closed, open_ = Inbox(), Inbox()
+    b.subscribe(keys.state("room-1").key, closed).close()
+    b.subscribe(keys.state("room-1").key, open_)
+    settled(b, keys.model("room-1"))
+    a.publisher(keys.state("room-1")).put(b"x")
+    open_.next()
+    assert closed.empty
+
+
+def test_a_query_is_answered(connect: Connect) -> None:
+    a, b = connect(), connect()
+    b.serve(keys.seat("room-1"), answering(lambda payload: payload[::-1]))
+    settled(b, keys.model("room-1"))
+    assert a.query(keys.seat("room-1"), b"abc", WAIT_S) == b"cba"
+
+
+def test_a_query_that_nobody_answers_says_so(connect: Connect) -> None:
+    with pytest.raises(Unavailable, match="mart/room-9/seat"):
+        connect().query(keys.seat("room-9"), b"", 0.3)
+
+
+def test_liveliness_is_seen_by_early_and_late_watchers_and_ends_with_its_holder(connect: Connect) -> None:
+    a, b = connect(), connect()
+    early: queue.Queue[tuple[str, bool]] = queue.Queue()
+    late: queue.Queue[tuple[str, bool]] = queue.Queue()
+    b.watch(keys.alive_of("sim"), lambda key, alive: early.put((key, alive)))
+    settled(b, keys.model("room-1"))
+    key = keys.alive("sim", "room-1")
+    a.announce(key)
+    assert early.get(timeout=WAIT_S) == (key, True)
+    b.watch(keys.alive_of("sim"), lambda key, alive: late.put((key, alive)))
+    assert late.get(timeout=WAIT_S) == (key, True)
+    assert b.alive(keys.EVERY_ALIVE) == [key]
+    a.close()
+    assert early.get(timeout=WAIT_S) == (key, False)
+    assert late.get(timeout=WAIT_S) == (key, False)
+
+
+def test_only_the_watched_kind_is_reported(connect: Connect) -> None:
+    a, b = connect(), connect()
+    seen: queue.Queue[tuple[str, bool]] = queue.Queue()
+    b.watch(keys.alive_of("web"), lambda key, alive: seen.put((key, alive)))
+    settled(b, keys.model("room-1"))
+    a.announce(keys.alive("sim", "room-1"))
+    a.announce(keys.alive("web", "web"))
+    assert seen.get(timeout=WAIT_S) == (keys.alive("web", "web"), True)
+    assert seen.empty()
+
+
+def test_a_client_that_does_not_wait_says_that_there_is_no_router() -> None:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    with pytest.raises(Unavailable, match="router"):
+        ZenohBus.connect(endpoint, wait_for_router=False)
