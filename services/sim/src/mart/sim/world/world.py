@@ -41,8 +41,9 @@ class Diverged(Corrupt):
 class World:
     """A compiled task and its state. Build with `World.build`, then `reset` before anything else.
 
-    Actions: shape (arms, 7), each number in [-1, 1] (clipped): translation along the arm's base axes over `limit_m`,
-    rotation vector about them over `limit_rad`, gripper -1 open … +1 closed. They count from the tool's measured pose.
+    Actions: shape (arms, 7), each number in [-1, 1] (clipped): translation along the arm's base axes over
+    `task.limits.step_m`, rotation vector about them over `task.limits.step_rad`, gripper -1 open … +1 closed. They count
+    from the tool's measured pose.
     """
 
     def __init__(self, scene: Scene, control_hz: float, detail: Detail = "hull") -> None:
@@ -50,10 +51,10 @@ class World:
         self._scene = scene
         self._substeps, timestep_s = model.substeps(control_hz)
         self.control_period_s = 1.0 / control_hz
-        self.limit_m, self.limit_rad = scene.task.limits.per_tick(self.control_period_s)
         self.model = model.build(scene, timestep_s, detail)
         self.data = mujoco.MjData(self.model)
-        self._action_scale = np.array([self.limit_m] * 3 + [self.limit_rad] * 3 + [-STROKE_M])
+        limits = scene.task.limits
+        self._action_scale = np.array([limits.step_m] * 3 + [limits.step_rad] * 3 + [-STROKE_M])
         self._arms = {arm.name: MeasuredArm(self.model, self.data, arm.name) for arm in scene.task.arms}
         blocks = self.data.userdata[: osc.BLOCK_SIZE * len(self.arms)].reshape(len(self.arms), osc.BLOCK_SIZE)
         self._modes, self._commands, self._postures = blocks[:, osc.MODE], blocks[:, osc.COMMAND], blocks[:, osc.POSTURE]
@@ -126,8 +127,8 @@ class World:
         )
         return np.concatenate(
             [
-                _within_unit(shift / self.limit_m),
-                _within_unit(turn.log()[3:] / self.limit_rad),
+                _within_unit(shift / self.task.limits.step_m),
+                _within_unit(turn.log()[3:] / self.task.limits.step_rad),
                 [2.0 * min(max(gripper, 0.0), 1.0) - 1.0],
             ]
         )
