@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from google.protobuf.descriptor import FieldDescriptor
 from google.protobuf.message import Message
+from google.protobuf.message_factory import GetMessageClass
 from hypothesis import strategies as st
 
 from mart.protocol import messages as m
@@ -33,7 +36,9 @@ def examples() -> dict[str, Message]:
             room="room-1",
             tick=1235,
             sim_time_s=61.75,
-            stamps=m.TickStamps(due_ns=_STAMP, fired_ns=_STAMP + 5, stepped_ns=_STAMP + 9, sent_ns=_STAMP + 10),
+            stamps=m.TickStamps(
+                due_ns=_STAMP, fired_ns=_STAMP + 5, stepped_ns=_STAMP + 9, sent_ns=_STAMP + 10
+            ),
             real_time_factor=0.99,
             integration_state=bytes(range(16)),
             arms=[
@@ -78,7 +83,9 @@ def examples() -> dict[str, Message]:
         "SeatRequest": m.SeatRequest(
             claim=m.SeatRequest.Claim(arm="arm0", holder_id="h1", name="Ana", operator=m.OPERATOR_HUMAN)
         ),
-        "EpisodeRequest": m.EpisodeRequest(finish=m.EpisodeRequest.Finish(holder_id="h1", outcome=m.OUTCOME_SUCCESS)),
+        "EpisodeRequest": m.EpisodeRequest(
+            finish=m.EpisodeRequest.Finish(holder_id="h1", outcome=m.OUTCOME_SUCCESS)
+        ),
         "RoomReply": m.RoomReply(error=m.Error(code="Conflict", message="arm0 is held by Ana."), seat=seat),
         "Event": m.Event(
             wall_ns=_STAMP,
@@ -91,7 +98,9 @@ def examples() -> dict[str, Message]:
         "Offer": m.Offer(token="t", sdp="v=0"),
         "Answer": m.Answer(sdp="v=0"),
         "OpenSeat": m.OpenSeat(room="room-1", arm="arm0", seat_epoch=7),
-        "Model": m.Model(sha256="ab", mjb=b"\x00\x01", task="t", control_hz=20.0, arms=["arm0"], mujoco_version="4.0.0"),
+        "Model": m.Model(
+            sha256="ab", mjb=b"\x00\x01", task="t", control_hz=20.0, arms=["arm0"], mujoco_version="4.0.0"
+        ),
         "RolloutRequest": m.RolloutRequest(
             resimulate=m.RolloutRequest.Resimulate(
                 model_sha256="ab", task="t", control_hz=20.0, first_state=b"\x01", actions=b"\x02" * 8
@@ -112,7 +121,7 @@ _SCALARS = {
 def arbitrary(kind: type[Message]) -> st.SearchStrategy[Message]:
     """Any message of this kind, built from its descriptor: a new field is covered without touching a test."""
     return st.fixed_dictionaries(
-        {}, optional={field.name: _field_values(kind, field) for field in kind.DESCRIPTOR.fields}
+        {}, optional={field.name: _field_values(field) for field in kind.DESCRIPTOR.fields}
     ).map(lambda values: kind(**_one_of_each(kind, values)))
 
 
@@ -126,10 +135,10 @@ def _one_of_each(kind: type[Message], values: dict[str, object]) -> dict[str, ob
     return kept
 
 
-def _field_values(kind: type[Message], field: FieldDescriptor) -> st.SearchStrategy[object]:
+def _field_values(field: Any) -> st.SearchStrategy[object]:
     values: st.SearchStrategy[object]
     if field.cpp_type == FieldDescriptor.CPPTYPE_MESSAGE:
-        values = st.deferred(lambda: arbitrary(field.message_type._concrete_class))
+        values = st.deferred(lambda: arbitrary(GetMessageClass(field.message_type)))
     elif field.cpp_type == FieldDescriptor.CPPTYPE_ENUM:
         values = st.sampled_from([value.number for value in field.enum_type.values])
     elif field.type == FieldDescriptor.TYPE_BYTES:

@@ -120,6 +120,8 @@ def test_a_pose_owns_its_numbers() -> None:
         ([0, 0, 0], [0, 0, 0, 0], "norm"),
     ],
 )
-def test_bad_numbers_are_refused_with_a_reason(position: list[float], quaternion: list[float], word: str) -> None:
+def test_bad_numbers_are_refused_with_a_reason(
+    position: list[float], quaternion: list[float], word: str
+) -> None:
     with pytest.raises(InvalidInput, match=word):
         Pose(np.array(position), np.array(quaternion))

@@ -14,11 +14,15 @@ from mart.protocol.errors import InvalidInput
 TOPIC = keys.state("room-1")
 
 
-def sent_through(link: Link, count: int, seed: int = 0, spacing_s: float = 0.0) -> tuple[MemoryNetwork, list[tuple[float, int]]]:
+def sent_through(
+    link: Link, count: int, seed: int = 0, spacing_s: float = 0.0
+) -> tuple[MemoryNetwork, list[tuple[float, int]]]:
     """`count` numbered puts, `spacing_s` apart; the arrivals as (time, number)."""
     network = MemoryNetwork(link, seed)
     arrivals: list[tuple[float, int]] = []
-    network.connect().subscribe(TOPIC.key, lambda sample: arrivals.append((network.now_s, int(sample.payload))))
+    network.connect().subscribe(
+        TOPIC.key, lambda sample: arrivals.append((network.now_s, int(sample.payload)))
+    )
     publisher = network.connect().publisher(TOPIC)
     for number in range(count):
         network.advance(number * spacing_s)

@@ -17,7 +17,9 @@ from mart.protocol.errors import MartError
 
 _GROUP = "mart.commands"
 
-json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object on standard output.")
+json_option = click.option(
+    "--json", "as_json", is_flag=True, help="Print one JSON object on standard output."
+)
 
 
 class _Installed(click.Group):

@@ -28,5 +28,7 @@ def decode(kind: type[M], payload: bytes, limit_bytes: int = MAX_MESSAGE_BYTES) 
     try:
         message.ParseFromString(payload)
     except DecodeError as error:
-        raise InvalidInput(f"{len(payload)} bytes were given that are not a {kind.DESCRIPTOR.name}.") from error
+        raise InvalidInput(
+            f"{len(payload)} bytes were given that are not a {kind.DESCRIPTOR.name}."
+        ) from error
     return message

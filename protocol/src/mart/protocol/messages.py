@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 from mart.protocol.errors import InvalidInput, MartError, from_wire
@@ -132,40 +134,40 @@ def raise_error(error: Error) -> None:
         raise from_wire(error.code, error.message)
 
 
-def operator_word(operator: Operator.ValueType) -> str:
+def operator_word(operator: Operator) -> str:
     """human, policy, script or hold."""
     return _word(Operator.Name(operator), "OPERATOR_")
 
 
-def outcome_word(outcome: Outcome.ValueType) -> str:
+def outcome_word(outcome: Outcome) -> str:
     """success, failure, discarded or unspecified."""
     return _word(Outcome.Name(outcome), "OUTCOME_")
 
 
-def phase_word(phase: EpisodePhase.ValueType) -> str:
+def phase_word(phase: EpisodePhase) -> str:
     """practice, countdown, recording or ended."""
     return _word(EpisodePhase.Name(phase), "EPISODE_PHASE_")
 
 
-def barrier_word(phase: BarrierPhase.ValueType) -> str:
+def barrier_word(phase: BarrierPhase) -> str:
     """running, stalled, paused or stopped."""
     return _word(BarrierPhase.Name(phase), "BARRIER_PHASE_")
 
 
-def operator_from_word(word: str) -> Operator.ValueType:
+def operator_from_word(word: str) -> Operator:
     """Raises InvalidInput for anything but human, policy, script or hold."""
     name = f"OPERATOR_{word.upper()}"
     if name == "OPERATOR_UNSPECIFIED" or name not in Operator.keys():
         raise InvalidInput(f"Operator {word!r} was given; it must be human, policy, script or hold.")
-    return Operator.Value(name)
+    return cast("Operator", Operator.Value(name))
 
 
-def outcome_from_word(word: str) -> Outcome.ValueType:
+def outcome_from_word(word: str) -> Outcome:
     """Raises InvalidInput for anything but success, failure or discarded."""
     name = f"OUTCOME_{word.upper()}"
     if name == "OUTCOME_UNSPECIFIED" or name not in Outcome.keys():
         raise InvalidInput(f"Outcome {word!r} was given; it must be success, failure or discarded.")
-    return Outcome.Value(name)
+    return cast("Outcome", Outcome.Value(name))
 
 
 def _word(name: str, prefix: str) -> str:

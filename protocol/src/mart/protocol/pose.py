@@ -52,7 +52,9 @@ class Pose:
     @classmethod
     def from_matrix(cls, rotation: ArrayLike, position: ArrayLike) -> Pose:
         """rotation: shape (3, 3), orthonormal; position: shape (3,), metres."""
-        return cls(np.asarray(position, dtype=np.float64), quaternion_from_matrix(np.asarray(rotation, np.float64)))
+        return cls(
+            np.asarray(position, dtype=np.float64), quaternion_from_matrix(np.asarray(rotation, np.float64))
+        )
 
     @classmethod
     def exp(cls, twist: ArrayLike) -> Pose:

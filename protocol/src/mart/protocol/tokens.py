@@ -55,7 +55,10 @@ def verify(text: str, secret: bytes) -> SeatToken:
         raise Forbidden("No seat token was given; take a seat in the lobby to get one.")
     try:
         claims = jwt.decode(
-            text, secret, algorithms=[_ALGORITHM], options={"require": ["exp", "sub", "room", "arm", "epoch", "role"]}
+            text,
+            secret,
+            algorithms=[_ALGORITHM],
+            options={"require": ["exp", "sub", "room", "arm", "epoch", "role"]},
         )
         return SeatToken(
             room=str(claims["room"]),

@@ -113,7 +113,9 @@ class MemoryNetwork:
             if matches(expression, sample.key):
                 handler(sample)
 
-    def _register(self, registry: dict[int, T], entry: T, on_close: Callable[[], None] | None = None) -> Closable:
+    def _register(
+        self, registry: dict[int, T], entry: T, on_close: Callable[[], None] | None = None
+    ) -> Closable:
         number = next(self._order)
         registry[number] = entry
 
@@ -161,7 +163,9 @@ class MemoryBus(Bus):
 
 def matches(expression: str, key: str) -> bool:
     """Zenoh's key expressions as far as `keys` uses them: `*` is one segment, but never one that starts with '@'."""
-    pattern = "/".join("[^@/][^/]*" if segment == "*" else re.escape(segment) for segment in expression.split("/"))
+    pattern = "/".join(
+        "[^@/][^/]*" if segment == "*" else re.escape(segment) for segment in expression.split("/")
+    )
     return re.fullmatch(pattern, key) is not None
 
 

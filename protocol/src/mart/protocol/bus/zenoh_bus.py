@@ -80,7 +80,11 @@ class ZenohBus(Bus):
 
     def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
         replies = self._session.get(
-            topic.key, payload=payload, timeout=timeout_s, priority=_PRIORITY[topic.priority], express=topic.express
+            topic.key,
+            payload=payload,
+            timeout=timeout_s,
+            priority=_PRIORITY[topic.priority],
+            express=topic.express,
         )
         for reply in replies:
             if reply.ok is not None:
@@ -102,7 +106,9 @@ class ZenohBus(Bus):
             (present.add if alive else present.discard)(key)
             handler(key, alive)
 
-        subscriber = self._session.liveliness().declare_subscriber(alive_expression, _logged(deliver), history=True)
+        subscriber = self._session.liveliness().declare_subscriber(
+            alive_expression, _logged(deliver), history=True
+        )
         return self._keep(subscriber)
 
     def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
@@ -112,7 +118,7 @@ class ZenohBus(Bus):
     def close(self) -> None:
         for declared in list(self._declared):
             declared.close()
-        self._session.close()  # type: ignore[no-untyped-call]
+        self._session.close()
 
     def _keep(self, handle: Any) -> Closable:
         declared = _Declared(handle, self._declared.discard)
@@ -169,7 +175,9 @@ def _open(settings: dict[str, Any], endpoint: str) -> zenoh.Session:
         return zenoh.open(config)
     except zenoh.ZError as error:
         word = "listen at" if settings["mode"] == "router" else "reach a router at"
-        raise Unavailable(f"Could not {word} {endpoint}: {error}. Set MART_ROUTER or see `mart doctor`.") from error
+        raise Unavailable(
+            f"Could not {word} {endpoint}: {error}. Set MART_ROUTER or see `mart doctor`."
+        ) from error
 
 
 def _logged(deliver: Callable[[Any], None]) -> Callable[[Any], None]:
@@ -178,7 +186,7 @@ def _logged(deliver: Callable[[Any], None]) -> Callable[[Any], None]:
     def deliver_logged(item: Any) -> None:
         try:
             deliver(item)
-        except Exception:
+        except Exception:  # noqa: BLE001 - logged whole; the next sample must still be delivered
             _log.exception("A bus handler failed")
 
     return deliver_logged

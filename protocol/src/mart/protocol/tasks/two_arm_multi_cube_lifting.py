@@ -18,7 +18,8 @@ _SIDES = ((-1, 0, 0.0), (1, 0, math.pi), (0, 1, -math.pi / 2), (0, -1, math.pi /
 
 def task(arms: int) -> Task:
     placed = tuple(
-        Arm.at(i, _BASE_DISTANCE_M * x, _BASE_DISTANCE_M * y, yaw) for i, (x, y, yaw) in enumerate(_SIDES[:arms])
+        Arm.at(i, _BASE_DISTANCE_M * x, _BASE_DISTANCE_M * y, yaw)
+        for i, (x, y, yaw) in enumerate(_SIDES[:arms])
     )
     return Task(
         name=NAME,
