@@ -35,6 +35,13 @@ class Service:
 @contextlib.contextmanager
 def running(settings: Settings, kind: str, id: str) -> Iterator[Service]:
     """A service with a thread of its own (sim, recorder). Its liveliness token lives as long as the block."""
+    with connected(settings, kind, id) as service, announced(service):
+        yield service
+
+
+@contextlib.contextmanager
+def connected(settings: Settings, kind: str, id: str) -> Iterator[Service]:
+    """A service that has something to set up before it is `announced`: the token says that it answers."""
     configure_logging(settings.log_level, kind)
     stop = threading.Event()
 
@@ -44,16 +51,19 @@ def running(settings: Settings, kind: str, id: str) -> Iterator[Service]:
     before = {number: signal.signal(number, request_stop) for number in _STOP_SIGNALS}
     try:
         with ZenohBus.connect(settings.router) as bus:
-            token = bus.announce(keys.alive(kind, id))
-            _log.info("%s %s is up at %s", kind, id, settings.router)
-            try:
-                yield Service(kind, id, bus, stop)
-            finally:
-                token.close()
-                _log.info("%s %s stops", kind, id)
+            yield Service(kind, id, bus, stop)
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextlib.contextmanager
+def announced(service: Service) -> Iterator[None]:
+    """The service's liveliness token lives as long as the block."""
+    with contextlib.closing(service.bus.announce(keys.alive(service.kind, service.id))):
+        _log.info("%s %s is up", service.kind, service.id)
+        yield
+    _log.info("%s %s stops", service.kind, service.id)
 
 
 def run_async(settings: Settings, kind: str, id: str, main: Callable[[AsyncBus], Awaitable[None]]) -> None:
