@@ -39,7 +39,9 @@ class Mailbox(Generic[M]):
                 seen = max(seen, len(self._messages))
                 if not self._arrived.wait(deadline_s - clock.monotonic_s()):
                     last = self._messages[-1] if self._messages else "none"
-                    raise AssertionError(f"No such message within {timeout_s:g} s of {seen}; the last was: {last}")
+                    raise AssertionError(
+                        f"No such message within {timeout_s:g} s of {seen}; the last was: {last}"
+                    )
 
     def wait_next(self, timeout_s: float = 10.0) -> M:
         """The first message that arrives from now on."""

@@ -148,7 +148,10 @@ def _await_token(running: Running, command: Sequence[str], endpoint: str, key: s
 
     threading.Thread(target=on_exit, daemon=True).start()
     deadline_s = clock.monotonic_s() + timeout_s
-    with _connect(running, command, endpoint, deadline_s) as bus, contextlib.closing(bus.watch(key, on_token)):
+    with (
+        _connect(running, command, endpoint, deadline_s) as bus,
+        contextlib.closing(bus.watch(key, on_token)),
+    ):
         changed.wait(deadline_s - clock.monotonic_s())
     if not alive.is_set():
         raise DidNotStart(command, _fate(running, timeout_s), running.log())

@@ -1,0 +1,95 @@
+"""What a command must look like to be heard at all: the sim's edge towards the bus. Pure."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from mart.protocol import codec
+from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import Command, PoseMessage
+from mart.protocol.pose import Pose
+
+MAX_COMMAND_BYTES = 1024  # a full command has about 200
+MAX_COORDINATE_M = 100.0
+_NORM_TOLERANCE = 0.01
+
+
+class Rejection(StrEnum):
+    """Why a command was not used."""
+
+    MALFORMED = "not a command"
+    UNKNOWN_ARM = "unknown arm"
+    FREE_SEAT = "nobody's seat"
+    WRONG_EPOCH = "wrong seat epoch"
+    OLD_SEQUENCE = "old sequence"
+    NOT_FINITE = "number not finite"
+    BAD_NORM = "quaternion not of unit norm"
+    OUT_OF_BOUNDS = "out of bounds"
+
+
+class Rejected(InvalidInput):
+    """A command that cannot be used, whoever holds the seat."""
+
+    def __init__(self, reason: Rejection) -> None:
+        super().__init__(f"A command was rejected: {reason}.")
+        self.reason = reason
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """A well-formed command and when it came: monotonic seconds for decisions, wall nanoseconds for the record."""
+
+    command: Command
+    target_tool_in_base: Pose
+    at_s: float
+    at_wall_ns: int
+
+    @property
+    def arm(self) -> str:
+        return self.command.arm
+
+    @property
+    def seat_epoch(self) -> int:
+        return self.command.seat_epoch
+
+    @property
+    def sequence(self) -> int:
+        return self.command.sequence
+
+    @property
+    def emergency_stop(self) -> bool:
+        return self.command.emergency_stop
+
+
+def admit(payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> Arrival:
+    """The command in `payload`, which came on the key of `arm`. Raises Rejected with the reason."""
+    try:
+        command = codec.decode(Command, payload, MAX_COMMAND_BYTES)
+    except InvalidInput as error:
+        raise Rejected(Rejection.MALFORMED) from error
+    if command.arm != arm:
+        raise Rejected(Rejection.UNKNOWN_ARM)
+    reason = _objection(command.target_tool_in_base, command.gripper)
+    if reason is not None:
+        raise Rejected(reason)
+    target = command.target_tool_in_base
+    pose = Pose(
+        np.array((target.x, target.y, target.z)), np.array((target.qw, target.qx, target.qy, target.qz))
+    )
+    return Arrival(command, pose, at_s, at_wall_ns)
+
+
+def _objection(target: PoseMessage, gripper: float) -> Rejection | None:
+    position = (target.x, target.y, target.z)
+    quaternion = (target.qw, target.qx, target.qy, target.qz)
+    if not all(map(math.isfinite, (*position, *quaternion, gripper))):
+        return Rejection.NOT_FINITE
+    if abs(math.hypot(*quaternion) - 1.0) > _NORM_TOLERANCE:
+        return Rejection.BAD_NORM
+    if max(map(abs, position)) > MAX_COORDINATE_M or not 0.0 <= gripper <= 1.0:
+        return Rejection.OUT_OF_BOUNDS
+    return None

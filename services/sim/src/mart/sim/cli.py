@@ -1,0 +1,50 @@
+"""The sim's commands. Heavy modules are imported inside them: `mart --help` loads this file."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from mart.sim.settings import ExpertsSettings, ReplicaSettings, SimSettings
+
+
+def _given(**options: Any) -> dict[str, Any]:
+    """Options that were given; the others come from the environment or have defaults."""
+    return {name: value for name, value in options.items() if value is not None}
+
+
+@click.command()
+@click.option("--room", help="Id of the room.  [default: room-1]")
+@click.option("--task", help="Name of the task.")
+@click.option("--control-hz", type=float, help="Ticks a second, at most.  [default: 20]")
+@click.option("--arms", type=int, help="How many arms, where the task can have several numbers.")
+@click.option("--pace", type=float, help="Real-time factor that the world may reach at most.  [default: 1]")
+@click.option("--seed", type=int, help="The room's seed; without it, one is drawn at first start and kept.")
+def sim(**options: Any) -> None:
+    """Run a room: one shared world that advances when every operator has given a new command."""
+    from mart.sim.serving import serve_room
+
+    serve_room(SimSettings(**_given(**options)))
+
+
+@click.command()
+@click.option("--room", help="Only this room.  [default: every room]")
+@click.option("--arm", help="Only this arm.  [default: every arm]")
+@click.option("--intent", is_flag=True, default=None, help="Lead an emulated phone, whoever holds the seat.")
+@click.option("--skill", help="expert, average or novice.  [default: expert]")
+@click.option("--seed", type=int, help="Decides timing and tremor.  [default: 0]")
+def experts(**options: Any) -> None:
+    """Drive every seat that is set to script, each from what its arm's operator sees."""
+    from mart.sim.experts_service import serve_experts
+
+    serve_experts(ExpertsSettings(**_given(**options)))
+
+
+@click.command()
+@click.option("--name", help="Id of the replica.  [default: replica-1]")
+def replica(**options: Any) -> None:
+    """Step worlds on request, as fast as the machine allows: for evaluation and re-simulation."""
+    from mart.sim.replica import serve_replica
+
+    serve_replica(ReplicaSettings(**_given(**options)))

@@ -1,0 +1,131 @@
+"""`mart experts`: finds the seats to drive and keeps driving them. One thread; the bus's threads only hand over."""
+
+from __future__ import annotations
+
+import threading
+from collections import Counter
+from dataclasses import dataclass
+
+from mart.protocol import clock, codec, keys
+from mart.protocol.bus import Bus, Publisher, Sample
+from mart.protocol.errors import MartError
+from mart.protocol.messages import OPERATOR_SCRIPT, RoomStatus, Seat, State
+from mart.protocol.service import running
+from mart.protocol.tasks import get_task
+from mart.sim.complaints import Complaints
+from mart.sim.experts import Skill, get_skill
+from mart.sim.operate import REPEAT_S, ScriptedOperator
+from mart.sim.settings import ExpertsSettings
+
+_MAX_STATUS_BYTES = 64 * 1024
+_MAX_STATE_BYTES = 1024 * 1024
+
+
+@dataclass
+class _Driven:
+    operator: ScriptedOperator
+    publisher: Publisher
+    repeat_s: float = 0.0
+
+
+class Experts:
+    """Drives every seat that `settings` choose: all `script` seats, or, as intents, one arm whoever sits there."""
+
+    def __init__(self, bus: Bus, settings: ExpertsSettings, skill: Skill) -> None:
+        self._bus, self._settings, self._skill = bus, settings, skill
+        self._driven: dict[tuple[str, str], _Driven] = {}
+        self._states: dict[str, bytes] = {}  # the newest of every room
+        self._statuses: dict[str, bytes] = {}
+        self._arrived = threading.Condition()
+        self._unusable: Counter[str] = Counter()
+        room = settings.room
+        self._subscriptions = (
+            bus.subscribe(keys.status(room).key if room else keys.EVERY_STATUS, self._on_status),
+            bus.subscribe(keys.state(room).key if room else keys.EVERY_STATE, self._on_state),
+        )
+
+    def run(self, stop: threading.Event) -> None:
+        complaints = Complaints()
+        while not stop.is_set():
+            statuses, states = self._take()
+            for room, payload in statuses.items():
+                self._guarded(self._follow_seats, room, payload)
+            for room, payload in states.items():
+                self._guarded(self._show, room, payload)
+            self._repeat(clock.monotonic_s())
+            complaints.say(self._unusable, clock.monotonic_s())
+        for subscription in self._subscriptions:
+            subscription.close()
+
+    def _on_status(self, sample: Sample) -> None:
+        with self._arrived:
+            self._statuses[keys.room_of(sample.key)] = sample.payload
+            self._arrived.notify()
+
+    def _on_state(self, sample: Sample) -> None:
+        with self._arrived:
+            self._states[keys.room_of(sample.key)] = sample.payload
+            self._arrived.notify()
+
+    def _take(self) -> tuple[dict[str, bytes], dict[str, bytes]]:
+        with self._arrived:
+            if not self._statuses and not self._states:
+                self._arrived.wait(REPEAT_S / 2)
+            taken = self._statuses, self._states
+            self._statuses, self._states = {}, {}
+            return taken
+
+    def _guarded(self, handle, room: str, payload: bytes) -> None:
+        try:
+            handle(room, payload)
+        except MartError as error:
+            self._unusable[f"{room}: {error}"] += 1
+
+    def _follow_seats(self, room: str, payload: bytes) -> None:
+        status = codec.decode(RoomStatus, payload, _MAX_STATUS_BYTES)
+        for seat in status.seats:
+            place = (room, seat.arm)
+            driven = self._driven.get(place)
+            if not self._is_mine(seat):
+                if driven is not None:
+                    self._driven.pop(place).publisher.close()
+            elif driven is None or driven.operator.epoch != seat.epoch:
+                operator = ScriptedOperator(
+                    get_task(status.task, len(status.seats)),
+                    seat.arm,
+                    seat.epoch,
+                    self._skill,
+                    self._settings.seed,
+                )
+                publisher = self._publisher(room, seat.arm) if driven is None else driven.publisher
+                self._driven[place] = _Driven(operator, publisher)
+
+    def _is_mine(self, seat: Seat) -> bool:
+        if self._settings.arm not in (None, seat.arm):
+            return False
+        return self._settings.intent or seat.operator == OPERATOR_SCRIPT
+
+    def _publisher(self, room: str, arm: str) -> Publisher:
+        topic = keys.intent(room, arm) if self._settings.intent else keys.command(room, arm)
+        return self._bus.publisher(topic)
+
+    def _show(self, room: str, payload: bytes) -> None:
+        state = codec.decode(State, payload, _MAX_STATE_BYTES)
+        for (place, _), driven in self._driven.items():
+            if place == room and driven.operator.see(state):
+                driven.repeat_s = 0.0  # say it now
+
+    def _repeat(self, now_s: float) -> None:
+        for driven in self._driven.values():
+            if now_s >= driven.repeat_s:
+                driven.repeat_s = now_s + REPEAT_S
+                command = driven.operator.command(clock.wall_ns())
+                if command is not None:
+                    driven.publisher.put(codec.encode(command))
+
+
+def serve_experts(settings: ExpertsSettings) -> None:
+    """Until the process is asked to stop. Raises NotFound for an unknown skill."""
+    skill = get_skill(settings.skill)
+    with running(settings, "experts", settings.id) as service:
+        Experts(service.bus, settings, skill).run(service.stop)

@@ -1,0 +1,162 @@
+"""The thread that owns a room, and its way to the bus.
+
+Handlers of the bus run on other threads: they put what came into a mailbox and wake this one. Nothing else is shared.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import Counter, deque
+from collections.abc import Callable
+from functools import partial
+from typing import TypeVar
+
+import mujoco
+
+from mart.protocol import clock, codec, keys
+from mart.protocol.bus import Bus, Closable, Request, Sample
+from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.messages import (
+    EpisodeRequest,
+    Event,
+    RoomReply,
+    RoomStatus,
+    SeatRequest,
+    State,
+    error_message,
+)
+from mart.sim import publish
+from mart.sim.complaints import Complaints
+from mart.sim.room import Room
+from mart.sim.world import World
+
+R = TypeVar("R", SeatRequest, EpisodeRequest)
+
+MAX_REQUEST_BYTES = 4096
+_MAX_EVENT_BYTES = 64 * 1024
+_COMMANDS_KEPT = 1024  # a flood pushes out the oldest: the newest command wins anyway
+_REQUESTS_KEPT = 256
+_LONGEST_WAIT_S = 1.0  # so that a stop is noticed
+
+
+class Mailbox:
+    """Work for the room's thread, commands first."""
+
+    def __init__(self) -> None:
+        self._commands: deque[Callable[[], None]] = deque(maxlen=_COMMANDS_KEPT)
+        self._requests: deque[Callable[[], None]] = deque(maxlen=_REQUESTS_KEPT)
+        self._arrived = threading.Condition()
+
+    def command(self, work: Callable[[], None]) -> None:
+        with self._arrived:
+            self._commands.append(work)
+            self._arrived.notify()
+
+    def request(self, work: Callable[[], None]) -> None:
+        with self._arrived:
+            self._requests.append(work)
+            self._arrived.notify()
+
+    def wait(self, timeout_s: float) -> None:
+        """Until something is there, at most `timeout_s`."""
+        with self._arrived:
+            if timeout_s > 0 and not self._commands and not self._requests:
+                self._arrived.wait(timeout_s)
+
+    def work(self) -> None:
+        """Does all that came before this call."""
+        for queue in (self._commands, self._requests):
+            for _ in range(len(queue)):
+                queue.popleft()()
+
+
+class BusVoice:
+    """Speaks on the keys of a room."""
+
+    def __init__(self, bus: Bus, room: str) -> None:
+        self._state = bus.publisher(keys.state(room))
+        self._status = bus.publisher(keys.status(room))
+        self._event = bus.publisher(keys.event(room))
+        self._newest = b""
+
+    def state(self, state: State) -> None:
+        state.stamps.sent_ns = clock.wall_ns()
+        self._newest = codec.encode(state)
+        self._state.put(self._newest)
+
+    def repeat_state(self) -> None:
+        self._state.put(self._newest)
+
+    def status(self, status: RoomStatus) -> None:
+        self._status.put(codec.encode(status))
+
+    def event(self, event: Event) -> None:
+        self._event.put(codec.encode(event))
+
+    def close(self) -> None:
+        for publisher in (self._state, self._status, self._event):
+            publisher.close()
+
+
+class Doorway:
+    """Everything that comes in from the bus for one room."""
+
+    def __init__(self, bus: Bus, name: str, room: Room, world: World, mailbox: Mailbox) -> None:
+        self.garbled: Counter[str] = Counter()  # undecodable payloads by where they came
+        self._room = room
+        self._mailbox = mailbox
+        self._model = codec.encode(publish.model(world, mujoco.__version__))
+        self._open: list[Closable] = [
+            bus.subscribe(keys.commands(name), self._on_command),
+            bus.subscribe(keys.event(name).key, self._on_event),
+            bus.serve(keys.seat(name), self._on_seat_request),
+            bus.serve(keys.episode(name), self._on_episode_request),
+            bus.serve(keys.model(name), self._on_model_request),
+        ]
+
+    def close(self) -> None:
+        for declared in self._open:
+            declared.close()
+
+    def _on_command(self, sample: Sample) -> None:
+        hear = partial(
+            self._room.hear, sample.payload, keys.arm_of(sample.key), clock.monotonic_s(), clock.wall_ns()
+        )
+        self._mailbox.command(hear)
+
+    def _on_event(self, sample: Sample) -> None:
+        try:
+            event = codec.decode(Event, sample.payload, _MAX_EVENT_BYTES)
+        except InvalidInput:
+            self.garbled["event"] += 1
+            return
+        if event.WhichOneof("what") == "episode_saved":
+            self._mailbox.request(partial(self._room.episode_saved, event.episode_saved))
+
+    def _on_seat_request(self, request: Request) -> None:
+        self._mailbox.request(partial(self._answer, request, SeatRequest, self._room.answer_seat))
+
+    def _on_episode_request(self, request: Request) -> None:
+        self._mailbox.request(partial(self._answer, request, EpisodeRequest, self._room.answer_episode))
+
+    def _on_model_request(self, request: Request) -> None:
+        request.reply(self._model)
+
+    def _answer(self, request: Request, kind: type[R], answer: Callable[[R], RoomReply]) -> None:
+        try:
+            reply = answer(codec.decode(kind, request.payload, MAX_REQUEST_BYTES))
+        except MartError as error:
+            self.garbled["request"] += 1
+            reply = RoomReply(error=error_message(error))
+        request.reply(codec.encode(reply))
+
+
+def run(room: Room, doorway: Doorway, mailbox: Mailbox, stop: threading.Event) -> None:
+    """Until `stop` is set."""
+    complaints = Complaints()
+    while not stop.is_set():
+        next_s = room.advance()
+        now_s = clock.monotonic_s()
+        complaints.say(Counter(room.rejected) + doorway.garbled, now_s)
+        mailbox.wait(min(next_s - now_s, _LONGEST_WAIT_S))
+        mailbox.work()

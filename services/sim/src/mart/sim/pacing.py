@@ -1,0 +1,55 @@
+"""When the next tick may fire, and how fast the world's time has been running. Pure: `now_s` comes in.
+
+Ticks are due at a fixed rhythm. A late one does not move the rhythm, so the average rate stays exact; but lateness of
+more than `CATCH_UP_TICKS` periods is forgiven: after a stall the world runs at most that many ticks ahead of the
+rhythm that begins then. In any stretch of time it therefore fires at most `stretch / period + 1 + CATCH_UP_TICKS`.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+CATCH_UP_TICKS = 2
+
+
+class Pace:
+    """`period_s`: seconds between two ticks."""
+
+    def __init__(self, period_s: float, now_s: float) -> None:
+        self.period_s = period_s
+        self.due_s = now_s
+
+    def restart(self, now_s: float) -> None:
+        """A new rhythm: the next tick is due now, and there is nothing to catch up with."""
+        self.due_s = now_s
+
+    def fired(self, now_s: float) -> None:
+        self.due_s = max(self.due_s, now_s - CATCH_UP_TICKS * self.period_s) + self.period_s
+
+
+class RealTimeFactor:
+    """Simulated over wall time, during the last `window_s` seconds."""
+
+    def __init__(self, period_s: float, now_s: float, window_s: float = 2.0) -> None:
+        self._period_s = period_s
+        self._window_s = window_s
+        self._began_s = now_s
+        self._ticks_s: deque[float] = deque()
+
+    def restart(self, now_s: float) -> None:
+        """Forgets what was: the world begins anew now."""
+        self._began_s = now_s
+        self._ticks_s.clear()
+
+    def ticked(self, now_s: float) -> None:
+        self._ticks_s.append(now_s)
+
+    def value(self, now_s: float) -> float:
+        """1.0 until the first two periods have passed: there is nothing to tell before."""
+        while self._ticks_s and self._ticks_s[0] <= now_s - self._window_s:
+            self._ticks_s.popleft()
+        elapsed_s = now_s - self._began_s
+        if elapsed_s < 2 * self._period_s:
+            return 1.0
+        # The first tick is due at the very beginning, so n ticks fill n periods, one of them still running.
+        return len(self._ticks_s) * self._period_s / min(elapsed_s + self._period_s, self._window_s)

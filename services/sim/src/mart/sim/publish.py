@@ -1,0 +1,137 @@
+"""What the sim says: states, the room's status and events, as messages. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from numpy.typing import NDArray
+
+from mart.protocol.messages import (
+    ArmState,
+    BarrierPhase,
+    Episode,
+    Event,
+    Model,
+    Observation,
+    Progress,
+    Seat,
+    Subtask,
+    Waiting,
+    WorldState,
+    pose_message,
+)
+from mart.sim.admission import Arrival
+from mart.sim.episode import EpisodeCourse
+from mart.sim.seats import SeatHolder
+from mart.sim.world import World
+from mart.sim.world import Progress as WorldProgress
+
+
+def arm_state(world: World, seat: SeatHolder, arrival: Arrival | None, action: Sequence[float]) -> ArmState:
+    """One arm after a tick. `arrival`: the command that moved it, None for a held arm; `action`: empty after a reset."""
+    state = measured_arm(world, seat.arm, action)
+    state.source = seat.operator
+    state.seat_epoch = seat.epoch
+    if arrival is not None:
+        state.sequence = arrival.sequence
+        state.arrived_ns = arrival.at_wall_ns
+        state.stamps.CopyFrom(arrival.command.stamps)
+        state.engaged = arrival.command.engaged
+        state.fresh = True
+    return state
+
+
+def measured_arm(world: World, arm: str, action: Sequence[float]) -> ArmState:
+    """What can be known of an arm without a seat: where it is and what was done."""
+    return ArmState(
+        arm=arm,
+        tool_in_base=pose_message(world.tool_pose_in_base(arm)),
+        gripper=world.gripper(arm),
+        action=action,
+    )
+
+
+def observations(values: Mapping[str, NDArray]) -> list[Observation]:
+    return [Observation(name=name, value=value.ravel().tolist()) for name, value in values.items()]
+
+
+def progress(progress: WorldProgress) -> Progress:
+    return Progress(
+        subtasks=[Subtask(name=name, done=done) for name, done in progress.subtasks.items()],
+        success_now=progress.success_now,
+        success_ticks=progress.success_ticks,
+        success=progress.success,
+        failed=progress.failed or "",
+    )
+
+
+def world_state(world: World, actions: NDArray | None) -> WorldState:
+    """A world of a rollout. `actions`: shape (arms, 7), what was done in its last tick; None after a reset."""
+    return WorldState(
+        observations=observations(world.observations()),
+        progress=progress(world.progress()),
+        integration_state=world.integration_state(),
+        arms=[
+            measured_arm(world, arm, () if actions is None else actions[index].tolist())
+            for index, arm in enumerate(world.arms)
+        ],
+        sim_time_s=world.sim_time_s,
+    )
+
+
+def seat(holder: SeatHolder, ready: bool, newest: Arrival | None) -> Seat:
+    """`newest`: the newest command of this seat's operator."""
+    return Seat(
+        arm=holder.arm,
+        operator=holder.operator,
+        epoch=holder.epoch,
+        holder_id=holder.holder_id,
+        name=holder.name,
+        ready=ready,
+        engaged=newest is not None and newest.command.engaged,
+    )
+
+
+def episode(course: EpisodeCourse, control_period_s: float, now_s: float) -> Episode:
+    return Episode(
+        number=course.number,
+        phase=course.phase,
+        remaining_s=course.remaining_s(now_s),
+        ticks=course.ticks,
+        elapsed_s=course.ticks * control_period_s,
+        outcome=course.outcome,
+        seed=course.seed,
+        interrupted=course.interrupted,
+        reason=course.reason,
+    )
+
+
+def waiting(arms: Iterable[tuple[str, float]]) -> list[Waiting]:
+    return [Waiting(arm=arm, since_s=since_s) for arm, since_s in arms]
+
+
+def barrier_changed(phase: BarrierPhase.ValueType, arms: Iterable[tuple[str, float]]) -> Event:
+    return Event(barrier_changed=Event.BarrierChanged(phase=phase, waiting_for=waiting(arms)))
+
+
+def notice(level: str, text: str) -> Event:
+    """`level`: info, warning or error."""
+    event = Event()
+    event.notice.level, event.notice.text = level, text
+    setattr(event.notice, "from", "sim")  # a keyword in Python
+    return event
+
+
+def control_hz(world: World) -> float:
+    return 1.0 / world.control_period_s
+
+
+def model(world: World, mujoco_version: str) -> Model:
+    return Model(
+        sha256=world.model_sha256,
+        mjb=world.model_bytes(),
+        task=world.task.name,
+        control_hz=control_hz(world),
+        arms=world.arms,
+        mujoco_version=mujoco_version,
+    )

@@ -1,0 +1,52 @@
+"""`mart replica`: lockstep worlds on the bus. Requests are answered one after another, below the rooms' priority."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+import threading
+from collections import Counter
+
+from mart.protocol import clock, codec, keys
+from mart.protocol.bus import Request
+from mart.protocol.errors import MartError
+from mart.protocol.messages import RolloutReply, RolloutRequest, error_message
+from mart.protocol.service import announced, connected
+from mart.sim.complaints import Complaints
+from mart.sim.lockstep import Lockstep
+from mart.sim.settings import ReplicaSettings
+
+_LONGEST_WAIT_S = 0.5  # so that a stop is noticed
+
+
+def serve_replica(settings: ReplicaSettings) -> None:
+    """Until the process is asked to stop."""
+    os.nice(settings.niceness)
+    requests: queue.SimpleQueue[Request] = queue.SimpleQueue()
+    with (
+        contextlib.closing(Lockstep()) as lockstep,
+        connected(settings, "replica", settings.name) as service,
+        contextlib.closing(service.bus.serve(keys.rollout(settings.name), requests.put)),
+        announced(service),
+    ):
+        _answer_all(lockstep, requests, service.stop)
+
+
+def _answer_all(lockstep: Lockstep, requests: queue.SimpleQueue[Request], stop: threading.Event) -> None:
+    refused: Counter[str] = Counter()
+    complaints = Complaints()
+    while not stop.is_set():
+        with contextlib.suppress(queue.Empty):
+            request = requests.get(timeout=_LONGEST_WAIT_S)
+            reply = _answer(lockstep, request.payload)
+            refused[reply.error.message] += bool(reply.error.message)
+            request.reply(codec.encode(reply))
+        complaints.say(refused, clock.monotonic_s())
+
+
+def _answer(lockstep: Lockstep, payload: bytes) -> RolloutReply:
+    try:
+        return lockstep.answer(codec.decode(RolloutRequest, payload), clock.monotonic_s())
+    except MartError as error:
+        return RolloutReply(error=error_message(error))

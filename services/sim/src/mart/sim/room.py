@@ -1,0 +1,257 @@
+"""One room: seats, barrier, episode and world, put together. Owned by one thread.
+
+What it has to say goes to a `Voice`, what must survive a crash to `keep`; neither is known to be a bus or a file.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from mart.protocol import clock
+from mart.protocol.errors import MartError
+from mart.protocol.messages import (
+    BARRIER_PHASE_PAUSED,
+    BARRIER_PHASE_RUNNING,
+    BARRIER_PHASE_STOPPED,
+    OPERATOR_HOLD,
+    OUTCOME_FAILURE,
+    OUTCOME_SUCCESS,
+    EpisodeRequest,
+    Event,
+    RoomReply,
+    RoomStatus,
+    Seat,
+    SeatRequest,
+    State,
+    error_message,
+)
+from mart.sim import publish
+from mart.sim.admission import Rejected, Rejection, admit
+from mart.sim.barrier import FREED_AFTER_S, Barrier, Decision, Firing
+from mart.sim.episode import Ended, EpisodeCourse, ResetWorld, Started, Step
+from mart.sim.room_record import RoomRecord
+from mart.sim.seats import SeatHolder, SeatTable
+from mart.sim.ticker import Ticker
+from mart.sim.world import Diverged, World
+
+REPEAT_S = 0.2  # status always; the newest state while no tick fires, for those who came late
+
+
+class Voice(Protocol):
+    """Where a room speaks. None of these may block."""
+
+    def state(self, state: State) -> None: ...
+
+    def repeat_state(self) -> None:
+        """The newest state once more, the very same bytes."""
+
+    def status(self, status: RoomStatus) -> None: ...
+
+    def event(self, event: Event) -> None: ...
+
+
+class Room:
+    def __init__(
+        self,
+        name: str,
+        world: World,
+        record: RoomRecord,
+        voice: Voice,
+        keep: Callable[[RoomRecord], None],
+        pace: float = 1.0,
+    ) -> None:
+        now_s = clock.monotonic_s()
+        self._name, self._world, self._voice, self._keep, self._record = name, world, voice, keep, record
+        self._boot_ns = clock.wall_ns()
+        self._seats = SeatTable(world.arms)
+        self._seats.restore(record.seats)
+        self._barrier = Barrier(world.arms, world.control_period_s / pace, now_s)
+        for seat in self._seats:
+            self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
+        self._course = EpisodeCourse(record.seed, world.task.horizon_ticks, record.episodes)
+        self._ticker = Ticker(name, world, self._boot_ns, now_s)
+        self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
+        self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
+        self._status_due_s = now_s
+        self._repeat_due_s = now_s
+        self._do([ResetWorld(self._course.seed)], now_s)
+
+    @property
+    def rejected(self) -> Counter[Rejection]:
+        """Commands that were not used, by reason, since the room opened."""
+        return self._barrier.rejected
+
+    def hear(self, payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> None:
+        """A command came on the key of `arm`."""
+        try:
+            arrival = admit(payload, arm, at_s, at_wall_ns)
+        except Rejected as error:
+            self._barrier.rejected[error.reason] += 1
+        else:
+            self._barrier.offer(arrival)
+
+    def answer_seat(self, request: SeatRequest) -> RoomReply:
+        try:
+            before = list(self._seats)
+            seat = self._seats.answer(request)
+            if seat not in before:
+                self._seat_changed(seat, clock.monotonic_s())
+        except MartError as error:
+            return RoomReply(error=error_message(error), status=self.status())
+        return RoomReply(status=self.status(), seat=self._seat_message(seat))
+
+    def answer_episode(self, request: EpisodeRequest) -> RoomReply:
+        now_s = clock.monotonic_s()
+        try:
+            self._do(self._course.answer(request, self._seats, now_s), now_s)
+        except MartError as error:
+            return RoomReply(error=error_message(error), status=self.status())
+        self._status_due_s = now_s
+        return RoomReply(status=self.status())
+
+    def episode_saved(self, saved: Event.EpisodeSaved) -> None:
+        good = saved.verified and saved.outcome == OUTCOME_SUCCESS
+        self._remember(saved=self._record.saved + 1, good=self._record.good + good)
+
+    def advance(self) -> float:
+        """Does what is due; returns the monotonic time, seconds, at which to call again if nothing arrives before."""
+        now_s = clock.monotonic_s()
+        decision = self._barrier.advance(now_s, self._course.world_runs)
+        if decision.firing is not None:
+            self._fire(decision.firing, now_s)
+        self._decision = decision
+        self._tell_barrier(decision)
+        for arm in decision.silent:
+            self._give_up(arm, now_s)
+        steps = self._course.advance(decision.phase == BARRIER_PHASE_RUNNING, now_s)
+        self._do(steps, now_s)
+        self._repeat(now_s)
+        if steps or decision.silent:
+            return now_s
+        return min(decision.next_s, self._course.next_s(now_s), self._status_due_s, self._repeat_due_s)
+
+    def status(self) -> RoomStatus:
+        now_s = clock.monotonic_s()
+        progress = self._ticker.progress
+        return RoomStatus(
+            room=self._name,
+            task=self._world.task.name,
+            control_hz=publish.control_hz(self._world),
+            tick=self._ticker.tick,
+            real_time_factor=self._ticker.real_time_factor(now_s) if self._course.world_runs else 1.0,
+            barrier=self._decision.phase,
+            waiting_for=publish.waiting(self._decision.waiting_for),
+            seats=[self._seat_message(seat) for seat in self._seats],
+            episode=publish.episode(self._course, self._world.control_period_s, now_s),
+            progress=publish.progress(progress) if progress is not None else None,
+            episodes_saved=self._record.saved,
+            episodes_good=self._record.good,
+            wall_ns=clock.wall_ns(),
+            boot=self._boot_ns,
+            rejected_commands=self.rejected.total(),
+        )
+
+    def _fire(self, firing: Firing, now_s: float) -> None:
+        try:
+            state = self._ticker.advance(firing, self._seats, self._course, now_s)
+        except Diverged as error:
+            self._tell(publish.notice("error", str(error)))
+            self._do(self._course.abandon(OUTCOME_FAILURE, "the physics diverged", now_s), now_s)
+            return
+        self._tell_state(state, now_s)
+        progress = state.progress
+        self._do(self._course.ticked(progress.success, progress.failed or None, now_s), now_s)
+
+    def _do(self, steps: Sequence[Step], now_s: float) -> None:
+        for step in steps:
+            match step:
+                case ResetWorld():
+                    self._tell_state(self._ticker.reset(step.seed, self._seats, self._course, now_s), now_s)
+                    self._barrier.restart(now_s)
+                    self._tell(Event(world_reset=Event.WorldReset(seed=step.seed)))
+                case Started():
+                    self._start(step, now_s)
+                case Ended():
+                    self._end(step)
+            self._status_due_s = now_s
+
+    def _start(self, step: Started, now_s: float) -> None:
+        self._remember(episodes=step.number)
+        self._tell(
+            Event(
+                episode_started=Event.EpisodeStarted(
+                    number=step.number,
+                    seed=step.seed,
+                    seats=[self._seat_message(seat) for seat in self._seats],
+                    task=self._world.task.name,
+                    control_hz=publish.control_hz(self._world),
+                    model_sha256=self._world.model_sha256,
+                )
+            )
+        )
+        self._tell_state(self._ticker.standing(self._seats, self._course, now_s), now_s)
+        self._barrier.restart(now_s)
+
+    def _end(self, step: Ended) -> None:
+        self._tell(
+            Event(
+                episode_ended=Event.EpisodeEnded(
+                    number=step.number,
+                    outcome=step.outcome,
+                    ticks=step.ticks,
+                    reason=step.reason,
+                    last_tick=self._ticker.tick,
+                )
+            )
+        )
+
+    def _give_up(self, arm: str, now_s: float) -> None:
+        name = self._seats[arm].name
+        self._seat_changed(self._seats.free(arm), now_s)
+        self._tell(
+            publish.notice(
+                "warning", f"{name or arm} gave no command for {FREED_AFTER_S:g} s: {arm} is free."
+            )
+        )
+
+    def _seat_changed(self, seat: SeatHolder, now_s: float) -> None:
+        self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
+        self._remember(seats=tuple(self._seats))
+        self._tell(Event(seat_changed=self._seat_message(seat)))
+        self._do(self._course.seats_changed(self._seats, now_s), now_s)
+        self._status_due_s = now_s
+
+    def _tell_barrier(self, decision: Decision) -> None:
+        if decision.phase in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED):
+            self._course.interrupt()
+        holds = (decision.phase, *(arm for arm, _ in decision.waiting_for))
+        if holds != self._told:
+            self._told = holds
+            self._tell(publish.barrier_changed(decision.phase, decision.waiting_for))
+            self._status_due_s = 0.0
+
+    def _tell_state(self, state: State, now_s: float) -> None:
+        self._voice.state(state)
+        self._repeat_due_s = now_s + REPEAT_S
+
+    def _tell(self, event: Event) -> None:
+        event.wall_ns, event.room, event.tick = clock.wall_ns(), self._name, self._ticker.tick
+        self._voice.event(event)
+
+    def _repeat(self, now_s: float) -> None:
+        if now_s >= self._repeat_due_s:
+            self._voice.repeat_state()
+            self._repeat_due_s = now_s + REPEAT_S
+        if now_s >= self._status_due_s:
+            self._voice.status(self.status())
+            self._status_due_s = now_s + REPEAT_S
+
+    def _seat_message(self, seat: SeatHolder) -> Seat:
+        newest = self._barrier.newest(seat.arm) if seat.operator != OPERATOR_HOLD else None
+        return publish.seat(seat, self._course.is_ready(seat.arm), newest)
+
+    def _remember(self, **changes: object) -> None:
+        self._record = self._record.with_changes(**changes)
+        self._keep(self._record)

@@ -1,0 +1,43 @@
+"""Starts a room: settings in, a running sim until it is asked to stop."""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import secrets
+from collections.abc import Callable
+
+from mart.protocol.service import announced, connected
+from mart.sim import loop, room_record
+from mart.sim.room import Room
+from mart.sim.room_record import RoomRecord
+from mart.sim.settings import SimSettings
+from mart.sim.world import World
+
+_SEED_BITS = 32
+
+
+def serve_room(settings: SimSettings) -> None:
+    """Raises what building a world raises, Corrupt where the room's record cannot be read."""
+    world = World.build(settings.task, settings.control_hz, settings.arms)
+    with connected(settings, "sim", settings.room) as service, contextlib.ExitStack() as opened:
+        mailbox = loop.Mailbox()
+        voice = opened.enter_context(contextlib.closing(loop.BusVoice(service.bus, settings.room)))
+        room = Room(settings.room, world, _record(settings), voice, _keeper(settings), settings.pace)
+        doorway = opened.enter_context(
+            contextlib.closing(loop.Doorway(service.bus, settings.room, room, world, mailbox))
+        )
+        opened.enter_context(announced(service))
+        gc.freeze()  # what is here now stays: later collections need not look at it
+        loop.run(room, doorway, mailbox, service.stop)
+
+
+def _keeper(settings: SimSettings) -> Callable[[RoomRecord], None]:
+    return lambda record: room_record.save(settings.room_path, record)
+
+
+def _record(settings: SimSettings) -> RoomRecord:
+    kept = room_record.load(settings.room_path)
+    if kept is None:
+        kept = RoomRecord(seed=secrets.randbits(_SEED_BITS))
+    return kept if settings.seed is None else kept.with_changes(seed=settings.seed)

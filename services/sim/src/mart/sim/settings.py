@@ -1,0 +1,49 @@
+"""Settings of the sim's commands; each is an option and an environment variable."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import Field
+
+from mart.protocol.settings import Settings
+
+DEFAULT_TASK = "two_arm_multi_cube_lifting"
+
+
+class SimSettings(Settings):
+    """One room."""
+
+    room: str = Field("room-1", description="Id of the room.")
+    task: str = Field(DEFAULT_TASK, description="Name of the task.")
+    control_hz: float = Field(20.0, ge=5.0, le=250.0, description="Ticks a second, at most.")
+    arms: int | None = Field(None, ge=1, description="How many arms; default: the task's own number.")
+    pace: float = Field(1.0, gt=0.0, le=1.0, description="Real-time factor that the world may reach at most.")
+    seed: int | None = Field(None, ge=0, description="The room's seed; default: drawn once and kept.")
+
+    @property
+    def room_path(self) -> Path:
+        """What the room keeps over a restart."""
+        return self.data_dir / "rooms" / f"{self.room}.json"
+
+
+class ReplicaSettings(Settings):
+    """Worlds stepped by requests."""
+
+    name: str = Field("replica-1", description="Id of the replica.")
+    niceness: int = Field(10, ge=0, le=19, description="Added to the process's niceness: rooms go first.")
+
+
+class ExpertsSettings(Settings):
+    """Scripted operators."""
+
+    room: str | None = Field(None, description="Only this room; default: every room.")
+    arm: str | None = Field(None, description="Only this arm; default: every arm.")
+    intent: bool = Field(False, description="Publish intents for an emulated phone instead of commands.")
+    skill: str = Field("expert", description="expert, average or novice.")
+    seed: int = Field(0, ge=0, description="Decides timing and tremor.")
+
+    @property
+    def id(self) -> str:
+        """Of the service: tells apart the experts of one machine."""
+        return "-".join(("experts", *(part for part in (self.room, self.arm) if part)))

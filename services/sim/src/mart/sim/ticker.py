@@ -1,0 +1,98 @@
+"""Advances the world by one tick, or resets it, and says how it is afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.protocol import clock
+from mart.protocol.messages import State, TickStamps
+from mart.sim import publish
+from mart.sim.admission import Arrival
+from mart.sim.barrier import Firing
+from mart.sim.episode import EpisodeCourse
+from mart.sim.pacing import RealTimeFactor
+from mart.sim.seats import SeatTable
+from mart.sim.targets import Targets
+from mart.sim.world import Progress, World
+
+
+class Ticker:
+    """`tick` counts the states of this run of the sim, those after resets included."""
+
+    def __init__(self, room: str, world: World, boot_ns: int, now_s: float) -> None:
+        self.tick = 0
+        self.progress: Progress | None = None
+        self._room = room
+        self._world = world
+        self._boot_ns = boot_ns
+        self._targets = Targets(world)
+        self._real_time_factor = RealTimeFactor(world.control_period_s, now_s)
+
+    def real_time_factor(self, now_s: float) -> float:
+        return self._real_time_factor.value(now_s)
+
+    def reset(self, seed: int, seats: SeatTable, course: EpisodeCourse, now_s: float) -> State:
+        """The state of the fresh world."""
+        self._world.reset(seed)
+        self._targets.world_reset()
+        return self.standing(seats, course, now_s)
+
+    def standing(self, seats: SeatTable, course: EpisodeCourse, now_s: float) -> State:
+        """The world as it is, before it begins to run."""
+        self._real_time_factor.restart(now_s)
+        wall_ns = clock.wall_ns()
+        return self._state(seats, course, {}, None, TickStamps(fired_ns=wall_ns, stepped_ns=wall_ns), now_s)
+
+    def advance(self, firing: Firing, seats: SeatTable, course: EpisodeCourse, now_s: float) -> State:
+        """One control period. Raises Diverged where the physics left its bounds."""
+        fired_ns = clock.wall_ns()
+        actions = self._targets.actions(firing.arrivals)
+        self._world.step(actions)
+        stamps = TickStamps(
+            due_ns=fired_ns - round((now_s - firing.due_s) * 1e9),
+            fired_ns=fired_ns,
+            stepped_ns=clock.wall_ns(),
+        )
+        self._real_time_factor.ticked(now_s)
+        state = self._state(seats, course, firing.arrivals, actions, stamps, now_s)
+        state.straggler = firing.straggler or ""
+        state.straggler_late_s = firing.late_s
+        if course.recording:
+            state.episode_tick = course.ticks + 1
+        return state
+
+    def _state(
+        self,
+        seats: SeatTable,
+        course: EpisodeCourse,
+        arrivals: Mapping[str, Arrival],
+        actions: NDArray[np.float64] | None,
+        stamps: TickStamps,
+        now_s: float,
+    ) -> State:
+        self.tick += 1
+        self.progress = self._world.progress()
+        return State(
+            room=self._room,
+            tick=self.tick,
+            sim_time_s=self._world.sim_time_s,
+            stamps=stamps,
+            real_time_factor=self.real_time_factor(now_s),
+            integration_state=self._world.integration_state(),
+            arms=[
+                publish.arm_state(
+                    self._world,
+                    seat,
+                    arrivals.get(seat.arm),
+                    () if actions is None else actions[index].tolist(),
+                )
+                for index, seat in enumerate(seats)
+            ],
+            observations=publish.observations(self._world.observations()),
+            progress=publish.progress(self.progress),
+            episode=course.number if course.recording else 0,
+            boot=self._boot_ns,
+        )
