@@ -70,7 +70,9 @@ async def _serve_site(settings: WebSettings, site: Site, listener: socket.socket
         create_app(site),
         ssl_certfile=path,
         ssl_keyfile=settings.certificate_key,
+        lifespan="off",
         log_config=None,
+        log_level="warning",
         access_log=False,
         server_header=False,
         ws="websockets-sansio",
@@ -81,10 +83,21 @@ async def _serve_site(settings: WebSettings, site: Site, listener: socket.socket
     assert config.ssl is not None
     renewal = None if settings.certificate else asyncio.ensure_future(_renew(ensure, config.ssl))
     try:
-        await uvicorn.Server(config).serve(sockets=[listener])
+        await _run(uvicorn.Server(config), listener)
     finally:
         if renewal is not None:
             renewal.cancel()
+
+
+async def _run(server: uvicorn.Server, listener: socket.socket) -> None:
+    """When cancelled, it first says goodbye to those who are connected."""
+    serving = asyncio.ensure_future(server.serve(sockets=[listener]))
+    try:
+        await asyncio.shield(serving)
+    except asyncio.CancelledError:
+        server.should_exit = True
+        await serving
+        raise
 
 
 async def _renew(ensure: Callable[[], Certificate], context: ssl.SSLContext) -> None:

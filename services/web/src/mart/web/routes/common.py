@@ -19,31 +19,34 @@ def now_unix_s() -> float:
     return clock.wall_ns() / 1e9
 
 
-def site_of(connection: HTTPConnection) -> Site:
+async def site_of(connection: HTTPConnection) -> Site:
     site = connection.app.state.site
     assert isinstance(site, Site)
     return site
 
 
-def visitor_of(connection: HTTPConnection) -> Person | None:
+TheSite = Annotated[Site, Depends(site_of)]
+
+
+async def visitor_of(connection: HTTPConnection, site: TheSite) -> Person | None:
     """Who asks, where they have joined."""
     session_id = connection.cookies.get(COOKIE)
-    return site_of(connection).people.find(session_id, now_unix_s()) if session_id else None
+    return site.people.find(session_id, now_unix_s()) if session_id else None
 
 
-def person_of(connection: HTTPConnection) -> Person:
+Visitor = Annotated[Person | None, Depends(visitor_of)]
+
+
+async def person_of(visitor: Visitor) -> Person:
     """Who asks; raises NotJoined."""
-    person = visitor_of(connection)
-    if person is None:
+    if visitor is None:
         raise NotJoined
-    return person
+    return visitor
 
 
-def address_of(connection: HTTPConnection) -> str:
+async def address_of(connection: HTTPConnection) -> str:
     return connection.client.host if connection.client else "unknown"
 
 
-TheSite = Annotated[Site, Depends(site_of)]
 Joined = Annotated[Person, Depends(person_of)]
-Visitor = Annotated[Person | None, Depends(visitor_of)]
 Address = Annotated[str, Depends(address_of)]

@@ -1,0 +1,42 @@
+// The HTTP API of docs/protocol.md. A failure is an ApiError whose message is meant for people.
+
+export class ApiError extends Error {
+  constructor(status, code, message) {
+    super(message);
+    this.status = status;
+    this.code = code;
+  }
+}
+
+async function request(method, path, body, headers = {}) {
+  const options = { method, headers: { ...headers } };
+  if (body !== undefined) {
+    options.body = JSON.stringify(body);
+    options.headers["Content-Type"] = "application/json";
+  }
+  let response;
+  try {
+    response = await fetch(`/api${path}`, options);
+  } catch {
+    throw new ApiError(0, "Unavailable", "The server cannot be reached; trying again helps once it is back.");
+  }
+  const answer = await response.json().catch(() => ({}));
+  if (response.ok) return answer;
+  const { code = "", message = `The server answered ${response.status}.` } = answer.error ?? {};
+  throw new ApiError(response.status, code, message);
+}
+
+const seat = (room, arm) => `/rooms/${encodeURIComponent(room)}/seats/${encodeURIComponent(arm)}`;
+
+export const join = (code, name) => request("POST", "/join", { code, name });
+export const me = () => request("GET", "/me");
+export const rooms = () => request("GET", "/rooms");
+export const takeSeat = (room, arm, operator = "human") => request("POST", seat(room, arm), { operator });
+export const leaveSeat = (room, arm) => request("DELETE", seat(room, arm));
+export const seatToken = (room, arm) => request("GET", `${seat(room, arm)}/token`);
+export const pairPhone = (room, arm) => request("POST", `${seat(room, arm)}/pair`);
+export const redeemPairing = (code) => request("POST", "/pair", { code });
+export const act = (room, action, arm) =>
+  request("POST", `/rooms/${encodeURIComponent(room)}/episode`, { action, arm });
+export const sendOffer = (room, arm, token, sdp) =>
+  request("POST", `${seat(room, arm)}/offer`, { sdp }, { Authorization: `Bearer ${token}` });

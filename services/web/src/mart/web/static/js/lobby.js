@@ -1,0 +1,124 @@
+// The lobby: join, see the rooms, take a seat.
+
+import * as api from "./api.js";
+import { armName, isFree } from "./arms.js";
+import { byId, keepChildren, setShown, setText } from "./dom.js";
+import { followRooms } from "./live.js";
+import { roomCard } from "./room-card.js";
+
+const NAME_KEY = "mart.name";
+const cards = new Map();
+let rooms = [];
+
+const form = byId("join");
+const tryButton = byId("try");
+
+start();
+
+async function start() {
+  byId("name").value = localStorage.getItem(NAME_KEY) ?? "";
+  byId("code").value = new URLSearchParams(location.hash.slice(1)).get("code") ?? "";
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    submit(event.submitter?.value === "try");
+  });
+  tryButton.addEventListener("click", () => attempt(tryIt));
+  const person = localStorage.getItem(NAME_KEY) && (await api.me().catch(() => null));
+  if (person) enter(person);
+  else askToJoin();
+}
+
+function askToJoin() {
+  setShown(form, true);
+  setShown(byId("go"), false);
+  setShown(byId("rooms-section"), false);
+  setText(byId("me"), "");
+  (byId("name").value && !byId("code").value ? byId("code") : byId("name")).focus();
+}
+
+async function submit(thenTry) {
+  const name = byId("name").value;
+  const buttons = form.querySelectorAll("button");
+  buttons.forEach((button) => (button.disabled = true));
+  setText(byId("join-error"), "");
+  try {
+    const person = await api.join(byId("code").value, name);
+    localStorage.setItem(NAME_KEY, name);
+    history.replaceState(null, "", "/");
+    if (thenTry) ({ rooms } = await api.rooms());
+    if (thenTry && (await attempt(tryIt))) return;
+    enter(person);
+  } catch (error) {
+    setText(byId("join-error"), error.message);
+  } finally {
+    buttons.forEach((button) => (button.disabled = false));
+  }
+}
+
+function enter(person) {
+  setShown(form, false);
+  setShown(byId("go"), true);
+  setShown(byId("rooms-section"), true);
+  setText(byId("me"), person.name);
+  followRooms({
+    onRooms: show,
+    onEnded: askToJoin,
+    onConnection: (connected) => say(connected ? "" : "The connection to the server is lost; it comes back by itself."),
+  });
+}
+
+function show(latest) {
+  rooms = latest;
+  const names = rooms.map((room) => room.room);
+  keepChildren(byId("rooms"), names, cards, () => roomCard(attempt));
+  rooms.forEach((room) => cards.get(room.room).update(room));
+  setShown(byId("empty"), rooms.length === 0);
+  showNextAction();
+}
+
+function showNextAction() {
+  const mine = ownSeat();
+  const free = firstFreeSeat();
+  setText(tryButton, mine ? "Go to your seat" : "Try it");
+  tryButton.disabled = !mine && !free;
+  setText(byId("try-text"), nextActionText(mine, free));
+}
+
+function nextActionText(mine, free) {
+  if (mine) return `${armName(mine.seat.arm)}, ${mine.room.title}`;
+  if (free) return `${armName(free.seat.arm)}, with the keyboard. Nothing is recorded until you say so.`;
+  return rooms.length ? "Every seat is taken. You can watch until one is free." : "";
+}
+
+const seatsOf = (list) => list.flatMap((room) => room.seats.map((seat) => ({ room, seat })));
+const ownSeat = () => seatsOf(rooms).find(({ seat }) => seat.mine);
+const firstFreeSeat = () => seatsOf(rooms.filter((room) => !room.stale)).find(({ seat }) => isFree(seat));
+
+/** Takes the first free seat, lets scripts drive the others that nobody drives, and goes there. */
+async function tryIt() {
+  const target = ownSeat() ?? firstFreeSeat();
+  if (!target) throw new Error("No seat is free at the moment; one shows up here as soon as it is.");
+  const { room, seat } = target;
+  if (!seat.mine) {
+    await api.takeSeat(room.room, seat.arm);
+    const idle = room.seats.filter((other) => other.arm !== seat.arm && other.operator === "hold");
+    for (const other of idle) await api.takeSeat(room.room, other.arm, "script");
+  }
+  location.assign(`/rooms/${room.room}/arms/${seat.arm}`);
+}
+
+/** Runs what a press asked for and shows its failure; true where it worked. */
+async function attempt(deed) {
+  say("");
+  try {
+    await deed();
+    return true;
+  } catch (error) {
+    say(error.message);
+    return false;
+  }
+}
+
+function say(text) {
+  setText(byId("lobby-message"), text);
+}

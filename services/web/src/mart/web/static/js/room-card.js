@@ -1,0 +1,96 @@
+// One room in the lobby: its task, its seats and what can be done with each.
+
+import * as api from "./api.js";
+import { armName, badge, holder, isFree } from "./arms.js";
+import { element, keepChildren, setShown, setText } from "./dom.js";
+import { phaseText, waitingText } from "./words.js";
+
+/** `attempt(deed)` runs an action and shows its failure. Returns the card's node and what updates it. */
+export function roomCard(attempt) {
+  const title = element("h2");
+  const phase = element("span", { class: "soft" });
+  const instruction = element("p");
+  const seats = element("ul", { class: "seats" });
+  const facts = { id: element("span"), rate: element("span"), saved: element("span") };
+  const node = element(
+    "article",
+    { class: "room" },
+    element("header", {}, title, phase),
+    instruction,
+    seats,
+    element("p", { class: "room-facts figures" }, ...Object.values(facts)),
+  );
+  const rows = new Map();
+
+  function update(room) {
+    setText(title, room.title);
+    setText(phase, room.stale ? "Not answering" : waitingText(room) || phaseText(room.episode));
+    setText(instruction, room.instruction);
+    setText(facts.id, room.room);
+    setText(facts.rate, `${room.real_time_factor.toFixed(2)}× real time`);
+    setText(facts.saved, savedText(room));
+    const arms = room.seats.map((seat) => seat.arm);
+    keepChildren(seats, arms, rows, (arm) => seatRow(room.room, arm, attempt));
+    const holdsOne = room.seats.some((seat) => seat.mine);
+    room.seats.forEach((seat) => rows.get(seat.arm).update(seat, holdsOne));
+  }
+
+  return { node, update };
+}
+
+function savedText({ episodes_saved: saved, episodes_good: good }) {
+  if (saved === 0) return "No episode yet";
+  return `${saved} ${saved === 1 ? "episode" : "episodes"} saved, ${good} good`;
+}
+
+function seatRow(room, arm, attempt) {
+  const who = element("span", { class: "soft" });
+  const press = (text, deed, kind = "") => {
+    const label = `${text}: ${armName(arm)} in ${room}`;
+    const on = { click: () => attempt(deed) };
+    return element("button", { type: "button", class: kind, "aria-label": label, on }, text);
+  };
+  const path = `/rooms/${room}/arms/${arm}`;
+  const deeds = {
+    script: press("Use a script", () => api.takeSeat(room, arm, "script"), "quiet"),
+    hold: press("Stop the script", () => api.takeSeat(room, arm, "hold"), "quiet"),
+    watch: element("a", { class: "button quiet", href: path, "aria-label": `Watch: ${armName(arm)} in ${room}` }, "Watch"),
+    leave: press("Leave", () => api.leaveSeat(room, arm), "quiet"),
+    go: element("a", { class: "button", href: path }, "Drive"),
+    take: press("Take seat", async () => {
+      await api.takeSeat(room, arm);
+      location.assign(path);
+    }),
+  };
+  const name = element("span", { class: "arm-name" }, armName(arm));
+  const node = element(
+    "li",
+    { class: "seat", dataset: { arm } },
+    badge(arm),
+    element("span", { class: "who" }, name, who),
+    element("span", { class: "deeds" }, ...Object.values(deeds)),
+  );
+
+  function update(seat, holdsOne) {
+    setText(who, seatText(seat));
+    setShown(deeds.script, seat.operator === "hold");
+    setShown(deeds.hold, seat.operator === "script");
+    setShown(deeds.watch, !isFree(seat) && !seat.mine);
+    setShown(deeds.leave, seat.mine);
+    setShown(deeds.go, seat.mine);
+    setShown(deeds.take, isFree(seat) && !holdsOne);
+  }
+
+  return { node, update };
+}
+
+function seatText(seat) {
+  switch (seat.operator) {
+    case "hold":
+      return "Free, holds still";
+    case "script":
+      return "Free, a script drives";
+    default:
+      return seat.ready ? `${holder(seat)}, ready` : holder(seat);
+  }
+}

@@ -1,0 +1,40 @@
+// What the pages say: states in the words of the people who use them.
+
+import { lateName } from "./arms.js";
+
+export const seconds = (value) => `${value.toFixed(1)} s`;
+
+/** 42 → "0:42" */
+export function clockTime(elapsedS) {
+  const whole = Math.floor(elapsedS);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
+}
+
+export function fileSize(bytes) {
+  return bytes < 1e6 ? `${Math.max(1, Math.round(bytes / 1e3))} kB` : `${(bytes / 1e6).toFixed(1)} MB`;
+}
+
+export const outcomeText = (outcome) =>
+  ({ success: "Success", failure: "Failed", discarded: "Discarded" })[outcome] ?? "";
+
+export function phaseText(episode) {
+  switch (episode.phase) {
+    case "countdown":
+      return "About to start";
+    case "recording":
+      return `Recording ${clockTime(episode.elapsed_s)}`;
+    case "ended":
+      return outcomeText(episode.outcome);
+    default:
+      return "Practice";
+  }
+}
+
+/** "Waiting for Ana, 0.8 s", or nothing. */
+export function waitingText(room) {
+  if (room.barrier === "stopped") return "Emergency stop";
+  if (!["stalled", "paused"].includes(room.barrier) || room.waiting_for.length === 0) return "";
+  const names = room.waiting_for.map((late) => lateName(room.seats, late)).join(" and ");
+  const longest = Math.max(...room.waiting_for.map((late) => late.since_s));
+  return `${room.barrier === "paused" ? "Paused, waiting" : "Waiting"} for ${names}, ${seconds(longest)}`;
+}
