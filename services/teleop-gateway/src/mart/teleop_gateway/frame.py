@@ -67,7 +67,9 @@ class PhoneFrame:
             raise MalformedFrame(f"{len(payload)} bytes were given; a phone frame has {SIZE_BYTES}.")
         magic, epoch, sequence, seen_tick, sent_us, *numbers, flags, _ = _LAYOUT.unpack(payload)
         if magic != MAGIC:
-            raise MalformedFrame(f"A frame starting with {magic!r} was given; a phone frame starts with {MAGIC!r}.")
+            raise MalformedFrame(
+                f"A frame starting with {magic!r} was given; a phone frame starts with {MAGIC!r}."
+            )
         x, y, z, qw, qx, qy, qz, gripper = numbers
         known = Flag(flags & _EVERY_FLAG)
         return cls(epoch, sequence, seen_tick, sent_us, (x, y, z), (qw, qx, qy, qz), gripper, known)

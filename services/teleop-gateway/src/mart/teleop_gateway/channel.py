@@ -1,0 +1,119 @@
+"""The status channel: JSON, one small object a message. docs/protocol.md, "Status channel"."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import RoomStatus, State, barrier_word
+from mart.teleop_gateway.driving import Driving, Input
+from mart.teleop_gateway.latency import STAGES, Summary
+
+MAX_CHARACTERS = 1100  # one SCTP packet
+
+
+@dataclass(frozen=True)
+class Ping:
+    t_us: float
+
+
+@dataclass(frozen=True)
+class Clock:
+    offset_ns: int
+
+
+@dataclass(frozen=True)
+class Seen:
+    tick: int
+    t_us: float
+
+
+@dataclass(frozen=True)
+class Select:
+    input: Input
+
+
+def parse(text: str | bytes) -> Ping | Clock | Seen | Select:
+    """Raises InvalidInput for anything else."""
+    if len(text) > MAX_CHARACTERS:
+        raise InvalidInput(
+            f"A status message of {len(text)} characters was given; {MAX_CHARACTERS} are allowed."
+        )
+    try:
+        message = json.loads(text)
+        match message:
+            case {"type": "ping", "t_us": t_us}:
+                return Ping(_finite(t_us))
+            case {"type": "clock", "offset_ns": offset_ns}:
+                return Clock(int(_finite(offset_ns)))
+            case {"type": "seen", "tick": int(tick), "t_us": t_us}:
+                return Seen(tick, _finite(t_us))
+            case {"type": "input", "input": name}:
+                return Select(Input(name))
+    except (ValueError, OverflowError, RecursionError) as error:
+        raise InvalidInput(f"A status message was given that cannot be read: {error}.") from error
+    raise InvalidInput("A status message was given that is none of ping, clock, seen and input.")
+
+
+def pong(ping: Ping, gateway_ns: int) -> str:
+    return _text({"type": "pong", "t_us": ping.t_us, "gateway_ns": gateway_ns})
+
+
+def ping(t_us: float) -> str:
+    return _text({"type": "ping", "t_us": t_us})
+
+
+def clock_offset(offset_ns: int) -> str:
+    return _text({"type": "clock", "offset_ns": offset_ns})
+
+
+def tick(
+    state: State,
+    room: RoomStatus,
+    driving: Driving,
+    now_s: float,
+    *,
+    frames_per_s: float,
+    latency: Summary | None,
+) -> str:
+    """What a page shows, at most MAX_CHARACTERS long."""
+    sequence = next((arm.sequence for arm in state.arms if arm.arm == driving.arm), 0)
+    phone = driving.phone(now_s)
+    return _text(
+        {
+            "type": "tick",
+            "tick": state.tick,
+            "sequence": driving.frame_number(sequence) or 0,
+            "rtf": round(state.real_time_factor, 3),
+            "engaged": driving.engaged(now_s),
+            "gripper": round(driving.gripper, 3),
+            "barrier": barrier_word(room.barrier),
+            "waiting": [{"arm": w.arm, "since_s": round(w.since_s, 2)} for w in room.waiting_for],
+            "input": driving.active.value,
+            "phone": phone and {"age_ms": round(1e3 * phone.age_s), "tracking": phone.tracking},
+            "rejected": dict(driving.rejected()),
+            "fps": round(frames_per_s, 1),
+            "latency": latency and _latency(latency),
+        }
+    )
+
+
+def _latency(summary: Summary) -> dict[str, Any]:
+    return {
+        "p50_ms": round(summary.p50_ms, 1),
+        "p95_ms": round(summary.p95_ms, 1),
+        "stages": {name: round(ms, 1) for name, ms in zip(STAGES, summary.stages, strict=True)},
+    }
+
+
+def _text(message: dict[str, Any]) -> str:
+    return json.dumps(message, separators=(",", ":"), ensure_ascii=False)
+
+
+def _finite(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ValueError(f"{value!r} is no finite number")
+    return value

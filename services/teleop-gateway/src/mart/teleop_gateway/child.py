@@ -1,0 +1,82 @@
+"""Seat processes as their gateway sees them: warmed up ahead, assigned, watched, ended."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import sys
+
+from mart.protocol.errors import Unavailable
+from mart.teleop_gateway.seat_process import WARM
+
+_MODULE = "mart.teleop_gateway.seat_process"
+_END_TIMEOUT_S = 3.0
+
+
+class Child:
+    """One process. Ends by itself when its standard input closes, so also when this process is killed."""
+
+    def __init__(self, process: asyncio.subprocess.Process) -> None:
+        self._process = process
+
+    @classmethod
+    async def start(cls) -> Child:
+        pipe = asyncio.subprocess.PIPE
+        return cls(
+            await asyncio.create_subprocess_exec(sys.executable, "-m", _MODULE, stdin=pipe, stdout=pipe)
+        )
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    async def assign(self, room: str, arm: str) -> None:
+        """Waits until it is warm, then gives it its seat; raises Unavailable where it died before."""
+        assert self._process.stdout is not None
+        assert self._process.stdin is not None
+        said = await self._process.stdout.readline()
+        if said != WARM.encode():
+            status = await self._process.wait()
+            raise Unavailable(
+                f"A seat process ended with status {status} before it was ready; its log says why."
+            )
+        self._process.stdin.write(json.dumps({"room": room, "arm": arm}).encode() + b"\n")
+
+    async def ended(self) -> int:
+        """Its exit status, once it has one."""
+        return await self._process.wait()
+
+    async def end(self) -> None:
+        """Orderly if it will, by force if not."""
+        if self._process.returncode is not None:
+            return
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self._process.wait(), _END_TIMEOUT_S)
+            return
+        self._process.kill()
+        await self._process.wait()
+
+
+class Spares:
+    """Keeps one warm process ahead of the next claim."""
+
+    def __init__(self) -> None:
+        self._next: asyncio.Task[Child] | None = None
+
+    def prepare(self) -> None:
+        if self._next is None:
+            self._next = asyncio.create_task(Child.start())
+
+    async def take(self) -> Child:
+        """The warm one; call `prepare` again once it has its seat."""
+        self.prepare()
+        assert self._next is not None
+        spare, self._next = self._next, None
+        return await spare
+
+    async def close(self) -> None:
+        if self._next is not None:
+            await (await self._next).end()

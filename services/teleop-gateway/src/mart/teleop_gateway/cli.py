@@ -1,0 +1,61 @@
+"""`mart gateway` and `mart phone`. Heavy modules are imported when a command runs."""
+
+from __future__ import annotations
+
+import click
+
+from mart.protocol.bus.aio import AsyncBus
+
+
+@click.command()
+@click.option(
+    "--name", default="gateway-1", show_default=True, help="What this gateway is called on the bus."
+)
+def gateway(name: str) -> None:
+    """Run a gateway: one process for each seat that a person holds."""
+    from mart.protocol.service import run_async
+    from mart.teleop_gateway.gateway import KIND, Gateway
+    from mart.teleop_gateway.settings import GatewaySettings
+
+    run_async(GatewaySettings(), KIND, name, lambda bus: Gateway(bus, name).run())
+
+
+@click.command()
+@click.option("--url", default="https://127.0.0.1:8443", show_default=True, help="The lobby's address.")
+@click.option("--code", required=True, help="The pairing code that the operator page shows.")
+@click.option("--insecure", is_flag=True, help="Take any certificate: for one that the platform made itself.")
+@click.option("--delay-ms", default=0.0, help="Added to every message, each way.")
+@click.option("--jitter-ms", default=0.0, help="At most this much more, at random.")
+@click.option("--loss-percent", type=click.FloatRange(0, 100), default=0.0, help="Messages lost, each way.")
+def phone(
+    url: str, code: str, *, insecure: bool, delay_ms: float, jitter_ms: float, loss_percent: float
+) -> None:
+    """Run an emulated phone, led by the intents of `mart experts --intent`."""
+    import asyncio
+
+    from mart.protocol.service import run_async
+    from mart.teleop_gateway.emulator import EmulatedPhone
+    from mart.teleop_gateway.link import LinkProfile
+    from mart.teleop_gateway.pairing import LobbyClient, Pairing
+    from mart.teleop_gateway.settings import GatewaySettings
+
+    async def pair() -> Pairing:
+        async with LobbyClient(url, insecure) as lobby:
+            return await lobby.pair(code)
+
+    async def drive(bus: AsyncBus) -> None:
+        async with LobbyClient(url, insecure) as lobby:
+            emulated = EmulatedPhone(
+                bus,
+                lambda sdp: lobby.offer(pairing, sdp),
+                room=pairing.room,
+                arm=pairing.arm,
+                seat_epoch=pairing.epoch,
+                link=LinkProfile(delay_ms / 1e3, jitter_ms / 1e3, loss_percent / 1e2),
+                scale=settings.hand_scale,
+            )
+            await emulated.run()
+
+    settings = GatewaySettings()
+    pairing = asyncio.run(pair())
+    run_async(settings, "phone", f"{pairing.room}-{pairing.arm}", drive)

@@ -1,0 +1,169 @@
+"""One seat's inputs: who drives, and what the arm is asked to do. Pure: payloads and `now` in, commands out."""
+
+from __future__ import annotations
+
+import enum
+from collections import Counter
+from dataclasses import dataclass, field
+
+from mart.protocol.messages import OPERATOR_HUMAN, Command, CommandStamps, pose_message
+from mart.protocol.pose import Pose
+from mart.teleop_gateway.frame import Flag
+from mart.teleop_gateway.guard import Guard, Hand
+from mart.teleop_gateway.retarget import Retarget, Target
+
+LOST_AFTER_S = 0.25
+_REMEMBERED_COMMANDS = 512
+_OLDEST_INPUT_NS = 10_000_000_000  # an older stamp is a wrong clock, not a slow network
+
+
+class Input(enum.StrEnum):
+    KEYBOARD = "keyboard"  # and mouse, from the browser
+    PHONE = "phone"
+
+
+@dataclass
+class _Source:
+    """What is known of one driving peer. clock_offset_ns: gateway clock minus the peer's, once the peer has told it."""
+
+    guard: Guard
+    last: Hand | None = None
+    clock_offset_ns: int | None = None
+
+
+@dataclass(frozen=True)
+class PhoneState:
+    age_s: float
+    tracking: bool
+
+
+@dataclass
+class Driving:
+    """The driving of one arm by one holder of its seat (one epoch).
+
+    `first_sequence` must be above every command's number of an earlier process for the same epoch: the sim takes only
+    newer ones.
+    """
+
+    arm: str
+    seat_epoch: int
+    first_sequence: int
+    retarget: Retarget
+    active: Input = Input.KEYBOARD
+    _sources: dict[Input, _Source] = field(default_factory=dict)
+    _rejected: Counter[str] = field(default_factory=Counter)
+    _target: Target | None = None
+    _sent: int = 0
+    _frame_numbers: dict[int, int] = field(default_factory=dict)
+
+    def connect(self, source: Input) -> None:
+        """A new peer: its numbers begin anew. A phone that comes is meant to be used."""
+        self._keep_counts(source)
+        self._sources[source] = _Source(Guard(self.seat_epoch))
+        if source is Input.PHONE:
+            self.select(Input.PHONE)
+
+    def disconnect(self, source: Input) -> None:
+        """A peer left for good; a phone that leaves gives the arm back to the keyboard."""
+        self._keep_counts(source)
+        self._sources.pop(source, None)
+        if source is Input.PHONE:
+            self.select(Input.KEYBOARD)
+
+    def select(self, source: Input) -> None:
+        if source is not self.active:
+            self.active = source
+            self.retarget.release()
+
+    def set_clock(self, source: Input, offset_ns: int) -> None:
+        if source in self._sources:
+            self._sources[source].clock_offset_ns = offset_ns
+
+    def clock_offset_ns(self, source: Input) -> int | None:
+        known = self._sources.get(source)
+        return known.clock_offset_ns if known else None
+
+    def receive(
+        self, source: Input, payload: bytes, measured_tool_in_base: Pose | None, now_s: float, now_ns: int
+    ) -> Command | None:
+        """The command that a frame asks for; None for a bad frame, an input that is not in use or an unseen arm.
+
+        now_s: monotonic; now_ns: wall clock, for the stamps.
+        """
+        peer = self._sources.get(source)
+        hand = peer.guard.admit(payload, now_s) if peer else None
+        if peer is None or hand is None:
+            return None
+        peer.last = hand
+        if source is not self.active or measured_tool_in_base is None:
+            return None
+        self._target = self.retarget.follow(hand, measured_tool_in_base)
+        return self._command(hand, self._target, peer.clock_offset_ns, now_ns)
+
+    def world_was_reset(self) -> None:
+        self._target = None
+        self.retarget.forget()
+
+    def lost(self, now_s: float) -> bool:
+        """Whether the input in use has been silent for too long."""
+        peer = self._sources.get(self.active)
+        return peer is None or now_s - peer.guard.last_good_s > LOST_AFTER_S
+
+    def engaged(self, now_s: float) -> bool:
+        return self._target is not None and self._target.engaged and not self.lost(now_s)
+
+    @property
+    def gripper(self) -> float:
+        """What was asked for last, 0 open … 1 closed."""
+        return self._target.gripper if self._target else 0.0
+
+    def phone(self, now_s: float) -> PhoneState | None:
+        peer = self._sources.get(Input.PHONE)
+        if peer is None or peer.last is None:
+            return None
+        return PhoneState(now_s - peer.guard.last_good_s, Flag.TRACKING in peer.last.frame.flags)
+
+    def rejected(self) -> Counter[str]:
+        """Frames dropped since this holder came, by reason."""
+        return sum((_counts(peer.guard) for peer in self._sources.values()), Counter(self._rejected))
+
+    def frame_number(self, sequence: int) -> int | None:
+        """The phone frame that became the command of this number; None where it was not this process's."""
+        return self._frame_numbers.get(sequence)
+
+    def _keep_counts(self, source: Input) -> None:
+        if source in self._sources:
+            self._rejected += _counts(self._sources[source].guard)
+
+    def _command(self, hand: Hand, target: Target, clock_offset_ns: int | None, now_ns: int) -> Command:
+        sequence = self.first_sequence + self._sent
+        self._sent += 1
+        self._frame_numbers[sequence] = hand.frame.sequence
+        self._frame_numbers.pop(sequence - _REMEMBERED_COMMANDS, None)
+        return Command(
+            arm=self.arm,
+            seat_epoch=self.seat_epoch,
+            sequence=sequence,
+            target_tool_in_base=pose_message(target.pose_tool_in_base),
+            gripper=target.gripper,
+            engaged=target.engaged,
+            source=OPERATOR_HUMAN,
+            stamps=CommandStamps(
+                input_sent_ns=_input_sent_ns(hand.frame.sent_us, clock_offset_ns, now_ns),
+                gateway_received_ns=now_ns,
+            ),
+            seen_tick=hand.frame.seen_tick,
+            emergency_stop=Flag.EMERGENCY_STOP in hand.frame.flags,
+        )
+
+
+def _counts(guard: Guard) -> Counter[str]:
+    return Counter({reason.value: number for reason, number in guard.rejected.items()})
+
+
+def _input_sent_ns(sent_us: int, clock_offset_ns: int | None, now_ns: int) -> int:
+    """The peer's sending time on the gateway's clock; 0 where it is unknown or cannot be true."""
+    if clock_offset_ns is None:
+        return 0
+    sent_ns = sent_us * 1000 + clock_offset_ns
+    return sent_ns if now_ns - _OLDEST_INPUT_NS < sent_ns <= now_ns + _OLDEST_INPUT_NS else 0

@@ -1,0 +1,62 @@
+"""How a phone joins over HTTPS: docs/protocol.md, "HTTP"."""
+
+from __future__ import annotations
+
+import ssl
+from dataclasses import dataclass
+from typing import Any, Self
+
+import httpx
+
+from mart.protocol.errors import Unavailable, from_wire
+
+_TIMEOUT_S = 10.0
+
+
+@dataclass(frozen=True)
+class Pairing:
+    """The right to drive one arm with a phone."""
+
+    token: str
+    room: str
+    arm: str
+    epoch: int
+    name: str
+
+
+class LobbyClient:
+    """`insecure`: take any certificate, for the one that a platform makes for itself at first start."""
+
+    def __init__(self, url: str, insecure: bool = False) -> None:
+        self._url = url.rstrip("/")
+        verify: ssl.SSLContext | bool = False if insecure else ssl.create_default_context()
+        self._http = httpx.AsyncClient(verify=verify, timeout=_TIMEOUT_S, headers={"Origin": self._url})
+
+    async def pair(self, code: str) -> Pairing:
+        """Uses up a pairing code; raises what the lobby answers, Unavailable where nobody does."""
+        answer = await self._post("/api/pair", {"code": code}, {})
+        return Pairing(answer["token"], answer["room"], answer["arm"], int(answer["epoch"]), answer["name"])
+
+    async def offer(self, pairing: Pairing, sdp: str) -> str:
+        """The answer's SDP."""
+        path = f"/api/rooms/{pairing.room}/seats/{pairing.arm}/offer"
+        answer = await self._post(path, {"sdp": sdp}, {"Authorization": f"Bearer {pairing.token}"})
+        return str(answer["sdp"])
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self._http.aclose()
+
+    async def _post(self, path: str, body: dict[str, Any], headers: dict[str, str]) -> dict[str, Any]:
+        try:
+            response = await self._http.post(self._url + path, json=body, headers=headers)
+            answer = response.json()
+        except (httpx.HTTPError, ValueError) as error:
+            raise Unavailable(
+                f"{self._url} does not answer as a lobby: {error}. Is `mart web` running?"
+            ) from error
+        if "error" in answer:
+            raise from_wire(answer["error"]["code"], answer["error"]["message"])
+        return dict(answer)

@@ -1,0 +1,283 @@
+"""One human seat: its peers drive its arm and see its view. Lives in a process of its own."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections.abc import Awaitable, Callable
+
+from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
+
+from mart.protocol import clock, codec, keys
+from mart.protocol.bus.aio import AsyncBus
+from mart.protocol.bus.base import Bus, Closable, Sample
+from mart.protocol.errors import InvalidInput, MartError, Unavailable
+from mart.protocol.messages import (
+    OPERATOR_HUMAN,
+    Answer,
+    Event,
+    Offer,
+    RoomStatus,
+    State,
+    error_message,
+    pose_from_message,
+)
+from mart.protocol.pose import Pose
+from mart.protocol.tokens import Role
+from mart.teleop_gateway import channel
+from mart.teleop_gateway.driving import Driving, Input
+from mart.teleop_gateway.encoder import Codec
+from mart.teleop_gateway.latency import MotionToPhoton
+from mart.teleop_gateway.peer import MAX_SDP_CHARACTERS, Peer
+from mart.teleop_gateway.peers import Peers
+from mart.teleop_gateway.rate import RateLimit
+from mart.teleop_gateway.retarget import Retarget
+from mart.teleop_gateway.scenery import Scenery
+from mart.teleop_gateway.settings import GatewaySettings
+from mart.teleop_gateway.signaling import admit
+from mart.teleop_gateway.view import Picture
+
+_log = logging.getLogger(__name__)
+
+STATUS_EVERY_S = 0.05
+LATENCY_EVERY_S = 1.0
+MAX_OFFERS_PER_S = 5
+_READY_TIMEOUT_S = 5.0
+_MAX_OFFER_BYTES = MAX_SDP_CHARACTERS + 4096
+_INPUTS = {Role.BROWSER: Input.KEYBOARD, Role.PHONE: Input.PHONE}
+
+
+class Seat:
+    """`video_bus` is a session of its own: pictures must never stand in a command's way."""
+
+    def __init__(
+        self, bus: AsyncBus, video_bus: Bus, settings: GatewaySettings, *, room: str, arm: str, secret: bytes
+    ) -> None:
+        self.room, self.arm = room, arm
+        self._bus, self._settings, self._secret = bus, settings, secret
+        self._loop = asyncio.get_running_loop()
+        self._commands = bus.publisher(keys.command(room, arm))
+        self._events = bus.publisher(keys.event(room))
+        self._video = video_bus.publisher(keys.video(room, arm))
+        self._scenery = Scenery(bus, room, arm, self._on_picture, self._on_azimuth)
+        self._peers = Peers(bus, self, settings.ice_servers)
+        self._offers = RateLimit(MAX_OFFERS_PER_S)
+        self._latency = MotionToPhoton(arm)
+        self._ready = asyncio.Event()
+        self._status = RoomStatus()
+        self._state = State()
+        self._measured: Pose | None = None
+        self._azimuth_rad: float | None = None
+        self._driving: Driving | None = None
+        self._told: tuple[object, ...] = ()
+
+    async def run(self) -> None:
+        """Until cancelled."""
+        with contextlib.ExitStack() as stack:
+            for opened in self._open():
+                stack.callback(opened.close)
+            try:
+                await asyncio.gather(self._tell_periodically(), self._report_latency())
+            finally:
+                await self._peers.close()
+                await self._scenery.close()
+                self._log_latency()
+
+    def _open(self) -> list[Closable]:
+        room, arm, bus = self.room, self.arm, self._bus
+        served = [bus.serve(keys.signal(room, arm, role), self._answering(role)) for role in Role]
+        status = bus.subscribe(keys.status(room).key, self._on_room_status)
+        # Not over the event loop: the view's thread must have the state before the loop finds time for it.
+        state = bus.bus.subscribe(keys.state(room).key, self._on_state_sample)
+        return [*served, status, state, self._commands, self._events, self._video]
+
+    # Signalling
+
+    def _answering(self, role: Role) -> Callable[[bytes], Awaitable[bytes]]:
+        async def answer(payload: bytes) -> bytes:
+            try:
+                return codec.encode(Answer(sdp=await self._answer(role, payload)))
+            except MartError as error:
+                _log.info("An offer of a %s was refused: %s", role, error)
+                return codec.encode(Answer(error=error_message(error)))
+
+        return answer
+
+    async def _answer(self, role: Role, payload: bytes) -> str:
+        if not self._offers.allows(clock.monotonic_s()):
+            raise Unavailable(
+                f"More than {MAX_OFFERS_PER_S} offers a second came for this seat; wait a moment."
+            )
+        offer = codec.decode(Offer, payload, limit_bytes=_MAX_OFFER_BYTES)
+        try:
+            async with asyncio.timeout(_READY_TIMEOUT_S):
+                driving = await self._await_driving()
+        except TimeoutError as error:
+            raise Unavailable(
+                f"{self.room} has not told about {self.arm} yet; is its sim running?"
+            ) from error
+        admit(offer.token, self._secret, room=self.room, arm=self.arm, epoch=driving.seat_epoch, role=role)
+        return await self._peers.answer(role, offer.sdp)
+
+    async def _await_driving(self) -> Driving:
+        while self._driving is None:
+            await self._ready.wait()
+        return self._driving
+
+    # What peers do
+
+    def on_joined(self, peer: Peer) -> None:
+        _log.info("%s %s: a %s joined", self.room, self.arm, peer.role)
+        self._scenery.set_codecs(self._peers.codecs())
+        if self._driving is not None and peer.role in _INPUTS:
+            self._driving.connect(_INPUTS[peer.role])
+
+    def on_left(self, peer: Peer) -> None:
+        _log.info("%s %s: a %s left", self.room, self.arm, peer.role)
+        self._scenery.set_codecs(self._peers.codecs())
+        if self._driving is not None and peer.role in _INPUTS:
+            self._driving.disconnect(_INPUTS[peer.role])
+
+    def on_pose(self, peer: Peer, payload: bytes) -> None:
+        if self._driving is None:
+            return
+        now_s, now_ns = clock.monotonic_s(), clock.wall_ns()
+        command = self._driving.receive(_INPUTS[peer.role], payload, self._measured, now_s, now_ns)
+        if command is not None:
+            command.stamps.sent_ns = clock.wall_ns()
+            self._commands.put(codec.encode(command))
+            self._tell_changes()
+
+    def on_status(self, peer: Peer, text: str) -> None:
+        try:
+            message = channel.parse(text)
+        except InvalidInput as error:
+            _log.debug("A %s said what nobody understands: %s", peer.role, error)
+            return
+        match message:
+            case channel.Ping():
+                peer.send_status(channel.pong(message, clock.wall_ns()))
+            case channel.Clock(offset_ns):
+                self._set_clock(peer, offset_ns)
+            case channel.Seen(tick, t_us) if peer.role is Role.BROWSER and peer.clock_offset_ns is not None:
+                self._latency.on_seen(tick, int(t_us * 1000) + peer.clock_offset_ns)
+            case channel.Select(chosen) if peer.role in _INPUTS and self._driving is not None:
+                self._driving.select(chosen)
+                self._tell_changes()
+
+    def on_keyframe_wanted(self, codec: Codec) -> None:
+        self._scenery.request_keyframe(codec)
+
+    def _set_clock(self, peer: Peer, offset_ns: int) -> None:
+        peer.clock_offset_ns = offset_ns
+        if self._driving is not None and peer.role in _INPUTS:
+            self._driving.set_clock(_INPUTS[peer.role], offset_ns)
+
+    # What the room does
+
+    def _on_state_sample(self, sample: Sample) -> None:
+        received_ns = clock.wall_ns()
+        state = codec.decode(State, sample.payload)
+        self._scenery.offer(state, received_ns)
+        self._loop.call_soon_threadsafe(self._on_state, state)
+
+    def _on_state(self, state: State) -> None:
+        was_reset = state.boot != self._state.boot or state.sim_time_s < self._state.sim_time_s
+        self._state = state
+        for arm in state.arms:
+            if arm.arm == self.arm:
+                self._measured = pose_from_message(arm.tool_in_base)
+        if was_reset and self._driving is not None:
+            self._driving.world_was_reset()
+        self._scenery.on_boot(state.boot)
+        self._latency.on_state(state)
+
+    def _on_room_status(self, sample: Sample) -> None:
+        self._status = codec.decode(RoomStatus, sample.payload)
+        self._renew_driving()
+        self._tell_changes()
+
+    def _on_azimuth(self, azimuth_rad: float) -> None:
+        self._azimuth_rad = azimuth_rad
+        if self._driving is not None:
+            self._driving.retarget = Retarget(azimuth_rad, self._settings.hand_scale)
+        self._renew_driving()
+
+    def _renew_driving(self) -> None:
+        """A new holder drives anew: with an empty record, and no peer of the one before."""
+        if self._azimuth_rad is None:
+            return
+        epoch = next(
+            (s.epoch for s in self._status.seats if s.arm == self.arm and s.operator == OPERATOR_HUMAN), None
+        )
+        if self._driving is not None and self._driving.seat_epoch == epoch:
+            return
+        self._peers.drop_driving()
+        if epoch is None:
+            self._driving = None
+            self._ready.clear()
+            return
+        # Milliseconds since 1970: above every number of an earlier process, which sent less than 1000 a second.
+        first_sequence = clock.wall_ns() // 1_000_000
+        retarget = Retarget(self._azimuth_rad, self._settings.hand_scale)
+        self._driving = Driving(self.arm, epoch, first_sequence, retarget)
+        self._ready.set()
+
+    # What is told
+
+    async def _tell_periodically(self) -> None:
+        while True:
+            self._tell(clock.monotonic_s())
+            self._peers.drop_silent(clock.monotonic_s())
+            await asyncio.sleep(STATUS_EVERY_S)
+
+    def _tell_changes(self) -> None:
+        now_s = clock.monotonic_s()
+        if self._driving is not None and self._told != self._telling(self._driving, now_s):
+            self._tell(now_s)
+
+    def _tell(self, now_s: float) -> None:
+        if self._driving is None:
+            return
+        self._told = self._telling(self._driving, now_s)
+        latency, frames_per_s = self._latency.summary(), self._scenery.frames_per_s()
+        self._peers.tell(
+            channel.tick(
+                self._state, self._status, self._driving, now_s, latency=latency, frames_per_s=frames_per_s
+            )
+        )
+
+    def _telling(self, driving: Driving, now_s: float) -> tuple[object, ...]:
+        """What is worth a message of its own."""
+        waiting = tuple(waiting.arm for waiting in self._status.waiting_for)
+        return driving.engaged(now_s), driving.active, self._status.barrier, waiting
+
+    def _on_picture(self, picture: Picture) -> None:
+        """On the view's thread: first to those who wait for it, then onto the bus."""
+        self._loop.call_soon_threadsafe(self._pass_on, picture)
+        if picture.encoded.codec is Codec.H264:
+            message = CompressedVideo(frame_id=self.arm, data=picture.encoded.data, format="h264")
+            message.timestamp.FromNanoseconds(picture.image_ns)
+            self._video.put(codec.encode(message))
+
+    def _pass_on(self, picture: Picture) -> None:
+        self._peers.put(picture.encoded)
+        if picture.encoded.codec is Codec.H264:
+            self._latency.on_picture(picture.tick, picture.stamps)
+
+    async def _report_latency(self) -> None:
+        reported = 0
+        while True:
+            await asyncio.sleep(LATENCY_EVERY_S)
+            summary = self._latency.summary()
+            if summary is not None and self._latency.reports > reported:
+                reported = self._latency.reports
+                latency = summary.event(self.arm)
+                event = Event(wall_ns=clock.wall_ns(), room=self.room, tick=self._state.tick, latency=latency)
+                self._events.put(codec.encode(event))
+
+    def _log_latency(self) -> None:
+        summary = self._latency.summary()
+        if summary is not None:
+            _log.info("%s %s motion to photon: %s", self.room, self.arm, summary)

@@ -1,0 +1,38 @@
+"""The tick, written into the picture and read back: docs/protocol.md, "Tick code in the picture"."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Image = NDArray[np.uint8]
+
+WIDTH_PX = 640
+VIEW_HEIGHT_PX = 480
+SQUARE_PX = 16
+HEIGHT_PX = VIEW_HEIGHT_PX + SQUARE_PX
+
+_BITS = 40
+_CHECK = 0xA5
+_THRESHOLD = 128
+_CENTRES = np.arange(_BITS) * SQUARE_PX + SQUARE_PX // 2
+
+
+def write(tick: int, strip_rgb: Image) -> None:
+    """Fills the strip, shape (16, 640, 3), with `tick` (its low 32 bits)."""
+    word = tick & 0xFFFFFFFF
+    code = word << 8 | _checksum(word)
+    bits = np.array([code >> (_BITS - 1 - i) & 1 for i in range(_BITS)], dtype=np.uint8)
+    strip_rgb[:] = np.repeat(bits * np.uint8(255), SQUARE_PX)[np.newaxis, :, np.newaxis]
+
+
+def read(luma: Image) -> int | None:
+    """The tick in a whole frame's luma, shape (496, 640); None where the checksum is wrong."""
+    bits = luma[VIEW_HEIGHT_PX + SQUARE_PX // 2, _CENTRES] >= _THRESHOLD
+    code = int("".join("1" if bit else "0" for bit in bits), 2)
+    word = code >> 8
+    return word if code & 0xFF == _checksum(word) else None
+
+
+def _checksum(word: int) -> int:
+    return word >> 24 ^ word >> 16 & 0xFF ^ word >> 8 & 0xFF ^ word & 0xFF ^ _CHECK

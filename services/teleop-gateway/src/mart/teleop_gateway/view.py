@@ -1,0 +1,128 @@
+"""The picture of one seat: rendered and encoded once, handed to everyone who watches. A thread of its own.
+
+Newest wins before the encoder: a slow renderer leaves states out. After it nothing may be left out, since every
+picture builds on the one before; see `track`.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+
+import cv2
+import mujoco
+
+from mart.protocol import clock
+from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import State
+from mart.teleop_gateway.encoder import CLOCK_HZ, ENCODERS, Codec, Encoded, to_i420
+from mart.teleop_gateway.handover import Closed, Fresh, Handover
+from mart.teleop_gateway.latency import PictureStamps
+from mart.teleop_gateway.renderer import Renderer, blank_picture
+from mart.teleop_gateway.tick_code import Image
+
+_log = logging.getLogger(__name__)
+
+KEYFRAME_EVERY_S = 2.0
+_REPEAT_AFTER_S = 0.5  # a resting world is sent again: whoever lost the last picture gets it
+_KEYFRAME_WITHIN_S = 0.05
+_RATE_WINDOW = 40
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One encoded picture on its way to the peers and onto the bus. image_ns: when the world was in this state."""
+
+    encoded: Encoded
+    tick: int
+    image_ns: int
+    stamps: PictureStamps
+
+
+Sink = Callable[[Picture], None]
+
+
+class View:
+    """Draws `camera` of `model` from `start` to `stop`. The sink is called on its thread: it may only hand over."""
+
+    def __init__(self, model: mujoco.MjModel, camera: str, frames_per_s: float, sink: Sink) -> None:
+        self._model, self._camera, self._sink = model, camera, sink
+        self._handover = Handover()
+        self._encoders = {codec: encoder(frames_per_s) for codec, encoder in ENCODERS.items()}
+        self._keyframe_s = dict.fromkeys(Codec, -KEYFRAME_EVERY_S)
+        self._times_s: deque[float] = deque(maxlen=_RATE_WINDOW)
+        self._thread = threading.Thread(target=self._run, name=f"view-{camera}", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Returns when the thread has ended."""
+        self._handover.close()
+        self._thread.join()
+
+    def offer(self, state: State, received_ns: int) -> None:
+        self._handover.offer(state, received_ns)
+
+    def set_codecs(self, codecs: AbstractSet[Codec]) -> None:
+        """What the peers need. H.264 is always made: the recorder keeps what the operator saw."""
+        self._handover.set_codecs(codecs)
+
+    def request_keyframe(self, codec: Codec) -> None:
+        self._handover.request_keyframe(codec)
+
+    def frames_per_s(self) -> float:
+        """Of the last pictures; 0 where nothing was drawn for a second."""
+        times_s = tuple(self._times_s)
+        if len(times_s) < 2 or clock.monotonic_s() - times_s[-1] > 1.0:
+            return 0.0
+        return (len(times_s) - 1) / (times_s[-1] - times_s[0])
+
+    def _run(self) -> None:
+        cv2.setNumThreads(1)
+        try:
+            renderer = Renderer(self._model, self._camera)
+        except Exception:  # noqa: BLE001  # EGL and OpenGL fail with errors of their own
+            _log.exception(
+                "The view of %s cannot be drawn; `mart doctor` tells what is missing", self._camera
+            )
+            return
+        try:
+            self._draw_until_closed(renderer)
+        except Closed:
+            _log.debug("The view of %s ends", self._camera)
+        finally:
+            renderer.close()
+
+    def _draw_until_closed(self, renderer: Renderer) -> None:
+        picture_rgb = blank_picture()
+        drawn: Fresh | None = None
+        rendered_ns = 0
+        while True:
+            fresh = self._handover.wait(_REPEAT_AFTER_S, _KEYFRAME_WITHIN_S)
+            if fresh is not None:
+                try:
+                    renderer.draw(fresh.state.integration_state, fresh.state.tick, picture_rgb)
+                except InvalidInput as error:
+                    _log.warning("A state was not drawn: %s", error)
+                    continue
+                drawn, rendered_ns = fresh, clock.wall_ns()
+                self._times_s.append(clock.monotonic_s())
+            if drawn is not None:
+                self._encode(picture_rgb, drawn, rendered_ns)
+
+    def _encode(self, picture_rgb: Image, drawn: Fresh, rendered_ns: int) -> None:
+        now_s = clock.monotonic_s()
+        watched, wanted = self._handover.take_orders()
+        picture_i420 = to_i420(picture_rgb)
+        for codec in sorted(watched | {Codec.H264}):
+            keyframe = codec in wanted or now_s - self._keyframe_s[codec] >= KEYFRAME_EVERY_S
+            encoded = self._encoders[codec].encode(picture_i420, int(now_s * CLOCK_HZ), keyframe)
+            if encoded.keyframe:
+                self._keyframe_s[codec] = now_s
+            stamps = PictureStamps(drawn.received_ns, rendered_ns, clock.wall_ns())
+            self._sink(Picture(encoded, drawn.state.tick, drawn.state.stamps.stepped_ns, stamps))
