@@ -53,7 +53,7 @@ class Scene(ABC):
     def cameras(self) -> tuple[Camera, ...]:
         """One for each seat, named like its arm, and the shared one."""
         seats = tuple(seat_camera(arm, side=-1 if i % 2 == 0 else 1) for i, arm in enumerate(self.task.arms))
-        return (*seats, Camera(SHARED_VIEWPOINT, (0.0, -0.9, 1.2), (0.0, 0.02, 0.0), 38.0))
+        return (*seats, Camera(SHARED_VIEWPOINT, (0.0, -1.05, 1.15), (0.0, 0.02, 0.05), 44.0))
 
 
 def seat_camera(arm: Arm, side: int) -> Camera:

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from mart.protocol.tasks import Arm
 from mart.sim.tasks.scene import Judgement, Scene
 from mart.sim.world.palette import rgba
+from mart.sim.world.shadows import add_shadow
+from mart.sim.world.symbols import add_tile
 
 CUBE_HALF_M = 0.02
 CUBE_MASS_KG = 0.1
@@ -31,8 +33,12 @@ class MultiCubeLifting(Scene):
                 size=(CUBE_HALF_M,) * 3,
                 mass=CUBE_MASS_KG,
                 rgba=rgba(arm.color),
-                material="matt",
+                material="paint",
             )
+            for normal in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)):
+                x, y, z = (CUBE_HALF_M * axis for axis in normal)
+                add_tile(spec, cube, arm.symbol, 0.009, (x, y, z), normal)
+            add_shadow(spec, cube_of(arm.name), radius_m=0.05)
 
     def place_objects(self, model: mujoco.MjModel, data: mujoco.MjData, random: np.random.Generator) -> None:
         for arm in self.task.arms:

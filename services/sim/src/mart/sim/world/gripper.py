@@ -12,8 +12,6 @@ from __future__ import annotations
 
 import mujoco
 
-from mart.sim.world.meshes import Detail
-
 STROKE_M = 0.04  # of one finger
 FINGER_Z_M = 0.0584  # of the finger's frame, in the hand
 TOOL_Z_M = 0.103  # of the pads' middle, in the hand (0.210 from link 7)
@@ -32,7 +30,7 @@ def finger_target_m(gripper: float) -> float:
 
 
 def add_fingers(
-    spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: str, detail: Detail, masks: dict[str, int]
+    spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: str, masks: dict[str, int]
 ) -> None:
     # Turned over, so that the tool's axes are the base's while the hand points straight down: its usual orientations
     # are then far from where a canonical quaternion (w >= 0) jumps.
@@ -51,7 +49,7 @@ def add_fingers(
         _add_pads(finger, f"{arm}/{side}", masks)
         finger.add_geom(
             type=mujoco.mjtGeom.mjGEOM_MESH,
-            meshname=f"{detail}/finger",
+            meshname="detailed/finger",
             material="rubber",
             contype=0,
             conaffinity=0,

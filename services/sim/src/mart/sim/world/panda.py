@@ -17,6 +17,7 @@ from mart.protocol.tasks import MAX_ARMS, Arm
 from mart.sim.world import gripper
 from mart.sim.world.meshes import Detail, mesh_path
 from mart.sim.world.palette import rgba
+from mart.sim.world.symbols import add_tile
 
 _MINUS_X, _PLUS_X, _STRAIGHT = (1.0, -1.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)
 
@@ -66,8 +67,16 @@ HOME_RAD = (0.0, 0.2, 0.0, -2.1, 0.0, 2.3, 0.785)
 def add_assets(spec: mujoco.MjSpec, detail: Detail) -> None:
     """The meshes, once for all arms: `hull/…` for contacts and, where asked, `detailed/…` to look at."""
     for level in dict.fromkeys(("hull", detail)):
-        for part in (*(f"link{i}" for i in range(8)), "hand", "finger"):
-            spec.add_mesh(name=f"{level}/{part}", file=str(mesh_path(part, level)))
+        for part in (*(f"link{i}" for i in range(8)), "hand"):
+            _add_mesh(spec, part, level)
+    _add_mesh(spec, "finger", "detailed")  # 600 triangles, and the part that everybody looks at
+
+
+def _add_mesh(spec: mujoco.MjSpec, part: str, level: Detail) -> None:
+    # Given as bytes: a path would end up in the compiled model and make its hash differ from machine to machine.
+    file = f"{level}-{part}.stl"
+    spec.assets[file] = mesh_path(part, level).read_bytes()
+    spec.add_mesh(name=f"{level}/{part}", file=file)
 
 
 def add_panda(spec: mujoco.MjSpec, arm: Arm, index: int, detail: Detail) -> None:
@@ -94,7 +103,9 @@ def add_panda(spec: mujoco.MjSpec, arm: Arm, index: int, detail: Detail) -> None
     hand = body.add_body(name=f"{arm.name}/hand", pos=(0, 0, _FLANGE_Z_M), quat=_HAND_TURN)
     _set_inertia(hand, *_HAND_MASS)
     _add_shell(hand, "hand", detail, _masks(index, reaches_objects=True), rgba(arm.color))
-    gripper.add_fingers(spec, hand, arm.name, detail, _masks(index, reaches_objects=True))
+    for side in (-1, 1):
+        add_tile(spec, hand, arm.symbol, 0.016, (0.0325 * side, 0.0, 0.018), (side, 0, 0))
+    gripper.add_fingers(spec, hand, arm.name, _masks(index, reaches_objects=True))
 
 
 def _masks(index: int, *, reaches_objects: bool) -> dict[str, int]:

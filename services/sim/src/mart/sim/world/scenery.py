@@ -11,12 +11,14 @@ import mujoco
 import numpy as np
 
 from mart.protocol.tasks import Task
+from mart.sim.world import tabletop
 from mart.sim.world.palette import rgba
+from mart.sim.world.shadows import add_shadow, add_shadow_material
 
 TABLE_HALF_M = (0.60, 0.55)
 _TABLE_THICKNESS_M = 0.04
 FLOOR_Z_M = -0.75
-_BOX = mujoco.mjtGeom.mjGEOM_BOX
+_BOX, _PLANE, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_CYLINDER
 
 
 @dataclass(frozen=True)
@@ -39,26 +41,44 @@ def configure(spec: mujoco.MjSpec, timestep_s: float) -> None:
     # The dense solver needs up to 45 ms for the tick in which a second gripper closes.
     option.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
     visual = spec.visual
-    visual.headlight.ambient, visual.headlight.diffuse, visual.headlight.specular = (0.3,) * 3, (0.35,) * 3, (0,) * 3
     visual.map.znear = 0.02
     visual.quality.offsamples = 0
     visual.global_.offwidth, visual.global_.offheight = 1280, 960
 
 
 def add_room(spec: mujoco.MjSpec, task: Task) -> None:
-    _add_materials(spec)
-    world = spec.worldbody
-    world.add_light(type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=(-0.3, 0.4, -1), diffuse=(0.4,) * 3, castshadow=False)
+    _add_materials(spec, task)
+    add_shadow_material(spec)
+    _add_light(spec)
+    world, looks = spec.worldbody, {"contype": 0, "conaffinity": 0}
+    world.add_geom(type=_PLANE, size=(4, 4, 0.1), pos=(0, 0, FLOOR_Z_M), material="floor", **looks)
+    half_x, half_y = TABLE_HALF_M
     world.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_PLANE, size=(3, 3, 0.1), pos=(0, 0, FLOOR_Z_M), material="floor", contype=0, conaffinity=0
+        name="table", type=_BOX, size=(half_x, half_y, _TABLE_THICKNESS_M / 2), pos=(0, 0, -_TABLE_THICKNESS_M / 2), material="edge"
     )
-    world.add_geom(
-        name="table", type=_BOX, size=(*TABLE_HALF_M, _TABLE_THICKNESS_M / 2), pos=(0, 0, -_TABLE_THICKNESS_M / 2), material="table"
-    )
+    world.add_geom(type=_PLANE, size=(half_x, half_y, 0.1), pos=(0, 0, 0.0003), material="table", **looks)
+    for x in (-1, 1):
+        for y in (-1, 1):
+            leg = (x * (half_x - 0.06), y * (half_y - 0.06), (FLOOR_Z_M - _TABLE_THICKNESS_M) / 2)
+            size = (0.022, (-FLOOR_Z_M - _TABLE_THICKNESS_M) / 2, 0)
+            world.add_geom(type=_CYLINDER, size=size, pos=leg, material="metal", **looks)
     for arm in task.arms:
         x, y, _ = arm.pose_base_in_world.position
-        world.add_geom(
-            type=_BOX, size=(0.11, 0.11, -FLOOR_Z_M / 2), pos=(x, y, FLOOR_Z_M / 2), material="metal", contype=0, conaffinity=0
+        world.add_geom(type=_CYLINDER, size=(0.10, -FLOOR_Z_M / 2 - 0.012, 0), pos=(x, y, FLOOR_Z_M / 2 - 0.012), material="metal", **looks)
+        world.add_geom(type=_CYLINDER, size=(0.125, 0.012, 0), pos=(x, y, -0.012), material="paint", rgba=rgba(arm.color), **looks)
+        add_shadow(spec, arm.name, radius_m=0.065, tint=arm.color)
+
+
+def _add_light(spec: mujoco.MjSpec) -> None:
+    headlight = spec.visual.headlight
+    headlight.ambient, headlight.diffuse, headlight.specular = (0.42,) * 3, (0.18,) * 3, (0.0,) * 3
+    for direction, strength in (((-0.45, 0.55, -1.0), 0.42), ((0.6, -0.2, -0.7), 0.12)):
+        spec.worldbody.add_light(
+            type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
+            dir=direction,
+            diffuse=(strength,) * 3,
+            specular=(0.25 * strength,) * 3,
+            castshadow=False,
         )
 
 
@@ -74,17 +94,29 @@ def add_camera(spec: mujoco.MjSpec, camera: Camera) -> None:
     spec.worldbody.add_camera(name=camera.name, pos=position, quat=quaternion, fovy=camera.fovy_deg)
 
 
-def _add_materials(spec: mujoco.MjSpec) -> None:
+def _add_materials(spec: mujoco.MjSpec, task: Task) -> None:
     spec.add_texture(
-        name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
-        rgb1=rgba("#E8EDF2")[:3], rgb2=rgba("#B9C4CF")[:3], width=64, height=64,
+        name="sky",
+        type=mujoco.mjtTexture.mjTEXTURE_SKYBOX,
+        builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
+        rgb1=rgba("#F4F6F8")[:3],
+        rgb2=rgba("#C3CBD3")[:3],
+        width=64,
+        height=384,
     )
+    art = tabletop.picture(task, *TABLE_HALF_M)
+    texture = spec.add_texture(
+        name="table", type=mujoco.mjtTexture.mjTEXTURE_2D, width=art.shape[1], height=art.shape[0], nchannel=3
+    )
+    texture.data = art.tobytes()
     for name, color, specular, shininess in (
-        ("floor", "#C9CCD1", 0.0, 0.0),
-        ("table", "#E6DFD3", 0.1, 0.1),
-        ("metal", "#6B7178", 0.3, 0.3),
-        ("shell", "#F2F3F4", 0.4, 0.4),
-        ("rubber", "#33373B", 0.1, 0.1),
-        ("matt", "#FFFFFF", 0.1, 0.1),
+        ("floor", "#AEB5BC", 0.0, 0.0),
+        ("table", "#FFFFFF", 0.0, 0.0),
+        ("edge", "#8C8577", 0.0, 0.0),
+        ("metal", "#5B636B", 0.3, 0.3),
+        ("shell", "#F1F2F3", 0.35, 0.5),
+        ("paint", "#FFFFFF", 0.25, 0.4),
+        ("rubber", "#2E3236", 0.1, 0.1),
     ):
         spec.add_material(name=name, rgba=rgba(color), specular=specular, shininess=shininess)
+    spec.material("table").textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "table"

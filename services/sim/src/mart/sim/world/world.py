@@ -22,6 +22,7 @@ from mart.sim.world import kinematics, model, osc, panda
 from mart.sim.world.arm import MeasuredArm
 from mart.sim.world.gripper import STROKE_M, finger_target_m
 from mart.sim.world.meshes import Detail
+from mart.sim.world.shadows import Shadows
 from mart.sim.world.progress import Progress, next_success_ticks
 
 Array = NDArray[np.float64]
@@ -56,6 +57,7 @@ class World:
         limits = scene.task.limits
         self._action_scale = np.array([limits.step_m] * 3 + [limits.step_rad] * 3 + [-STROKE_M])
         self._arms = {arm.name: MeasuredArm(self.model, self.data, arm.name) for arm in scene.task.arms}
+        self._shadows = Shadows(self.model, self.data)
         blocks = self.data.userdata[: osc.BLOCK_SIZE * len(self.arms)].reshape(len(self.arms), osc.BLOCK_SIZE)
         self._modes, self._commands, self._postures = blocks[:, osc.MODE], blocks[:, osc.COMMAND], blocks[:, osc.POSTURE]
 
@@ -104,6 +106,7 @@ class World:
             self._postures[index] = joints
         self._commands[:] = (*(0.0,) * 6, finger_target_m(0.0))
         self._modes[:] = osc.NEW_DELTA
+        self._measure()
         mujoco.mj_forward(self.model, self.data)
 
     def tool_pose_in_base(self, arm: str) -> Pose:
@@ -147,7 +150,7 @@ class World:
         self._commands[:] = np.clip(actions, -1.0, 1.0) * self._action_scale
         self._modes[:] = osc.NEW_DELTA
         mujoco.mj_step(self.model, self.data, self._substeps)
-        mujoco.mj_kinematics(self.model, self.data)  # poses of the new state, not of the last substep's beginning
+        self._measure()  # of the new state: mj_step leaves the poses of its last substep's beginning
         if any(self.data.warning[warning].number for warning in _FATAL):
             raise Diverged(self.sim_time_s)
         self.data.userdata[-1] = next_success_ticks(int(self.data.userdata[-1]), self._judge().success_now)
@@ -168,7 +171,7 @@ class World:
             raise InvalidInput("A state with NaN or infinity was given; every number must be finite.")
         mujoco.mj_resetData(self.model, self.data)
         mujoco.mj_setState(self.model, self.data, numbers, _STATE)
-        mujoco.mj_kinematics(self.model, self.data)
+        self._measure()
 
     def observations(self) -> dict[str, Array]:
         """All that any operator sees, in the catalogue's order."""
@@ -196,6 +199,11 @@ class World:
             success=ticks >= self.task.success_hold_ticks,
             failed=judgement.failed,
         )
+
+    def _measure(self) -> None:
+        """Brings poses up to date with the positions."""
+        mujoco.mj_kinematics(self.model, self.data)
+        self._shadows.follow()
 
     def _judge(self) -> Judgement:
         return self._scene.judge(self.model, self.data)

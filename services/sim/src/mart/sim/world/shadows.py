@@ -1,0 +1,78 @@
+"""Soft spots on the table under the tools and the things: they show height, which a single picture hides.
+
+Real shadows would double the time of a software-rendered frame. The spots are mocap bodies, so they travel with the
+state and look the same to everybody who renders it; nothing collides with them.
+"""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.sim.world.palette import rgba
+
+_PIXELS = 64
+_DARKNESS = 0.62
+_ALPHA = 0.9
+_Z_M = 0.0008
+
+
+class Shadows:
+    """Keeps each spot under its caster."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        casters = [
+            (model.body(i).name.removesuffix("/shadow"), int(model.body_mocapid[i]))
+            for i in range(model.nbody)
+            if model.body_mocapid[i] >= 0
+        ]
+        self._tools = [(mocap, model.site(f"{name}/tool").id) for name, mocap in casters if _is_arm(model, name)]
+        self._things = [(mocap, model.body(name).id) for name, mocap in casters if not _is_arm(model, name)]
+        self._data = data
+
+    def follow(self) -> None:
+        data = self._data
+        for mocap, site in self._tools:
+            data.mocap_pos[mocap, :2] = data.site_xpos[site, :2]
+        for mocap, body in self._things:
+            data.mocap_pos[mocap, :2] = data.xpos[body, :2]
+
+
+def add_shadow_material(spec: mujoco.MjSpec) -> None:
+    image = _spot()
+    texture = spec.add_texture(
+        name="shadow", type=mujoco.mjtTexture.mjTEXTURE_2D, width=_PIXELS, height=_PIXELS, nchannel=4
+    )
+    texture.data = image.tobytes()
+    # An alpha below 1 sends the geom through the blended pass, where the texture's own alpha counts.
+    material = spec.add_material(name="shadow", rgba=(0, 0, 0, _ALPHA), specular=0, shininess=0)
+    material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "shadow"
+
+
+def add_shadow(spec: mujoco.MjSpec, caster: str, radius_m: float, tint: str = "#000000") -> None:
+    """caster: the name of an arm, whose tool casts it, or of a body. `radius_m` is where it has faded away."""
+    spot = spec.worldbody.add_body(name=f"{caster}/shadow", mocap=True)
+    spot.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_PLANE,
+        size=(radius_m, radius_m, 0.1),
+        pos=(0, 0, _Z_M),
+        material="shadow",
+        rgba=(*0.5 * rgba(tint)[:3], _ALPHA),
+        contype=0,
+        conaffinity=0,
+    )
+
+
+def _spot() -> NDArray[np.uint8]:
+    """White, shape (rows, columns, 4), opaque in the middle and fading to nothing."""
+    axis = np.linspace(-1, 1, _PIXELS)
+    radius = np.hypot(*np.meshgrid(axis, axis))
+    fade = np.clip(1.0 - radius, 0.0, 1.0)
+    image = np.ones((_PIXELS, _PIXELS, 4))
+    image[..., 3] = _DARKNESS * fade * fade * (3 - 2 * fade)
+    return (255 * image).round().astype(np.uint8)
+
+
+def _is_arm(model: mujoco.MjModel, name: str) -> bool:
+    return mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{name}/tool") >= 0
