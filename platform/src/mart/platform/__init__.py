@@ -1,0 +1,1 @@
+"""MART on one machine: starts all services, and the sessions that emulated people hold through them."""

@@ -1,0 +1,60 @@
+"""A real Chromium with one operator page per seat, through Playwright."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from mart.platform.visitor import Visitor
+from mart.protocol.errors import Unavailable
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+# Headless, with software rendering, and without the calls home that a closed network turns into noise.
+ARGUMENTS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+
+
+def chromium_path() -> str:
+    """Raises Unavailable where no Chromium is installed."""
+    for name in ("chromium", "chromium-browser", "google-chrome"):
+        if path := shutil.which(name):
+            return path
+    raise Unavailable("No Chromium was found; install Debian's package: apt-get install chromium.")
+
+
+@contextlib.contextmanager
+def running_browser() -> Iterator[Browser]:
+    """Raises Unavailable where Playwright or Chromium is missing."""
+    path = chromium_path()
+    try:
+        from playwright.sync_api import sync_playwright
+    except ImportError as error:
+        raise Unavailable("Playwright is missing; run `pip install mart-platform[demo]`.") from error
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
+        with contextlib.closing(browser):
+            yield browser
+
+
+def open_operator_page(browser: Browser, visitor: Visitor, url: str, room: str, arm: str) -> Page:
+    """The operator's page of a seat that `visitor` holds, once its picture runs."""
+    context = browser.new_context(viewport={"width": 960, "height": 720}, ignore_https_errors=True)
+    context.add_cookies(visitor.cookies())  # type: ignore[arg-type]
+    page = context.new_page()
+    page.goto(f"{url}rooms/{room}/arms/{arm}")
+    page.wait_for_function(
+        "() => { const v = document.querySelector('video'); return v && v.videoWidth > 0 }"
+    )
+    return page

@@ -1,0 +1,183 @@
+"""The platform's commands. Heavy modules are imported inside them: `mart --help` loads this file."""
+
+from __future__ import annotations
+
+import json
+import logging
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from mart.platform.plan import DEFAULT_TASK
+from mart.protocol.cli import json_option, print_result
+from mart.protocol.errors import InvalidInput, NotFound, Unavailable
+
+if TYPE_CHECKING:
+    from mart.platform.collection import Order
+
+_SKILLS = click.Choice(["expert", "average", "novice"])
+
+
+@click.command()
+@click.option("--task", default=DEFAULT_TASK, show_default=True, help="Name of the task.")
+@click.option("--room", default="room-1", show_default=True, help="Id of the room.")
+@click.option("--control-hz", default=20.0, show_default=True, help="Ticks a second, at most.")
+@click.option(
+    "--host", default="127.0.0.1", show_default=True, help="0.0.0.0 lets phones and other laptops in."
+)
+@click.option("--port", default=8443, show_default=True, help="Port of the pages.")
+@click.option(
+    "--public-host", default="", help="Name or address that people and phones use, where it isn't --host."
+)
+@json_option
+def run(
+    task: str, room: str, control_hz: float, host: str, port: int, public_host: str, as_json: bool
+) -> None:
+    """Run the whole platform with one room, until Ctrl-C."""
+    from mart.platform.plan import Options
+    from mart.platform.supervise import running_platform
+    from mart.protocol.settings import Settings
+    from mart.protocol.tasks import get_task
+
+    get_task(task)
+    settings = Settings()
+    stop_signals = {signal.SIGINT, signal.SIGTERM}
+    options = Options(settings.data_dir, settings.router, host, port, public_host, room, task, control_hz)
+    click.echo("Starting MART …", err=True)
+    with running_platform(options) as platform:
+        result = {"url": platform.url, "join_code": platform.join_code, "room": room, "task": task}
+        text = f"\n  Lobby      {platform.url}\n  Join code  {platform.join_code}\n\nCtrl-C stops everything."
+        print_result(result, text, as_json)
+        signal.pthread_sigmask(signal.SIG_BLOCK, stop_signals)
+        signal.sigwait(stop_signals)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, stop_signals)
+        click.echo("Stopping MART …", err=True)
+
+
+@click.command()
+@click.option("--task", default=DEFAULT_TASK, show_default=True, help="Name of the task.")
+@click.option("--episodes", default=3, show_default=True, type=click.IntRange(1, 1000))
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0))
+@click.option("--control-hz", default=20.0, show_default=True, help="Ticks a second, at most.")
+@click.option("--out", default=Path("data/demo"), show_default=True, type=click.Path(path_type=Path))
+@json_option
+def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, as_json: bool) -> None:
+    """Record episodes with nobody there: one emulated phone and one real browser per seat, over WebRTC.
+
+    Prints one JSON line per episode, with or without --json.
+    """
+    from mart.platform.collection import Order
+
+    _print_episodes(Order(task, episodes, "expert", seed, control_hz, out, browsers=True))
+
+
+@click.command()
+@click.option("--task", default=DEFAULT_TASK, show_default=True, help="Name of the task.")
+@click.option("--episodes", default=1, show_default=True, type=click.IntRange(1, 100_000))
+@click.option(
+    "--operators", help="Who drives each arm, separated by commas.  [default: script for every arm]"
+)
+@click.option("--skill", default="expert", show_default=True, type=_SKILLS, help="Of the scripted experts.")
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0))
+@click.option("--control-hz", default=20.0, show_default=True, help="Ticks a second, at most.")
+@click.option("--out", default=Path("data/collected"), show_default=True, type=click.Path(path_type=Path))
+@json_option
+def collect(
+    *,
+    task: str,
+    episodes: int,
+    operators: str | None,
+    skill: str,
+    seed: int,
+    control_hz: float,
+    out: Path,
+    as_json: bool,
+) -> None:
+    """Collect episodes without people: scripted experts hold emulated phones, in real time, over WebRTC.
+
+    Prints one JSON line per episode, with or without --json.
+    """
+    from mart.platform.collection import Order
+
+    _require_scripts(task, operators)
+    _print_episodes(Order(task, episodes, skill, seed, control_hz, out, browsers=False))
+
+
+@click.command()
+@json_option
+def rooms(as_json: bool) -> None:
+    """Show what is open, who sits where, the real-time factor, and who is being waited for."""
+    from mart.platform import rooms as view
+    from mart.protocol.bus.zenoh_bus import ZenohBus
+    from mart.protocol.settings import Settings
+
+    with ZenohBus.connect(Settings().router, wait_for_router=False) as bus:
+        found = view.open_rooms(bus)
+    text = "\n".join(map(view.in_words, found)) or "No room is open. `make run` opens one."
+    print_result({"rooms": [view.as_json(status) for status in found]}, text, as_json)
+
+
+@click.command()
+@json_option
+def doctor(as_json: bool) -> None:
+    """Name what is missing or unreachable, layer by layer, and the mend."""
+    from mart.platform.doctor import examine
+    from mart.protocol.settings import Settings
+
+    findings = list(examine(Settings()))
+    lines = [
+        f"{'ok ' if f.ok else 'BAD'}  {f.layer:<14} {f.found}{f'  →  {f.mend}' if f.mend else ''}"
+        for f in findings
+    ]
+    ok = all(finding.ok for finding in findings)
+    print_result({"ok": ok, "layers": [finding.as_json() for finding in findings]}, "\n".join(lines), as_json)
+    click.get_current_context().exit(0 if ok else 1)
+
+
+@click.command()
+@click.argument("kind")
+@click.argument("id", required=False)
+@json_option
+def alive(kind: str, id: str | None, as_json: bool) -> None:
+    """Tell whether a service is alive, for health checks: KIND is sim, replica, gateway, recorder, web, …"""
+    from mart.protocol import keys
+    from mart.protocol.bus.zenoh_bus import ZenohBus
+    from mart.protocol.settings import Settings
+
+    with ZenohBus.connect(Settings().router, wait_for_router=False) as bus:
+        found = bus.alive(keys.alive(kind, id) if id else keys.alive_of(kind))
+    if not found:
+        raise Unavailable(f"No {kind}{f' {id}' if id else ''} is alive; start it with `mart {kind}`.")
+    ids = [keys.last_of(key) for key in found]
+    print_result({"kind": kind, "ids": ids}, f"{kind}: {', '.join(ids)}", as_json)
+
+
+def _print_episodes(order: Order) -> None:
+    """One JSON line per episode as it is saved; for people, the count on standard error."""
+    from mart.platform.collection import collect_episodes
+
+    logging.getLogger("httpx").setLevel(logging.WARNING)
+    good = 0
+    for episode in collect_episodes(order):
+        good += episode.outcome == "success"
+        line = episode.as_json()
+        click.echo(json.dumps({**line, "path": str(order.out / line["path"])}))
+    click.echo(
+        f"{good} of {order.episodes} episodes succeeded; they are in {order.out / 'episodes'}.", err=True
+    )
+
+
+def _require_scripts(task: str, operators: str | None) -> None:
+    from mart.protocol.tasks import get_task
+
+    if operators is None:
+        return
+    arms = len(get_task(task).arms)
+    given = operators.split(",")
+    if len(given) != arms:
+        raise InvalidInput(f"{len(given)} operators were given; {task} has {arms} arms: name one for each.")
+    for operator in given:
+        if operator != "script":
+            raise NotFound.named("operator for collecting", operator, ["script"])

@@ -1,0 +1,61 @@
+"""`mart rooms`: what is open, who sits where, and who is being waited for."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from typing import Any
+
+from mart.protocol import keys
+from mart.protocol.bus.base import Bus, Sample
+from mart.protocol.codec import decode
+from mart.protocol.messages import RoomStatus, barrier_word, operator_word, phase_word
+
+_STATUS_TIMEOUT_S = 2.0  # five times a second is promised
+
+
+def open_rooms(bus: Bus) -> list[RoomStatus]:
+    """The newest status of every room whose sim is alive, sorted by room; a silent one is left out."""
+    awaited = {keys.last_of(key) for key in bus.alive(keys.alive_of("sim"))}
+    heard: dict[str, RoomStatus] = {}
+    complete = threading.Event()
+
+    def on_status(sample: Sample) -> None:
+        status = decode(RoomStatus, sample.payload)
+        heard[status.room] = status
+        if awaited <= heard.keys():
+            complete.set()
+
+    with contextlib.closing(bus.subscribe(keys.EVERY_STATUS, on_status)):
+        if awaited:
+            complete.wait(_STATUS_TIMEOUT_S)
+    return [heard[room] for room in sorted(heard)]
+
+
+def as_json(status: RoomStatus) -> dict[str, Any]:
+    return {
+        "room": status.room,
+        "task": status.task,
+        "control_hz": status.control_hz,
+        "tick": status.tick,
+        "real_time_factor": round(status.real_time_factor, 3),
+        "barrier": barrier_word(status.barrier),
+        "waiting_for": [{"arm": w.arm, "since_s": round(w.since_s, 2)} for w in status.waiting_for],
+        "seats": [
+            {"arm": seat.arm, "operator": operator_word(seat.operator), "name": seat.name}
+            for seat in status.seats
+        ],
+        "episode": {"number": status.episode.number, "phase": phase_word(status.episode.phase)},
+        "episodes_saved": status.episodes_saved,
+        "episodes_good": status.episodes_good,
+    }
+
+
+def in_words(status: RoomStatus) -> str:
+    seats = ", ".join(f"{seat.arm} {seat.name or operator_word(seat.operator)}" for seat in status.seats)
+    waiting = ", ".join(f"{w.arm} for {w.since_s:.1f} s" for w in status.waiting_for)
+    line = (
+        f"{status.room}  {status.task}  {seats}  {phase_word(status.episode.phase)}"
+        f"  real-time factor {status.real_time_factor:.2f}"
+    )
+    return f"{line}  waiting for {waiting}" if waiting else line

@@ -1,0 +1,107 @@
+"""A collection session of a seated crew: episode after episode, from ready to the saved file."""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from mart.platform.crew import Person
+from mart.protocol import keys
+from mart.protocol.bus.base import Bus, Sample
+from mart.protocol.codec import decode
+from mart.protocol.errors import Unavailable
+from mart.protocol.messages import Event, outcome_word
+
+_EPISODE_TIMEOUT_S = 120.0
+_SAVE_TIMEOUT_S = 60.0
+
+
+@dataclass(frozen=True)
+class Episode:
+    """One recorded episode. Motion to photon is None where no page was watching."""
+
+    number: int
+    path: str
+    outcome: str
+    ticks: int
+    real_time_factor: float
+    verified: bool
+    verdict: str
+    latencies: tuple[Event.Latency, ...]
+
+    def as_json(self) -> dict[str, Any]:
+        worst = max(self.latencies, key=lambda latency: latency.p95_ms, default=None)
+        return {
+            "path": self.path,
+            "outcome": self.outcome,
+            "ticks": self.ticks,
+            "real_time_factor": round(self.real_time_factor, 4),
+            "motion_to_photon_p50_ms": round(worst.p50_ms, 1) if worst else None,
+            "motion_to_photon_p95_ms": round(worst.p95_ms, 1) if worst else None,
+            "motion_to_photon": {latency.arm: _latency_json(latency) for latency in self.latencies},
+            "verified": self.verified,
+            "verdict": self.verdict,
+        }
+
+
+class Session:
+    """Listens to a room's events from the first moment, so that none is missed between two calls."""
+
+    def __init__(self, bus: Bus, room: str) -> None:
+        self._events: queue.Queue[Event] = queue.Queue()
+        self._latest_latency: dict[str, Event.Latency] = {}
+        self._subscription = bus.subscribe(keys.event(room).key, self._on_event)
+        self._room = room
+
+    def run_episode(self, people: Sequence[Person]) -> Episode:
+        """Everyone says ready; returns when the file is on disk.
+
+        Raises Unavailable where no episode starts, ends or is saved in time.
+        """
+        self._latest_latency.clear()
+        for person in people:
+            person.visitor.act(self._room, person.arm, "ready")
+        started = self._await("episode_started", _EPISODE_TIMEOUT_S)
+        ended = self._await("episode_ended", _EPISODE_TIMEOUT_S)
+        saved = self._await("episode_saved", _SAVE_TIMEOUT_S)
+        wall_s = (ended.wall_ns - started.wall_ns) / 1e9
+        return Episode(
+            number=ended.episode_ended.number,
+            path=saved.episode_saved.path,
+            outcome=outcome_word(ended.episode_ended.outcome),
+            ticks=ended.episode_ended.ticks,
+            real_time_factor=ended.episode_ended.ticks / started.episode_started.control_hz / wall_s,
+            verified=saved.episode_saved.verified,
+            verdict=saved.episode_saved.verdict,
+            latencies=tuple(latency for _, latency in sorted(self._latest_latency.items())),
+        )
+
+    def close(self) -> None:
+        self._subscription.close()
+
+    def _on_event(self, sample: Sample) -> None:
+        self._events.put(decode(Event, sample.payload))
+
+    def _await(self, what: str, timeout_s: float) -> Event:
+        with contextlib.suppress(queue.Empty):
+            while True:
+                event = self._events.get(timeout=timeout_s)
+                if event.WhichOneof("what") == what:
+                    return event
+                if event.HasField("latency"):
+                    self._latest_latency[event.latency.arm] = event.latency
+        raise Unavailable(
+            f"{self._room} sent no {what.replace('_', ' ')} within {timeout_s:g} s; `mart rooms` tells why."
+        )
+
+
+def _latency_json(latency: Event.Latency) -> dict[str, Any]:
+    return {
+        "p50_ms": round(latency.p50_ms, 1),
+        "p95_ms": round(latency.p95_ms, 1),
+        "frames": latency.frames,
+        "stages_p50_ms": {stage.name: round(stage.p50_ms, 2) for stage in latency.stages},
+    }

@@ -1,0 +1,72 @@
+"""One person at the pages, without a screen: joins, takes a seat, pairs a phone, says ready, over HTTPS."""
+
+from __future__ import annotations
+
+import ssl
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from mart.protocol.errors import Unavailable, from_wire
+
+_TIMEOUT_S = 15.0
+
+
+class Visitor:
+    """A session at the lobby. `url` ends with '/'; `certificate` is the site's own, the only one trusted."""
+
+    def __init__(self, url: str, certificate: Path) -> None:
+        context = ssl.create_default_context(cafile=str(certificate))
+        self._client = httpx.Client(
+            base_url=url, verify=context, timeout=_TIMEOUT_S, headers={"Origin": url.rstrip("/")}
+        )
+
+    def join(self, code: str, name: str) -> None:
+        self._request("POST", "api/join", {"code": code, "name": name})
+
+    def rooms(self) -> list[dict[str, Any]]:
+        rooms: list[dict[str, Any]] = self._request("GET", "api/rooms")["rooms"]
+        return rooms
+
+    def take(self, room: str, arm: str) -> None:
+        self._request("POST", f"api/rooms/{room}/seats/{arm}", {"operator": "human"})
+
+    def assign(self, room: str, arm: str, operator: str) -> None:
+        """Sets a free seat to script or hold."""
+        self._request("POST", f"api/rooms/{room}/seats/{arm}", {"operator": operator})
+
+    def leave(self, room: str, arm: str) -> None:
+        self._request("DELETE", f"api/rooms/{room}/seats/{arm}")
+
+    def pair(self, room: str, arm: str) -> str:
+        """The address that the phone opens; its code works once."""
+        url: str = self._request("POST", f"api/rooms/{room}/seats/{arm}/pair")["url"]
+        return url
+
+    def act(self, room: str, arm: str, action: str) -> None:
+        """ready, unready, success, failure, discard or reset."""
+        self._request("POST", f"api/rooms/{room}/episode", {"action": action, "arm": arm})
+
+    def cookies(self) -> list[dict[str, str]]:
+        """The session, for a browser that goes on with it."""
+        return [
+            {"name": cookie.name, "value": cookie.value or "", "url": str(self._client.base_url)}
+            for cookie in self._client.cookies.jar
+        ]
+
+    def close(self) -> None:
+        self._client.close()
+
+    def _request(self, method: str, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
+        try:
+            response = self._client.request(method, path, json=body)
+        except httpx.HTTPError as error:
+            raise Unavailable(
+                f"{method} {self._client.base_url}{path} failed: {error}. Is the web service up?"
+            ) from error
+        answer: dict[str, Any] = response.json()
+        if response.is_error:
+            error_ = answer.get("error", {})
+            raise from_wire(error_.get("code", ""), error_.get("message", response.text))
+        return answer
