@@ -31,7 +31,7 @@ def load_model(message: Model) -> mujoco.MjModel:
         return mujoco.MjModel.from_binary_path(_FILE, {_FILE: message.mjb})
     except ValueError as error:
         raise Corrupt(
-            f"A model of MuJoCo {message.mujoco_version} was given that MuJoCo {mujoco.__version__} cannot load: {error}"
+            f"A model of MuJoCo {message.mujoco_version} was given; MuJoCo {mujoco.__version__} cannot load it: {error}"
         ) from error
 
 

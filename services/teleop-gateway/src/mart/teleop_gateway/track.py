@@ -6,6 +6,7 @@ import asyncio
 import fractions
 from collections import deque
 from collections.abc import Callable
+from typing import Any
 
 import av
 from aiortc import MediaStreamTrack
@@ -48,7 +49,7 @@ class EncodedTrack(MediaStreamTrack):
         self._queue.append(encoded)
         self._arrived.set()
 
-    async def recv(self) -> av.Packet[av.VideoStream]:
+    async def recv(self) -> av.Packet[Any]:
         if not self._started:
             self._started = True
             self._request_keyframe()

@@ -1,0 +1,135 @@
+"""A browser as the gateway sees it: receives the picture, talks on both channels. aiortc on both sides."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+from collections.abc import AsyncIterator, Awaitable, Callable
+from typing import Any
+
+import numpy as np
+from aiortc import RTCConfiguration, RTCDataChannel, RTCPeerConnection, RTCRtpReceiver, RTCSessionDescription
+from av import VideoFrame
+
+from mart.protocol import clock
+from mart.protocol.tokens import Role
+from mart.teleop_gateway import channel, tick_code
+from mart.teleop_gateway.aiortc_hooks import offer_playout_delay
+from mart.teleop_gateway.frame import Flag, PhoneFrame
+
+Exchange = Callable[[str], Awaitable[str]]
+
+
+class Browser:
+    """One peer of role `browser`, `viewer` or `phone`."""
+
+    def __init__(self, role: Role = Role.BROWSER, codec: str = "H264") -> None:
+        offer_playout_delay()
+        self.connection = RTCPeerConnection(RTCConfiguration([]))
+        self.told: list[dict[str, Any]] = []
+        self._told_more = asyncio.Event()
+        self._opened = asyncio.Event()
+        self._sequence = 0
+        self.status = self._channel("status")
+        self.status.on("message", self._on_status)
+        self.status.on("open", self._opened.set)
+        self.pose = self._channel("pose") if role is not Role.VIEWER else None
+        self.receiver: RTCRtpReceiver | None = None
+        if role is not Role.PHONE:
+            transceiver = self.connection.addTransceiver("video", direction="recvonly")
+            codecs = [c for c in RTCRtpReceiver.getCapabilities("video").codecs if c.name in {codec, "rtx"}]
+            transceiver.setCodecPreferences(codecs)
+            self.receiver = transceiver.receiver
+
+    async def connect(self, exchange: Exchange) -> None:
+        """Returns when the channels are open; raises what `exchange` raises."""
+        await self.connection.setLocalDescription(await self.connection.createOffer())
+        answer = await exchange(self.connection.localDescription.sdp)
+        await self.connection.setRemoteDescription(RTCSessionDescription(answer, "answer"))
+        await asyncio.wait_for(self._opened.wait(), 10)
+
+    async def next_frame(self) -> VideoFrame:
+        assert self.receiver is not None
+        frame = await asyncio.wait_for(self.receiver.track.recv(), 10)
+        assert isinstance(frame, VideoFrame)
+        return frame
+
+    async def next_tick(self) -> int | None:
+        """Read out of the next picture."""
+        return tick_code.read((await self.next_frame()).to_ndarray(format="gray"))
+
+    def send_frame(self, frame: PhoneFrame | bytes) -> None:
+        assert self.pose is not None
+        self.pose.send(frame if isinstance(frame, bytes) else frame.encode())
+
+    def hand(self, epoch: int, position: tuple[float, float, float] = (0.0, 0.0, 0.0), **given: Any) -> PhoneFrame:
+        """The next frame of a hand that is level and aligned with the screen."""
+        self._sequence += 1
+        flags = Flag.TRACKING | Flag.SCREEN_ALIGNED | (Flag.CLUTCH if given.pop("clutch", False) else Flag(0))
+        sent_us = clock.monotonic_ns() // 1000
+        values = {"sequence": self._sequence, "gripper": 0.0, "quaternion_wxyz": (1.0, 0.0, 0.0, 0.0), **given}
+        return PhoneFrame(seat_epoch=epoch, seen_tick=0, sent_us=sent_us, position=position, flags=flags, **values)
+
+    async def drive(self, epoch: int, duration_s: float = 1e9, **given: Any) -> None:
+        """Sends frames at 60 Hz."""
+        end_s = clock.monotonic_s() + duration_s
+        while clock.monotonic_s() < end_s:
+            self.send_frame(self.hand(epoch, **given))
+            await asyncio.sleep(1 / 60)
+
+    async def wait_told(self, holds: Callable[[dict[str, Any]], bool], timeout_s: float = 10.0) -> dict[str, Any]:
+        """The next status message for which `holds`."""
+        seen = len(self.told)
+        async with asyncio.timeout(timeout_s):
+            while True:
+                for message in self.told[seen:]:
+                    if holds(message):
+                        return message
+                seen = len(self.told)
+                self._told_more.clear()
+                await self._told_more.wait()
+
+    async def synchronise(self) -> int:
+        """Pings once and tells the offset; returns it, nanoseconds."""
+        sent_us = clock.monotonic_ns() // 1000
+        self.status.send(channel.ping(sent_us))
+        pong = await self.wait_told(lambda m: m["type"] == "pong")
+        offset_ns = int(pong["gateway_ns"] - (sent_us + clock.monotonic_ns() // 1000) / 2 * 1000)
+        self.status.send(channel.clock_offset(offset_ns))
+        return offset_ns
+
+    async def close(self) -> None:
+        await self.connection.close()
+
+    def _channel(self, label: str) -> RTCDataChannel:
+        return self.connection.createDataChannel(label, ordered=False, maxRetransmits=0)
+
+    def _on_status(self, text: str) -> None:
+        self.told.append(json.loads(text))
+        self._told_more.set()
+
+
+@contextlib.asynccontextmanager
+async def connected(exchange: Exchange, role: Role = Role.BROWSER, codec: str = "H264") -> AsyncIterator[Browser]:
+    browser = Browser(role, codec)
+    try:
+        await browser.connect(exchange)
+        yield browser
+    finally:
+        await browser.close()
+
+
+@contextlib.asynccontextmanager
+async def in_background(work: Awaitable[None]) -> AsyncIterator[None]:
+    task = asyncio.ensure_future(work)
+    try:
+        yield
+    finally:
+        task.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await task
+
+
+def luma(frame: VideoFrame) -> np.ndarray[Any, np.dtype[np.uint8]]:
+    return frame.to_ndarray(format="gray")
