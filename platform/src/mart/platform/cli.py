@@ -33,7 +33,7 @@ _SKILLS = click.Choice(["expert", "average", "novice"])
 )
 @json_option
 def run(
-    task: str, room: str, control_hz: float, host: str, port: int, public_host: str, as_json: bool
+    *, task: str, room: str, control_hz: float, host: str, port: int, public_host: str, as_json: bool
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
     from mart.platform.plan import Options
