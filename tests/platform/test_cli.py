@@ -1,0 +1,38 @@
+from __future__ import annotations
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from mart.platform import cli
+from mart.protocol.errors import InvalidInput, MartError, NotFound, Unavailable
+from tests.support.processes import free_port
+
+
+def failure(command: str, *arguments: str) -> MartError:
+    result = CliRunner().invoke(getattr(cli, command), arguments)
+    assert isinstance(result.exception, MartError)
+    return result.exception
+
+
+def test_an_unknown_task_lists_the_known_ones() -> None:
+    assert isinstance(failure("run", "--task", "two_arm_multi_cube_lift"), NotFound)
+    assert "two_arm_multi_cube_lifting" in str(failure("collect", "--task", "nothing"))
+
+
+@pytest.mark.parametrize(
+    ("operators", "kind"),
+    [("script", InvalidInput), ("script,script,script", InvalidInput), ("script,robot", NotFound)],
+)
+def test_wrong_operators_are_refused_before_anything_starts(operators: str, kind: type[MartError]) -> None:
+    assert type(failure("collect", "--operators", operators)) is kind
+
+
+def test_without_a_router_commands_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MART_ROUTER", f"tcp/127.0.0.1:{free_port()}")
+    for command in (["rooms"], ["alive", "sim"]):
+        assert isinstance(failure(*command), Unavailable)
+    result = CliRunner().invoke(cli.doctor, ["--json"])
+    assert result.exit_code == 1
+    assert json.loads(result.output)["ok"] is False

@@ -1,0 +1,36 @@
+from __future__ import annotations
+
+from mart.platform.rooms import as_json, in_words, open_rooms
+from mart.protocol import keys
+from mart.protocol import messages as m
+from mart.protocol.bus.base import Closable, Handler
+from mart.protocol.bus.memory import MemoryBus, MemoryNetwork
+from mart.protocol.codec import encode
+from tests.protocol.message_examples import examples
+
+
+class Answering(MemoryBus):
+    """A bus on which a room tells its status as soon as somebody listens."""
+
+    def subscribe(self, key_expression: str, handler: Handler) -> Closable:
+        subscription = super().subscribe(key_expression, handler)
+        self.publisher(keys.status("room-1")).put(encode(examples()["RoomStatus"]))
+        return subscription
+
+
+def test_a_room_is_shown_with_its_people_and_whom_it_waits_for() -> None:
+    bus = Answering(MemoryNetwork())
+    bus.announce(keys.alive("sim", "room-1"))
+    (status,) = open_rooms(bus)
+    assert "arm0 Ana" in in_words(status)
+    assert "waiting for arm1 for 0.8 s" in in_words(status)
+    assert as_json(status)["waiting_for"] == [{"arm": "arm1", "since_s": 0.8}]
+    assert as_json(status)["seats"] == [{"arm": "arm0", "operator": "human", "name": "Ana"}]
+
+
+def test_no_sim_means_no_room_and_no_wait() -> None:
+    assert open_rooms(MemoryNetwork().connect()) == []
+
+
+def test_a_room_that_waits_for_nobody_says_nothing_of_waiting() -> None:
+    assert "waiting" not in in_words(m.RoomStatus(room="room-1", barrier=m.BARRIER_PHASE_RUNNING))
