@@ -1,0 +1,163 @@
+"""`mart recorder` and `mart episodes …`. Heavy modules are imported inside: `mart --help` loads this file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from mart.protocol import clock
+from mart.protocol.cli import json_option, print_result
+from mart.protocol.errors import InvalidInput
+from mart.recorder.settings import RecorderSettings
+
+if TYPE_CHECKING:
+    from mart.recorder.verify import Resimulate
+
+_path = click.argument("path", type=click.Path(path_type=Path))
+_paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
+_replica = click.option("--replica", help="Which replica re-simulates.  [default: replica-1]")
+
+
+@click.command()
+@click.option("--name", default="recorder-1", show_default=True, help="Id of this recorder.")
+@_replica
+def recorder(name: str, replica: str | None) -> None:
+    """Record every episode of every room into a file of its own."""
+    from mart.recorder.service import serve_recorder
+
+    serve_recorder(_settings(replica), name)
+
+
+@click.group()
+def episodes() -> None:
+    """Work on episode files or folders of them; without a path, on all that were recorded here."""
+
+
+@episodes.command("list")
+@_paths
+@json_option
+def list_episodes(paths: tuple[Path, ...], as_json: bool) -> None:
+    """List episodes: what they are, how they ended, whether they are verified."""
+    from mart.recorder import files, report
+
+    rows = files.rows(_given(paths))
+    print_result({"episodes": [report.listed(path, row) for path, row in rows]}, report.table(rows), as_json)
+
+
+@episodes.command()
+@_path
+@json_option
+def show(path: Path, as_json: bool) -> None:
+    """Show everything that is known about one episode."""
+    from mart.recorder import files, report
+    from mart.recorder.reader import EpisodeFile
+
+    file = EpisodeFile.open(path)
+    result = {**report.listed(path, files.row_of(path)), "metadata": file.strings}
+    print_result(result, report.details(result), as_json)
+
+
+@episodes.command()
+@_paths
+@_replica
+@json_option
+def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
+    """Step episodes again in a replica: do they follow bit for bit? The answer is kept as a label."""
+    from mart.recorder import files, labels
+    from mart.recorder.reader import EpisodeFile
+    from mart.recorder.verify import verify as verify_file
+
+    found = []
+    with _resimulation(replica) as resimulate:
+        for path in files.files(_given(paths)):
+            file = EpisodeFile.open(path)
+            said = verify_file(file, file.room, resimulate)
+            labels.say(path, labels.Kind.VERDICT, said.verdict.value, clock.wall_ns(), said.detail)
+            found.append({"path": str(path), "verdict": said.verdict.value, "detail": said.detail})
+    lines = [f"{entry['path']}: {entry['verdict']}. {entry['detail']}" for entry in found]
+    print_result({"episodes": found}, "\n".join(lines) or "There are no episodes.", as_json)
+    return 0 if all(entry["verdict"] == "verified" for entry in found) else 1
+
+
+@episodes.command()
+@_path
+@_replica
+@json_option
+def replay(path: Path, replica: str | None, as_json: bool) -> int:
+    """Step one episode again in a replica and report every stretch of ticks: where it agrees, where it does not."""
+    from mart.recorder import report
+    from mart.recorder.reader import EpisodeFile
+    from mart.recorder.verify import compare
+
+    file = EpisodeFile.open(path)
+    with _resimulation(replica) as resimulate:
+        stretches = list(compare(file, file.room, resimulate))
+    print_result(*report.replayed(path, stretches), as_json)
+    return 1 if any(stretch.different for stretch in stretches) else 0
+
+
+@episodes.command()
+@click.argument("folder", required=False, type=click.Path(path_type=Path, exists=True, file_okay=False))
+@_replica
+@json_option
+def repair(folder: Path | None, replica: str | None, as_json: bool) -> int:
+    """Make episodes of what crashes have left (.part files). Files that are being recorded are left alone."""
+    from mart.recorder import report
+    from mart.recorder.repair import repair_all
+    from mart.recorder.verify import verify as verify_file
+
+    root = folder or RecorderSettings().episodes_dir
+    with _resimulation(replica) as resimulate:
+        repaired = list(repair_all(root, lambda file, room: verify_file(file, room, resimulate)))
+    print_result(*report.repaired(repaired), as_json)
+    return 0 if all(one.saved for one in repaired) else 1
+
+
+@episodes.command()
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "--outcome", type=click.Choice(["success", "failure", "discarded"]), help="How it really ended."
+)
+@click.option("--note", help="Anything worth remembering.")
+@click.option("--drop/--undrop", default=None, help="Leave out of data sets, or take in again.")
+@json_option
+def label(
+    paths: tuple[Path, ...], outcome: str | None, note: str | None, drop: bool | None, as_json: bool
+) -> None:
+    """Say something about episodes. Files never change: labels are appended to labels.jsonl beside them."""
+    from mart.recorder import files, labels, report
+
+    use = None if drop is None else "drop" if drop else "keep"
+    said = {labels.Kind.OUTCOME: outcome, labels.Kind.NOTE: note, labels.Kind.USE: use}
+    if not any(value is not None for value in said.values()):
+        raise InvalidInput("Nothing to say was given; use --outcome, --note, --drop or --undrop.")
+    chosen = files.files(paths)
+    for path in chosen:
+        for kind, value in said.items():
+            if value is not None:
+                labels.say(path, kind, value, clock.wall_ns())
+    rows = [(path, files.row_of(path)) for path in chosen]
+    print_result({"episodes": [report.listed(path, row) for path, row in rows]}, report.table(rows), as_json)
+
+
+def _settings(replica: str | None) -> RecorderSettings:
+    return RecorderSettings() if replica is None else RecorderSettings(replica=replica)
+
+
+def _given(paths: tuple[Path, ...]) -> tuple[Path, ...]:
+    default = RecorderSettings().episodes_dir
+    return paths or ((default,) if default.exists() else ())
+
+
+@contextmanager
+def _resimulation(replica: str | None) -> Iterator[Resimulate]:
+    from mart.protocol.bus.zenoh_bus import ZenohBus
+    from mart.recorder import verify as verification
+
+    settings = _settings(replica)
+    with ZenohBus.connect(settings.router, wait_for_router=False) as bus:
+        yield verification.replica(bus, settings.replica)

@@ -1,0 +1,41 @@
+"""Which episode files a command line means."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from mart.protocol.errors import NotFound
+from mart.protocol.recording import SUFFIX
+from mart.recorder import labels
+from mart.recorder.catalog import Row, describe, list_folder, overlaid
+
+
+def files(paths: Iterable[Path]) -> list[Path]:
+    """Every episode file among `paths`: files themselves, folders with all that is in them. Raises NotFound."""
+    found: list[Path] = []
+    for path in paths:
+        if path.is_dir():
+            found += sorted(path.rglob(f"*{SUFFIX}"))
+        elif path.is_file():
+            found.append(path)
+        else:
+            raise NotFound(f"There is no {path}; name episode files or folders of them.")
+    return found
+
+
+def rows(paths: Iterable[Path]) -> list[tuple[Path, Row]]:
+    """What is known about each of them. A folder that is the root of its episodes is asked by its catalogue."""
+    found: list[tuple[Path, Row]] = []
+    for path in paths:
+        if path.is_dir() and labels.is_root(path):
+            found += [(path / row.path, row) for row in list_folder(path)]
+        else:
+            found += [(file, row_of(file)) for file in files([path])]
+    return found
+
+
+def row_of(path: Path) -> Row:
+    """One file by its metadata, and what was said about it afterwards."""
+    root = labels.root_of(path)
+    return overlaid(describe(path.resolve(), root), labels.fold(labels.read(root)))

@@ -1,0 +1,274 @@
+"""The recorder: what arrives for each room goes into the file of its episode; finished files are verified and named.
+
+The caller's thread takes arrivals and writes. Workers save (which waits for re-simulation), fetch models and repair
+what an earlier run has left. A file belongs to one of them at a time.
+"""
+
+from __future__ import annotations
+
+import copy
+import logging
+import shutil
+import sqlite3
+import threading
+from collections import Counter
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TypeVar
+
+from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
+from google.protobuf.message import Message
+
+from mart.protocol import clock, codec, keys
+from mart.protocol.bus import Bus
+from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.messages import Command, Event, Model, RoomStatus, State
+from mart.recorder.announce import Announcer
+from mart.recorder.capture import Arrival, Batch, Inbox, Kind
+from mart.recorder.catalog import list_folder
+from mart.recorder.episode import Episode, RoomFacts
+from mart.recorder.models import Models
+from mart.recorder.repair import log_repairs, repair_all
+from mart.recorder.room import Action, Closed, Opened, RoomTracker
+from mart.recorder.save import Verify, part_path, save
+from mart.recorder.writer import EpisodeWriter
+
+M = TypeVar("M", bound=Message)
+
+_log = logging.getLogger(__name__)
+
+FLUSH_S = 0.5
+_STEP_S = 0.05
+_LOG_EVERY_S = 1.0
+_MAX_ROOMS = 64
+_LOW_SPACE_BYTES = 1_000_000_000
+_LIMIT_BYTES = {
+    Kind.STATE: 4 << 20,
+    Kind.STATUS: 1 << 20,
+    Kind.EVENT: 1 << 20,
+    Kind.COMMAND: 64 << 10,
+    Kind.VIDEO: 8 << 20,
+}
+
+
+@dataclass
+class Room:
+    """One room and the file of its episode, while there is one."""
+
+    tracker: RoomTracker
+    file: EpisodeWriter | None = None
+    boot: int = 0
+    flushed_s: float = 0.0
+
+    @property
+    def facts(self) -> RoomFacts:
+        return self.tracker.facts
+
+
+@dataclass
+class Rejects:
+    """Counts what cannot be used and says so once a second at most."""
+
+    counts: Counter[str] = field(default_factory=Counter)
+    said_s: float = float("-inf")
+
+    def add(self, arrival: Arrival, error: InvalidInput, now_s: float) -> None:
+        self.counts[arrival.key] += 1
+        if now_s - self.said_s >= _LOG_EVERY_S:
+            self.said_s = now_s
+            _log.warning("%s is ignored (%d so far): %s", arrival.key, self.counts[arrival.key], error)
+
+
+class Recorder:
+    def __init__(self, data_dir: Path, bus: Bus, inbox: Inbox, verify: Verify) -> None:
+        self._root = data_dir.resolve() / "episodes"
+        self._inbox = inbox
+        self._verify = verify
+        self._models = Models(bus)
+        self._announcer = Announcer(bus, data_dir.resolve())
+        self._rooms: dict[str, Room] = {}
+        self._rejects = Rejects()
+        self._workers = ThreadPoolExecutor(max_workers=2, thread_name_prefix="save")
+
+    def run(self, stop: threading.Event) -> None:
+        """Records until told to stop, then saves what is open."""
+        self._root.mkdir(parents=True, exist_ok=True)
+        self._work("Repair", self._repair)
+        try:
+            while not stop.is_set():
+                self.step(_STEP_S)
+        finally:
+            self.close()
+
+    def step(self, timeout_s: float) -> None:
+        """Takes what has arrived, waiting `timeout_s` at most for something, and does what it is time for."""
+        batch = self._inbox.take(timeout_s)
+        now_s = clock.monotonic_s()
+        self._report_losses(batch)
+        for arrival in batch.arrivals:
+            try:
+                self._take(arrival, now_s)
+            except InvalidInput as error:
+                self._rejects.add(arrival, error, now_s)
+        for room in self._rooms.values():
+            self._apply(room, room.tracker.advance(now_s))
+            if room.file is not None and now_s - room.flushed_s >= FLUSH_S:
+                self._flush(room, now_s)
+
+    def close(self) -> None:
+        """Ends what is being recorded and waits until everything is saved."""
+        for room in self._rooms.values():
+            self._apply(room, room.tracker.finish("the recorder was stopped"))
+        self._workers.shutdown(wait=True)
+
+    def _take(self, arrival: Arrival, now_s: float) -> None:
+        """Raises InvalidInput for what cannot be used."""
+        room = self._room(arrival.room)
+        tracker, payload, arrived_ns = room.tracker, arrival.payload, arrival.arrived_ns
+        actions: Iterable[Action]
+        match arrival.kind:
+            case Kind.STATE:
+                state = _decode(State, arrival)
+                self._seen(room, arrival.room, state.room, state.boot)
+                actions = tracker.state(state, payload, arrived_ns, now_s)
+            case Kind.STATUS:
+                status = _decode(RoomStatus, arrival)
+                self._seen(room, arrival.room, status.room, status.boot)
+                actions = tracker.status(status, now_s)
+            case Kind.EVENT:
+                actions = tracker.event(_decode(Event, arrival), payload, arrived_ns, now_s)
+            case Kind.COMMAND:
+                arm = keys.arm_of(arrival.key)
+                actions = tracker.command(arm, _decode(Command, arrival), payload, arrived_ns)
+            case Kind.VIDEO:
+                camera = keys.camera_of(arrival.key)
+                actions = tracker.video(camera, _decode(CompressedVideo, arrival), payload, arrived_ns)
+        self._apply(room, actions)
+
+    def _room(self, name: str) -> Room:
+        if name not in self._rooms:
+            keys.state(name)  # raises InvalidInput for a name that no room can have
+            if len(self._rooms) >= _MAX_ROOMS:
+                raise InvalidInput(f"Room {name!r} is one too many; at most {_MAX_ROOMS} are recorded.")
+            self._rooms[name] = Room(RoomTracker(name))
+        return self._rooms[name]
+
+    def _seen(self, room: Room, name: str, said: str, boot: int) -> None:
+        if said != name:
+            raise InvalidInput(f"A message of room {said[:64]!r} was sent under the key of {name!r}.")
+        if room.boot != boot:
+            room.boot = boot
+            self._work("Fetching a model", self._models.fetch, name, boot)
+
+    def _apply(self, room: Room, actions: Iterable[Action]) -> None:
+        for action in actions:
+            try:
+                self._act(room, action)
+            except OSError as error:
+                self._give_up(room, error)
+                return
+
+    def _act(self, room: Room, action: Action) -> None:
+        if isinstance(action, Opened):
+            self._open(room, action.episode)
+        elif isinstance(action, Closed):
+            self._close(room, action.episode)
+        elif room.file is not None:
+            room.file.add(action)
+
+    def _open(self, room: Room, episode: Episode) -> None:
+        room.file = None
+        room.file = EpisodeWriter(part_path(self._root, episode, room.facts))
+        room.flushed_s = float("-inf")  # the first state is on the disk at once
+        _log.info("%s: recording episode %d into %s", episode.room, episode.number, room.file.path)
+        free = shutil.disk_usage(self._root).free
+        if free < _LOW_SPACE_BYTES:
+            text = f"The recorder's disk has {free / 1e6:.0f} MB left; make room before it is full."
+            self._announcer.notice(episode.room, "warning", text)
+
+    def _close(self, room: Room, episode: Episode) -> None:
+        file, room.file = room.file, None
+        if file is None:
+            return
+        if episode.is_glimpse:
+            file.discard()
+        else:
+            self._work("Saving", self._save, file, episode, copy.deepcopy(room.facts))
+
+    def _flush(self, room: Room, now_s: float) -> None:
+        assert room.file is not None
+        room.flushed_s = now_s
+        try:
+            self._describe(room.file, room.facts, self._models.known(room.facts.room, room.boot))
+            room.file.flush()
+        except OSError as error:
+            self._give_up(room, error)
+
+    def _describe(self, file: EpisodeWriter, facts: RoomFacts, model: Model | None) -> None:
+        """Writes what is known about the room, once it is known."""
+        if model is not None and not file.has_model:
+            facts.learn_model(model)
+        if facts.is_complete and not file.described:
+            file.describe(facts.record())
+        if model is not None and not file.has_model and file.described:
+            file.attach_model(model, clock.wall_ns())
+
+    def _give_up(self, room: Room, error: OSError) -> None:
+        """The disk is full or broken: this episode is over, the room and its next episode are not."""
+        episode, file = room.tracker.episode, room.file
+        room.tracker.abandon()
+        room.file = None
+        if file is not None:
+            file.abandon()
+        number = f" {episode.number}" if episode is not None else ""
+        where = f" What was written until now is in {file.path}." if file is not None else ""
+        text = f"Recording of episode{number} stopped: {error.strerror}.{where} The next one is tried again."
+        self._announcer.notice(room.facts.room, "error", text)
+
+    def _save(self, file: EpisodeWriter, episode: Episode, facts: RoomFacts) -> None:
+        try:
+            self._describe(file, facts, self._models.fetch(episode.room, episode.boot))
+            saved = save(file, episode, facts, self._root, self._verify, repaired=False)
+        except (OSError, MartError) as error:
+            file.abandon()
+            why = error.strerror if isinstance(error, OSError) else error
+            text = f"Episode {episode.number} could not be completed: {why}. It is kept as {file.path}."
+            self._announcer.notice(episode.room, "error", text)
+            return
+        self._announcer.saved(saved)
+        self._refresh()
+
+    def _repair(self) -> None:
+        for saved in log_repairs(repair_all(self._root, self._verify)):
+            self._announcer.saved(saved)
+        self._refresh()
+
+    def _refresh(self) -> None:
+        try:
+            list_folder(self._root)
+        except (OSError, sqlite3.Error) as error:  # it is derived: the next one makes up for it
+            _log.warning("The catalogue could not be brought up to date: %s", error)
+
+    def _report_losses(self, batch: Batch) -> None:
+        if not batch.lost_frames and not batch.lost_messages:
+            return
+        text = f"The recorder cannot keep up: {batch.lost_messages} messages and {batch.lost_frames} frames were lost."
+        level = "error" if batch.lost_messages else "warning"
+        for room in self._rooms.values():
+            room.tracker.lost(batch.lost_messages, batch.lost_frames)
+            if room.file is not None:
+                self._announcer.notice(room.facts.room, level, text)
+
+    def _work(self, what: str, call: Callable[..., object], *arguments: object) -> None:
+        def report(done: Future[object]) -> None:
+            error = done.exception()
+            if error is not None:
+                _log.error("%s failed", what, exc_info=error)
+
+        self._workers.submit(call, *arguments).add_done_callback(report)
+
+
+def _decode(kind: type[M], arrival: Arrival) -> M:
+    return codec.decode(kind, arrival.payload, _LIMIT_BYTES[arrival.kind])
