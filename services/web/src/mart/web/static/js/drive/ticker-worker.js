@@ -1,0 +1,3 @@
+const PERIOD_MS = 16;
+
+setInterval(() => postMessage(0), PERIOD_MS);

@@ -1,0 +1,50 @@
+// One figure for how well the connection does: the delay from hand to picture. Press it for the stages.
+
+import { byId, element, setText } from "../dom.js";
+
+const GOOD_MS = 100; // below, delay is hardly felt; above 200 ms people slow down (docs/protocol.md, latency)
+const FAIR_MS = 200;
+
+export function gradeOf(delayMs) {
+  if (delayMs == null) return "";
+  if (delayMs <= GOOD_MS) return "good";
+  return delayMs <= FAIR_MS ? "fair" : "slow";
+}
+
+/** `status`: the newest message of the status channel, or null while there is none. */
+export function showHealth(status, room) {
+  const delayMs = status?.latency?.p50_ms ?? null;
+  const grade = gradeOf(delayMs);
+  setText(byId("delay"), delayMs == null ? "– ms" : `${Math.round(delayMs)} ms`);
+  setText(byId("grade"), grade);
+  byId("grade").dataset.grade = grade;
+  byId("delay").dataset.grade = grade;
+  setText(byId("rate"), room ? `${room.real_time_factor.toFixed(2)}× real time` : "");
+  if (byId("health").open) showBreakdown(status);
+}
+
+function showBreakdown(status) {
+  const rows = breakdown(status);
+  byId("breakdown").replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
+}
+
+function breakdown(status) {
+  if (!status) return [["No figures yet", ""]];
+  const { latency, fps, rejected, tick } = status;
+  const stages = Object.entries(latency?.stages ?? {}).map(([name, ms]) => [sentence(name), milliseconds(ms)]);
+  return [
+    ["Hand to picture, half of the time under", milliseconds(latency?.p50_ms)],
+    ["Nearly always under", milliseconds(latency?.p95_ms)],
+    ...stages,
+    ["Pictures a second", fps?.toFixed(0) ?? "–"],
+    ["Frames refused", String(totalOf(rejected))],
+    ["Tick", String(tick)],
+  ];
+}
+
+const milliseconds = (value) => (value == null ? "–" : `${value.toFixed(0)} ms`);
+
+const sentence = (name) => name.charAt(0).toUpperCase() + name.slice(1).replaceAll("_", " ");
+
+const totalOf = (counts) =>
+  typeof counts === "object" && counts ? Object.values(counts).reduce((sum, one) => sum + one, 0) : (counts ?? 0);

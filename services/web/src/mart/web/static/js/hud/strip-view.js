@@ -1,0 +1,79 @@
+// What the state strip says and offers, from what is known. Pure.
+
+import { armName, isFree } from "../arms.js";
+import { LinkState } from "../link/seat-link.js";
+import { clockTime, fileSize, outcomeText } from "../words.js";
+
+const ACTIONS = {
+  ready: { command: "ready", text: "Ready", key: "N", primary: true },
+  again: { command: "ready", text: "Again", key: "N", primary: true },
+  unready: { command: "unready", text: "Not ready yet", key: "N" },
+  success: { command: "success", text: "Success", key: "S", primary: true },
+  failure: { command: "failure", text: "Failed", key: "F" },
+  discard: { command: "discard", text: "Discard", key: "R" },
+  take: { command: "take", text: "Take this seat", key: "N", primary: true },
+  lobby: { command: "lobby", text: "Go to the lobby", key: "N", primary: true },
+};
+
+/**
+ * `{ label, figure, detail, recording, actions }` for: the `room` (null: unknown), one's own `seat`, the connection
+ * (`link`: state, problem, role) and the newest `saved` episode of this room (null: none yet).
+ */
+export function stripView({ room, seat, link, saved }) {
+  if (!room || !seat) {
+    return view("No such seat", "This room is not open, or it has no such arm.", [ACTIONS.lobby]);
+  }
+  if (room.stale) return view("The room is silent", "It comes back by itself when its simulation runs again.");
+  if (!seat.mine) return watching(room, seat);
+  if (link.state !== LinkState.LIVE) return offline(link);
+  if (room.barrier === "stopped") return view("Stopped", "An emergency stop is on; whoever pressed it lets go.");
+  return PHASES[room.episode.phase](room, seat, saved);
+}
+
+const PHASES = {
+  practice(room, seat, saved) {
+    const others = room.seats.filter((other) => other.operator === "human" && !other.mine);
+    if (seat.ready) {
+      const late = others.filter((other) => !other.ready).map((other) => other.name);
+      return view("Ready", late.length ? `Waiting for ${late.join(" and ")}` : "Starting…", [ACTIONS.unready]);
+    }
+    const eager = others.filter((other) => other.ready).map((other) => other.name);
+    if (eager.length) {
+      return view("Practice", `${eager.join(" and ")} ${eager.length > 1 ? "are" : "is"} ready to record`, [ACTIONS.ready]);
+    }
+    if (saved) return view(`${outcomeText(saved.outcome)}`, savedText(saved), [ACTIONS.again]);
+    return view("Practice", "Nothing is recorded until everybody is ready.", [ACTIONS.ready]);
+  },
+  countdown(room) {
+    return { ...view("Starts in", room.instruction), figure: String(Math.max(1, Math.ceil(room.episode.remaining_s))) };
+  },
+  recording(room) {
+    const actions = [ACTIONS.success, ACTIONS.failure, ACTIONS.discard];
+    return { ...view("Recording", "", actions), figure: clockTime(room.episode.elapsed_s), recording: true };
+  },
+  ended(room) {
+    const reason = room.episode.reason ? `${room.episode.reason}. ` : "";
+    return view(outcomeText(room.episode.outcome), `${reason}Saving; the scene resets by itself.`);
+  },
+};
+
+function view(label, detail, actions = []) {
+  return { label, figure: "", detail, recording: false, actions };
+}
+
+function watching(room, seat) {
+  const holdsOther = room.seats.some((other) => other.mine);
+  if (isFree(seat) && !holdsOther) return view("Free seat", `Nobody drives the ${armName(seat.arm).toLowerCase()}.`, [ACTIONS.take]);
+  return view("Watching", isFree(seat) ? "You drive another arm." : `${seat.name || "A policy"} drives.`, [ACTIONS.lobby]);
+}
+
+function offline({ state, problem }) {
+  if (state === LinkState.SILENT) return view("Connection lost", "Trying to get it back…");
+  return view("Connecting…", problem);
+}
+
+function savedText({ path, verified, verdict, size_bytes: size, outcome }) {
+  const kept = outcome === "discarded" ? "Kept, and labelled discarded" : "Saved";
+  const checked = verified ? " and verified" : verdict ? `, ${verdict}` : "";
+  return `${kept}${checked}: ${path} (${fileSize(size)})`;
+}

@@ -1,0 +1,145 @@
+// The operator's page: the picture, the hand that drives, and what is going on.
+
+import * as api from "./api.js";
+import { armName, badge } from "./arms.js";
+import { byId, setShown, setText } from "./dom.js";
+import { Driver } from "./drive/driver.js";
+import { Confirm } from "./hud/confirm.js";
+import { HandPanel } from "./hud/hand-panel.js";
+import { showHealth } from "./hud/health.js";
+import { showPartners } from "./hud/partners.js";
+import { Strip } from "./hud/strip.js";
+import { nowUs, SeatLink } from "./link/seat-link.js";
+import { watchTicks } from "./link/tickcode.js";
+import { followRooms } from "./live.js";
+import { waitingText } from "./words.js";
+
+const NOTICE_MS = 6000;
+const [, , roomName, , armId] = location.pathname.split("/").map(decodeURIComponent);
+
+let room = null;
+let status = null;
+let noticeTimer = 0;
+
+const confirm = new Confirm(() => render());
+const strip = new Strip((command) => run(command));
+const panel = new HandPanel(roomName, armId, (error) => notice(error.message));
+const driver = new Driver(byId("picture"), byCommand);
+const link = new SeatLink({
+  fetchToken: async () => ({ room: roomName, arm: armId, ...(await api.seatToken(roomName, armId)) }),
+  wantsVideo: true,
+  onState: () => render(),
+  onStatus: heard,
+  onTrack: (stream) => (byId("video").srcObject = stream),
+});
+
+begin();
+
+function begin() {
+  document.title = `${armName(armId)} · ${roomName} · MART`;
+  document.body.dataset.arm = armId;
+  byId("badge").replaceWith(badge(armId));
+  setText(byId("page-title"), `${armName(armId)} in ${roomName}`);
+  setText(byId("arm"), armName(armId));
+  setText(byId("room"), roomName);
+  for (const [id, command] of [["gripper", "gripper"], ["stop", "stop"], ["leave", "leave"]]) {
+    byId(id).addEventListener("click", () => run(command));
+  }
+  byId("toggle").addEventListener("click", () => {
+    byId("toggle").setAttribute("aria-pressed", String(driver.toggleHold()));
+  });
+  byId("switch").addEventListener("click", () => {
+    link.tell({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" });
+  });
+  byId("health").addEventListener("toggle", () => render());
+  byId("video").addEventListener("resize", () => render());
+  document.addEventListener("click", ({ detail, target }) => detail > 0 && target.closest("button")?.blur());
+  watchTicks(byId("video"), (tick, displayedMs) => {
+    driver.seenTick = Math.max(driver.seenTick, tick);
+    link.tell({ type: "seen", tick, t_us: displayedMs * 1000 });
+  });
+  driver.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));
+  followRooms({ onRooms, onEvent, onEnded: () => location.assign("/") });
+}
+
+const ownSeat = () => room?.seats.find((seat) => seat.arm === armId);
+const drives = () => link.role === "browser" && status !== null;
+
+function onRooms(rooms) {
+  room = rooms.find((one) => one.room === roomName) ?? null;
+  const seat = ownSeat();
+  if (seat && link.epoch && seat.epoch > link.epoch) {
+    link.epoch = seat.epoch;
+    link.reconnect();
+  }
+  render();
+}
+
+function onEvent(event) {
+  if (event.room !== roomName) return;
+  if (event.kind === "episode_saved") strip.saved(event);
+  if (event.kind === "notice") notice(event.text);
+  render();
+}
+
+function heard(message) {
+  if (message.type !== "tick") return;
+  if (status === null) driver.adoptGripper(message.gripper);
+  status = message;
+  render();
+}
+
+function render() {
+  const seat = ownSeat();
+  strip.update({ room, seat, link, pending: confirm.pending });
+  showHealth(status, room);
+  panel.update(status, driver.view(status));
+  if (room) showPartners(room, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")));
+  const waiting = room && !room.stale ? waitingText(room) : "";
+  setText(byId("waiting"), waiting);
+  setShown(byId("waiting"), waiting !== "");
+  setShown(byId("no-picture"), byId("video").videoWidth === 0);
+  document.body.classList.toggle("engaged", Boolean(status?.engaged));
+  document.body.classList.toggle("can-drive", Boolean(seat?.mine));
+  setShown(document.querySelector(".hand"), Boolean(seat?.mine));
+  setText(byId("leave"), confirm.pending === "leave" ? "Press Q again" : seat?.mine ? "Leave" : "Lobby");
+}
+
+/** A key was pressed: some have to be pressed twice. */
+function byCommand(command) {
+  const wanted = command === "next" ? strip.next() : command;
+  if (!wanted) return;
+  if (["success", "failure", "discard"].includes(wanted) && !strip.offers(wanted)) return;
+  if (confirm.press(wanted)) run(wanted);
+}
+
+const DEEDS = {
+  gripper: () => driver.switchGripper(),
+  stop: () => driver.switchStop(),
+  help: () => panel.toggleHelp(),
+  lobby: () => location.assign("/"),
+  take: () => api.takeSeat(roomName, armId),
+  leave: async () => {
+    if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);
+    location.assign("/");
+  },
+};
+
+async function run(command) {
+  await attempt(DEEDS[command] ?? (() => api.act(roomName, command, armId)));
+  render();
+}
+
+async function attempt(deed) {
+  try {
+    await deed();
+  } catch (error) {
+    notice(error.message);
+  }
+}
+
+function notice(text) {
+  setText(byId("notice"), text);
+  clearTimeout(noticeTimer);
+  noticeTimer = setTimeout(() => setText(byId("notice"), ""), NOTICE_MS);
+}
