@@ -12,7 +12,7 @@ import click
 
 from mart.platform.plan import DEFAULT_TASK
 from mart.protocol.cli import json_option, print_result
-from mart.protocol.errors import InvalidInput, NotFound, Unavailable
+from mart.protocol.errors import InvalidInput, NotFound
 
 if TYPE_CHECKING:
     from mart.platform.collection import Order
@@ -134,24 +134,6 @@ def doctor(as_json: bool) -> None:
     ok = all(finding.ok for finding in findings)
     print_result({"ok": ok, "layers": [finding.as_json() for finding in findings]}, "\n".join(lines), as_json)
     click.get_current_context().exit(0 if ok else 1)
-
-
-@click.command()
-@click.argument("kind")
-@click.argument("id", required=False)
-@json_option
-def alive(kind: str, id: str | None, as_json: bool) -> None:
-    """Tell whether a service is alive, for health checks: KIND is sim, replica, gateway, recorder, web, …"""
-    from mart.protocol import keys
-    from mart.protocol.bus.zenoh_bus import ZenohBus
-    from mart.protocol.settings import Settings
-
-    with ZenohBus.connect(Settings().router, wait_for_router=False) as bus:
-        found = bus.alive(keys.alive(kind, id) if id else keys.alive_of(kind))
-    if not found:
-        raise Unavailable(f"No {kind}{f' {id}' if id else ''} is alive; start it with `mart {kind}`.")
-    ids = [keys.last_of(key) for key in found]
-    print_result({"kind": kind, "ids": ids}, f"{kind}: {', '.join(ids)}", as_json)
 
 
 def _print_episodes(order: Order) -> None:
