@@ -19,6 +19,8 @@ PROTO_DIR := protocol/proto
 PROTOS := $(wildcard $(PROTO_DIR)/mart/v1/*.proto)
 PROTOC = $(BIN)/python -m grpc_tools.protoc --proto_path=$(PROTO_DIR) --python_out=$(1) --pyi_out=$(1) $(PROTOS)
 
+BENCHMARKS := $(subst _,-,$(filter-out report,$(basename $(notdir $(wildcard benchmarks/*.py)))))
+
 TASK ?=
 COMPOSE = $(shell docker compose version >/dev/null 2>&1 && echo docker compose || echo docker-compose)
 
@@ -66,10 +68,8 @@ format: $(VENV)/.tools ## Format the code and mend what the linter can mend
 	@$(BIN)/ruff format
 
 .PHONY: bench
-bench: $(VENV)/.tools ## Run every benchmark; results go to benchmarks/results
-	@for file in benchmarks/*.py; do $(BIN)/python "$$file"; done
+bench: $(addprefix bench-,$(BENCHMARKS)) ## Run every benchmark; results go to benchmarks/results
 
-.PHONY: bench-%
 bench-%: $(VENV)/.tools ## Run one benchmark, for example bench-barrier
 	@$(BIN)/python benchmarks/$(subst -,_,$*).py
 

@@ -1,0 +1,35 @@
+"""Where the repository's own files are, for tests about the repository itself."""
+
+from __future__ import annotations
+
+import subprocess
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+GENERATED = ("_pb2.py", "_pb2.pyi")
+
+
+@cache
+def tracked_files() -> tuple[Path, ...]:
+    """Every file that git knows and that exists, generated code left out."""
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    paths = (ROOT / name for name in listed.splitlines() if not name.endswith(GENERATED))
+    return tuple(path for path in paths if path.is_file())
+
+
+def sources() -> tuple[Path, ...]:
+    """The parts' Python files."""
+    return tuple(path for path in tracked_files() if path.suffix == ".py" and "src" in path.parts)
+
+
+def projects() -> dict[str, dict[str, Any]]:
+    """The `project` table of every part, by the part's folder."""
+    found = (path for path in tracked_files() if path.name == "pyproject.toml" and path.parent != ROOT)
+    return {str(path.parent.relative_to(ROOT)): tomllib.loads(path.read_text())["project"] for path in found}
+
+
+def relative(path: Path) -> str:
+    return str(path.relative_to(ROOT))

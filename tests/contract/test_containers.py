@@ -1,0 +1,60 @@
+"""What docker-compose.yml and the Dockerfiles promise, read without an engine."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import click
+import pytest
+import yaml
+
+from mart.protocol.cli import cli
+from tests.contract.repository import ROOT, relative, tracked_files
+
+_SERVICES: dict[str, dict[str, Any]] = yaml.safe_load((ROOT / "docker-compose.yml").read_text())["services"]
+_DOCKERFILES = [path for path in tracked_files() if path.name == "Dockerfile"]
+_VARIABLE = re.compile(r"\$\{\w+:-([^}]*)\}")
+
+
+def _with_defaults(text: str) -> str:
+    return _VARIABLE.sub(r"\1", text)
+
+
+@pytest.mark.parametrize("name", _SERVICES)
+def test_every_command_parses(name: str) -> None:
+    words = [_with_defaults(word) for word in _SERVICES[name].get("command", [name])]
+    context = click.Context(cli)
+    command = cli.get_command(context, words[0])
+    assert command is not None
+    command.make_parser(click.Context(command, parent=context)).parse_args(words[1:])
+
+
+@pytest.mark.parametrize("name", _SERVICES)
+def test_every_container_is_confined_and_restarted(name: str) -> None:
+    service = _SERVICES[name]
+    assert service["read_only"]
+    assert service["cap_drop"] == ["ALL"]
+    assert service["restart"] == "unless-stopped"
+    assert name == "router" or service["depends_on"] == {"router": {"condition": "service_healthy"}}
+
+
+def test_only_the_web_service_listens_and_only_on_loopback_unless_asked() -> None:
+    listening = {name: service["ports"] for name, service in _SERVICES.items() if "ports" in service}
+    assert list(listening) == ["web"]
+    assert all(_with_defaults(port).startswith("127.0.0.1:") for port in listening["web"])
+
+
+@pytest.mark.parametrize("path", _DOCKERFILES, ids=relative)
+def test_every_image_is_slim_watched_and_not_root(path: Path) -> None:
+    text = path.read_text()
+    assert re.findall(r"^FROM (\S+)", text, re.MULTILINE) == ["debian:bookworm-slim"] * 2
+    assert "HEALTHCHECK" in text
+    assert re.findall(r"^USER (\w+)", text, re.MULTILINE) == ["mart"]
+    assert "://" not in text
+
+
+def test_every_dockerfile_is_built() -> None:
+    built = {service["build"]["dockerfile"] for service in _SERVICES.values() if "build" in service}
+    assert built == {relative(path) for path in _DOCKERFILES}
