@@ -5,13 +5,13 @@ import json
 import pytest
 from click.testing import CliRunner
 
-from mart.platform import cli
+from mart.protocol.cli import cli
 from mart.protocol.errors import InvalidInput, MartError, NotFound, Unavailable
 from tests.support.processes import free_port
 
 
 def failure(command: str, *arguments: str) -> MartError:
-    result = CliRunner().invoke(getattr(cli, command), arguments)
+    result = CliRunner().invoke(cli, [command, *arguments])
     assert isinstance(result.exception, MartError)
     return result.exception
 
@@ -33,6 +33,6 @@ def test_without_a_router_commands_say_so(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setenv("MART_ROUTER", f"tcp/127.0.0.1:{free_port()}")
     for command in (["rooms"], ["alive", "sim"]):
         assert isinstance(failure(*command), Unavailable)
-    result = CliRunner().invoke(cli.doctor, ["--json"])
+    result = CliRunner().invoke(cli, ["doctor", "--json"])
     assert result.exit_code == 1
     assert json.loads(result.output)["ok"] is False
