@@ -38,8 +38,9 @@ class Browser:
         self.receiver: RTCRtpReceiver | None = None
         if role is not Role.PHONE:
             transceiver = self.connection.addTransceiver("video", direction="recvonly")
-            codecs = [c for c in RTCRtpReceiver.getCapabilities("video").codecs if c.name in {codec, "rtx"}]
-            transceiver.setCodecPreferences(codecs)
+            capabilities = RTCRtpReceiver.getCapabilities("video")
+            assert capabilities is not None
+            transceiver.setCodecPreferences([c for c in capabilities.codecs if c.name in {codec, "rtx"}])
             self.receiver = transceiver.receiver
 
     async def connect(self, exchange: Exchange) -> None:
@@ -57,19 +58,28 @@ class Browser:
 
     async def next_tick(self) -> int | None:
         """Read out of the next picture."""
-        return tick_code.read((await self.next_frame()).to_ndarray(format="gray"))
+        return tick_code.read(luma(await self.next_frame()))
 
     def send_frame(self, frame: PhoneFrame | bytes) -> None:
         assert self.pose is not None
         self.pose.send(frame if isinstance(frame, bytes) else frame.encode())
 
-    def hand(self, epoch: int, position: tuple[float, float, float] = (0.0, 0.0, 0.0), **given: Any) -> PhoneFrame:
+    def hand(
+        self, epoch: int, position: tuple[float, float, float] = (0.0, 0.0, 0.0), **given: Any
+    ) -> PhoneFrame:
         """The next frame of a hand that is level and aligned with the screen."""
         self._sequence += 1
         flags = Flag.TRACKING | Flag.SCREEN_ALIGNED | (Flag.CLUTCH if given.pop("clutch", False) else Flag(0))
         sent_us = clock.monotonic_ns() // 1000
-        values = {"sequence": self._sequence, "gripper": 0.0, "quaternion_wxyz": (1.0, 0.0, 0.0, 0.0), **given}
-        return PhoneFrame(seat_epoch=epoch, seen_tick=0, sent_us=sent_us, position=position, flags=flags, **values)
+        values = {
+            "sequence": self._sequence,
+            "gripper": 0.0,
+            "quaternion_wxyz": (1.0, 0.0, 0.0, 0.0),
+            **given,
+        }
+        return PhoneFrame(
+            seat_epoch=epoch, seen_tick=0, sent_us=sent_us, position=position, flags=flags, **values
+        )
 
     async def drive(self, epoch: int, duration_s: float = 1e9, **given: Any) -> None:
         """Sends frames at 60 Hz."""
@@ -78,7 +88,9 @@ class Browser:
             self.send_frame(self.hand(epoch, **given))
             await asyncio.sleep(1 / 60)
 
-    async def wait_told(self, holds: Callable[[dict[str, Any]], bool], timeout_s: float = 10.0) -> dict[str, Any]:
+    async def wait_told(
+        self, holds: Callable[[dict[str, Any]], bool], timeout_s: float = 10.0
+    ) -> dict[str, Any]:
         """The next status message for which `holds`."""
         seen = len(self.told)
         async with asyncio.timeout(timeout_s):
@@ -111,7 +123,9 @@ class Browser:
 
 
 @contextlib.asynccontextmanager
-async def connected(exchange: Exchange, role: Role = Role.BROWSER, codec: str = "H264") -> AsyncIterator[Browser]:
+async def connected(
+    exchange: Exchange, role: Role = Role.BROWSER, codec: str = "H264"
+) -> AsyncIterator[Browser]:
     browser = Browser(role, codec)
     try:
         await browser.connect(exchange)
@@ -131,5 +145,6 @@ async def in_background(work: Awaitable[None]) -> AsyncIterator[None]:
             await task
 
 
-def luma(frame: VideoFrame) -> np.ndarray[Any, np.dtype[np.uint8]]:
-    return frame.to_ndarray(format="gray")
+def luma(frame: VideoFrame) -> tick_code.Image:
+    """Shape (496, 640)."""
+    return np.asarray(frame.to_ndarray(format="gray"), np.uint8)

@@ -4,44 +4,43 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import sys
 
 from mart.protocol.errors import Unavailable
-from mart.teleop_gateway.seat_process import WARM
+from mart.teleop_gateway.assignment import WARM, Assignment
 
 _MODULE = "mart.teleop_gateway.seat_process"
 _END_TIMEOUT_S = 3.0
 
 
 class Child:
-    """One process. Ends by itself when its standard input closes, so also when this process is killed."""
+    """One process. It ends by itself when its standard input closes, so also when this process is killed."""
 
-    def __init__(self, process: asyncio.subprocess.Process) -> None:
-        self._process = process
+    def __init__(
+        self, process: asyncio.subprocess.Process, stdin: asyncio.StreamWriter, stdout: asyncio.StreamReader
+    ) -> None:
+        self._process, self._stdin, self._stdout = process, stdin, stdout
 
     @classmethod
     async def start(cls) -> Child:
         pipe = asyncio.subprocess.PIPE
-        return cls(
-            await asyncio.create_subprocess_exec(sys.executable, "-m", _MODULE, stdin=pipe, stdout=pipe)
-        )
+        process = await asyncio.create_subprocess_exec(sys.executable, "-m", _MODULE, stdin=pipe, stdout=pipe)
+        assert process.stdin is not None
+        assert process.stdout is not None
+        return cls(process, process.stdin, process.stdout)
 
     @property
     def pid(self) -> int:
         return self._process.pid
 
-    async def assign(self, room: str, arm: str) -> None:
+    async def assign(self, assignment: Assignment) -> None:
         """Waits until it is warm, then gives it its seat; raises Unavailable where it died before."""
-        assert self._process.stdout is not None
-        assert self._process.stdin is not None
-        said = await self._process.stdout.readline()
-        if said != WARM.encode():
+        if await self._stdout.readline() != WARM:
             status = await self._process.wait()
             raise Unavailable(
                 f"A seat process ended with status {status} before it was ready; its log says why."
             )
-        self._process.stdin.write(json.dumps({"room": room, "arm": arm}).encode() + b"\n")
+        self._stdin.write(assignment.encode())
 
     async def ended(self) -> int:
         """Its exit status, once it has one."""
@@ -49,15 +48,13 @@ class Child:
 
     async def end(self) -> None:
         """Orderly if it will, by force if not."""
-        if self._process.returncode is not None:
-            return
-        assert self._process.stdin is not None
-        self._process.stdin.close()
-        with contextlib.suppress(TimeoutError):
+        self._stdin.close()
+        try:
             await asyncio.wait_for(self._process.wait(), _END_TIMEOUT_S)
-            return
-        self._process.kill()
-        await self._process.wait()
+        except TimeoutError:
+            with contextlib.suppress(ProcessLookupError):  # it ended just now
+                self._process.kill()
+            await self._process.wait()
 
 
 class Spares:

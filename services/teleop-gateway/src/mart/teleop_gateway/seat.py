@@ -26,6 +26,7 @@ from mart.protocol.messages import (
 from mart.protocol.pose import Pose
 from mart.protocol.tokens import Role
 from mart.teleop_gateway import channel
+from mart.teleop_gateway.assignment import SEAT_KIND, Assignment
 from mart.teleop_gateway.driving import Driving, Input
 from mart.teleop_gateway.encoder import Codec
 from mart.teleop_gateway.latency import MotionToPhoton
@@ -52,9 +53,10 @@ class Seat:
     """`video_bus` is a session of its own: pictures must never stand in a command's way."""
 
     def __init__(
-        self, bus: AsyncBus, video_bus: Bus, settings: GatewaySettings, *, room: str, arm: str, secret: bytes
+        self, bus: AsyncBus, video_bus: Bus, settings: GatewaySettings, assignment: Assignment, secret: bytes
     ) -> None:
-        self.room, self.arm = room, arm
+        self.id = assignment.id
+        self.room, self.arm = room, arm = assignment.room, assignment.arm
         self._bus, self._settings, self._secret = bus, settings, secret
         self._loop = asyncio.get_running_loop()
         self._commands = bus.publisher(keys.command(room, arm))
@@ -90,7 +92,9 @@ class Seat:
         status = bus.subscribe(keys.status(room).key, self._on_room_status)
         # Not over the event loop: the view's thread must have the state before the loop finds time for it.
         state = bus.bus.subscribe(keys.state(room).key, self._on_state_sample)
-        return [*served, status, state, self._commands, self._events, self._video]
+        # Last: whoever sees this token may send an offer.
+        alive = bus.bus.announce(keys.alive(SEAT_KIND, self.id))
+        return [*served, status, state, self._commands, self._events, self._video, alive]
 
     # Signalling
 

@@ -1,14 +1,14 @@
 """The process of one seat: `python -m mart.teleop_gateway.seat_process`, started by the gateway.
 
-It imports everything (seconds), says WARM, and waits for one line on standard input, {"room": …, "arm": …}: so a claim
-is served by a process that is ready. It ends when standard input ends, and so never outlives its gateway.
+It imports everything (seconds), says WARM, and waits for its assignment on standard input: so a claim is served by a
+process that is ready. It ends when standard input ends, and so never outlives its gateway.
 """
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
+import logging
 import os
 import sys
 
@@ -16,58 +16,42 @@ from mart.protocol import tokens
 from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.service import run_async
+from mart.teleop_gateway.assignment import WARM, Assignment
 from mart.teleop_gateway.seat import Seat
 from mart.teleop_gateway.settings import GatewaySettings
 
-KIND = "seat"
-WARM = "warm\n"
-
-
-def seat_id(room: str, arm: str) -> str:
-    """In the liveliness token of a seat's process."""
-    return f"{room}-{arm}"
-
 
 def main() -> None:
-    sys.stdout.write(WARM)
-    sys.stdout.flush()
-    line = sys.stdin.readline()
-    if not line:
-        return
-    assignment = json.loads(line)
-    room, arm = assignment["room"], assignment["arm"]
+    os.write(sys.stdout.fileno(), WARM)
+    line = sys.stdin.buffer.readline()
+    if line:
+        _serve(Assignment.decode(line))
+
+
+def _serve(assignment: Assignment) -> None:
     settings = GatewaySettings()
 
     async def run(bus: AsyncBus) -> None:
         secret = tokens.load_or_create_secret(settings.secret_path)
         with contextlib.closing(await asyncio.to_thread(ZenohBus.connect, settings.router)) as video_bus:
-            seat = asyncio.ensure_future(
-                Seat(bus, video_bus, settings, room=room, arm=arm, secret=secret).run()
-            )
-            gateway = asyncio.ensure_future(_end_of_input())
-            try:
-                await asyncio.wait((seat, gateway), return_when=asyncio.FIRST_COMPLETED)
-            finally:
-                gateway.cancel()
-                seat.cancel()
-                with contextlib.suppress(asyncio.CancelledError):
-                    await seat
+            seat = Seat(bus, video_bus, settings, assignment, secret)
+            await _until_gateway_ends(asyncio.ensure_future(seat.run()))
 
-    run_async(settings, KIND, seat_id(room, arm), run)
+    logging.getLogger("aioice").setLevel(logging.WARNING)  # it tells about every candidate pair
+    run_async(settings, "seat-process", assignment.id, run)
 
 
-async def _end_of_input() -> None:
-    loop = asyncio.get_running_loop()
-    ended = asyncio.Event()
-    reader = sys.stdin.fileno()
+async def _until_gateway_ends(seat: asyncio.Future[None]) -> None:
+    """Standard input ends with the gateway, even when it is killed."""
+    loop, reader = asyncio.get_running_loop(), sys.stdin.fileno()
 
     def on_readable() -> None:
         if not os.read(reader, 4096):
-            ended.set()
+            seat.cancel()
 
     loop.add_reader(reader, on_readable)
     try:
-        await ended.wait()
+        await seat
     finally:
         loop.remove_reader(reader)
 

@@ -1,0 +1,29 @@
+"""What a gateway and its seat processes say to each other. Light: a gateway never imports what a seat needs."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+
+SEAT_KIND = "seat"  # of the liveliness token that says that a seat's process answers offers
+WARM = b"warm\n"  # said by a process that has imported everything and waits for its assignment
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """Which seat a process serves: one line on its standard input."""
+
+    room: str
+    arm: str
+
+    @property
+    def id(self) -> str:
+        """In the liveliness token."""
+        return f"{self.room}-{self.arm}"
+
+    def encode(self) -> bytes:
+        return json.dumps(asdict(self)).encode() + b"\n"
+
+    @classmethod
+    def decode(cls, line: bytes) -> Assignment:
+        return cls(**json.loads(line))
