@@ -11,7 +11,7 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.cli import json_option, print_result
-from mart.protocol.errors import InvalidInput
+from mart.protocol.errors import InvalidInput, Unavailable
 from mart.recorder.settings import RecorderSettings
 
 if TYPE_CHECKING:
@@ -67,6 +67,7 @@ def show(path: Path, as_json: bool) -> None:
 @json_option
 def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     """Step episodes again in a replica: do they follow bit for bit? The answer is kept as a label."""
+    from mart.protocol.recording import Verdict
     from mart.recorder import files, labels
     from mart.recorder.reader import EpisodeFile
     from mart.recorder.verify import verify as verify_file
@@ -76,7 +77,8 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
         for path in files.files(_given(paths)):
             file = EpisodeFile.open(path)
             said = verify_file(file, file.room, resimulate)
-            labels.say(path, labels.Kind.VERDICT, said.verdict.value, clock.wall_ns(), said.detail)
+            if said.verdict is not Verdict.UNVERIFIED:  # a replica that is away takes nothing back
+                labels.say(path, labels.Kind.VERDICT, said.verdict.value, clock.wall_ns(), said.detail)
             found.append({"path": str(path), "verdict": said.verdict.value, "detail": said.detail})
     lines = [f"{entry['path']}: {entry['verdict']}. {entry['detail']}" for entry in found]
     print_result({"episodes": found}, "\n".join(lines) or "There are no episodes.", as_json)
@@ -111,7 +113,7 @@ def repair(folder: Path | None, replica: str | None, as_json: bool) -> int:
     from mart.recorder.verify import verify as verify_file
 
     root = folder or RecorderSettings().episodes_dir
-    with _resimulation(replica) as resimulate:
+    with _resimulation(replica, wherever_possible=True) as resimulate:
         repaired = list(repair_all(root, lambda file, room: verify_file(file, room, resimulate)))
     print_result(*report.repaired(repaired), as_json)
     return 0 if all(one.saved for one in repaired) else 1
@@ -154,10 +156,18 @@ def _given(paths: tuple[Path, ...]) -> tuple[Path, ...]:
 
 
 @contextmanager
-def _resimulation(replica: str | None) -> Iterator[Resimulate]:
+def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> Iterator[Resimulate]:
+    """Asks a replica. Without a router it raises Unavailable: at once, or `wherever_possible` only when asked."""
     from mart.protocol.bus.zenoh_bus import ZenohBus
     from mart.recorder import verify as verification
 
     settings = _settings(replica)
-    with ZenohBus.connect(settings.router, wait_for_router=False) as bus:
-        yield verification.replica(bus, settings.replica)
+    try:
+        bus = ZenohBus.connect(settings.router, wait_for_router=False)
+    except Unavailable as error:
+        if not wherever_possible:
+            raise
+        yield verification.nobody(error)
+    else:
+        with bus:
+            yield verification.replica(bus, settings.replica)

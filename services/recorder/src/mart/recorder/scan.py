@@ -29,18 +29,18 @@ SYMPTOMS = (
 )  # fmt: skip
 
 
-class BoundedFile(io.FileIO):
+class BoundedFile(io.BufferedReader):
     """A file that never hands out (nor makes room for) more than it has: a longer read finds its end."""
 
     def __init__(self, path: Path) -> None:
-        super().__init__(path, "rb")
+        super().__init__(io.FileIO(path, "rb"))
         self.size = self.seek(0, io.SEEK_END)
         self.seek(0)
 
     def read(self, size: int | None = -1) -> bytes:
         left = self.size - self.tell()
         wanted = left if size is None or size < 0 else size
-        return b"" if wanted > left else super().read(wanted) or b""
+        return b"" if wanted > left else super().read(wanted)
 
 
 @contextmanager

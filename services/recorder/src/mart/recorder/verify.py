@@ -160,3 +160,12 @@ def replica(bus: Bus, name: str) -> Resimulate:
         return reply.state_digests
 
     return resimulate
+
+
+def nobody(why: MartError) -> Resimulate:
+    """Stands in where no replica can be asked, and says why."""
+
+    def resimulate(_request: RolloutRequest.Resimulate) -> bytes:
+        raise why
+
+    return resimulate

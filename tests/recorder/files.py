@@ -1,0 +1,61 @@
+"""Episode files of the toy room, written by the recorder's own writer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from mart.protocol import codec
+from mart.protocol.messages import State
+from mart.protocol.recording import RoomRecord, VerificationRecord
+from mart.recorder.entry import command_entry, event_entry, state_entries, video_entry
+from mart.recorder.episode import Episode, RoomFacts
+from mart.recorder.reader import EpisodeFile
+from mart.recorder.save import Saved, Verify, part_path, save
+from mart.recorder.verify import verify
+from mart.recorder.writer import EpisodeWriter
+from tests.recorder import synthetic
+
+
+def by_toy_replica(file: EpisodeFile, room: RoomRecord) -> VerificationRecord:
+    return verify(file, room, synthetic.resimulate)
+
+
+def write_part(
+    root: Path, states: list[State], *, flush_every: int = 5, is_over: bool = True
+) -> tuple[EpisodeWriter, Episode, RoomFacts]:
+    """A file as it is just before it is saved: model, commands, video and events besides the states."""
+    facts = RoomFacts(synthetic.ROOM)
+    beginning = synthetic.started(states[0].episode, states[0].tick)
+    facts.learn_event(beginning)
+    facts.learn_model(synthetic.MODEL)
+    episode = Episode(states[0])
+    episode.add_event(beginning)
+    file = EpisodeWriter(part_path(root, episode, facts))
+    file.describe(facts.record())
+    file.attach_model(synthetic.MODEL, synthetic.wall_ns(states[0].tick))
+    file.add(event_entry(beginning, codec.encode(beginning), beginning.wall_ns))
+    for i, state in enumerate(states):
+        _write_tick(file, episode, state)
+        if i % flush_every == 0:
+            file.flush()
+    if is_over:
+        end = synthetic.ended(states[-1].tick, states[-1].episode)
+        episode.add_event(end)
+        file.add(event_entry(end, codec.encode(end), end.wall_ns))
+    return file, episode, facts
+
+
+def _write_tick(file: EpisodeWriter, episode: Episode, state: State) -> None:
+    at_ns = synthetic.wall_ns(state.tick)
+    command = synthetic.command(state.episode_tick + 1)
+    file.add(command_entry("arm0", command, codec.encode(command), at_ns))
+    video = synthetic.video(state.tick, is_key=state.tick % 10 == 0)
+    file.add(video_entry("arm0", video, codec.encode(video), at_ns))
+    episode.add_state(state)
+    for entry in state_entries(state, codec.encode(state), at_ns, synthetic.TASK):
+        file.add(entry)
+
+
+def write_episode(root: Path, ticks: int = 30, number: int = 1, verify: Verify = by_toy_replica) -> Saved:
+    file, episode, facts = write_part(root, synthetic.states(ticks, number))
+    return save(file, episode, facts, root, verify, repaired=False)
