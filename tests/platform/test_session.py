@@ -21,6 +21,8 @@ def latency(arm: str, p95_ms: float) -> m.Event.Latency:
 def run(events: list[m.Event]) -> Episode:
     network = MemoryNetwork()
     session = Session(network.connect(), "room-1")
+    practising = m.RoomStatus(room="room-1", episode=m.Episode(phase=m.EPISODE_PHASE_PRACTICE))
+    network.connect().publisher(keys.status("room-1")).put(encode(practising))
     publisher = network.connect().publisher(keys.event("room-1"))
     for event in events:
         publisher.put(encode(event))

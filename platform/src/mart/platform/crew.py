@@ -76,7 +76,7 @@ class Crew:
                 seed,
             ]
             stack.enter_context(_running(platform, brain, f"brain-{arm}"))
-            hand = ["phone", "--url", visitor.pair(room, arm), "--certificate", str(platform.certificate)]
+            hand = ["phone", "--url", platform.url, "--code", visitor.pair(room, arm), "--insecure"]
             stack.enter_context(_running(platform, hand, f"phone-{arm}"))
             yield Person(arm, name, visitor)
 

@@ -52,7 +52,7 @@ def processes(options: Options) -> tuple[Process, ...]:
         Process(("replica", "--name", "replica-1"), "replica", "replica-1"),
         Process(("experts",), "experts", "experts"),
         Process(("gateway", "--name", "gateway-1"), "gateway", "gateway-1"),
-        Process(("recorder",), "recorder", "recorder"),
+        Process(("recorder", "--name", "recorder-1"), "recorder", "recorder-1"),
         Process(tuple(web), "web", "web"),
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import queue
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +14,7 @@ from mart.protocol import keys
 from mart.protocol.bus.base import Bus, Sample
 from mart.protocol.codec import decode
 from mart.protocol.errors import Unavailable
-from mart.protocol.messages import Event, outcome_word
+from mart.protocol.messages import EPISODE_PHASE_PRACTICE, Event, RoomStatus, outcome_word
 
 _EPISODE_TIMEOUT_S = 120.0
 _SAVE_TIMEOUT_S = 60.0
@@ -53,7 +54,11 @@ class Session:
     def __init__(self, bus: Bus, room: str) -> None:
         self._events: queue.Queue[Event] = queue.Queue()
         self._latest_latency: dict[str, Event.Latency] = {}
-        self._subscription = bus.subscribe(keys.event(room).key, self._on_event)
+        self._practising = threading.Event()
+        self._subscriptions = [
+            bus.subscribe(keys.event(room).key, self._on_event),
+            bus.subscribe(keys.status(room).key, self._on_status),
+        ]
         self._room = room
 
     def run_episode(self, people: Sequence[Person]) -> Episode:
@@ -61,6 +66,10 @@ class Session:
 
         Raises Unavailable where no episode starts, ends or is saved in time.
         """
+        if not self._practising.wait(_EPISODE_TIMEOUT_S):
+            raise Unavailable(
+                f"{self._room} is not in practice after {_EPISODE_TIMEOUT_S:g} s; is its sim up?"
+            )
         self._latest_latency.clear()
         for person in people:
             person.visitor.act(self._room, person.arm, "ready")
@@ -80,7 +89,12 @@ class Session:
         )
 
     def close(self) -> None:
-        self._subscription.close()
+        for subscription in self._subscriptions:
+            subscription.close()
+
+    def _on_status(self, sample: Sample) -> None:
+        practising = decode(RoomStatus, sample.payload).episode.phase == EPISODE_PHASE_PRACTICE
+        (self._practising.set if practising else self._practising.clear)()
 
     def _on_event(self, sample: Sample) -> None:
         self._events.put(decode(Event, sample.payload))

@@ -40,9 +40,9 @@ class Visitor:
         self._request("DELETE", f"api/rooms/{room}/seats/{arm}")
 
     def pair(self, room: str, arm: str) -> str:
-        """The address that the phone opens; its code works once."""
-        url: str = self._request("POST", f"api/rooms/{room}/seats/{arm}/pair")["url"]
-        return url
+        """A code for one phone; it works once."""
+        code: str = self._request("POST", f"api/rooms/{room}/seats/{arm}/pair")["code"]
+        return code
 
     def act(self, room: str, arm: str, action: str) -> None:
         """ready, unready, success, failure, discard or reset."""
