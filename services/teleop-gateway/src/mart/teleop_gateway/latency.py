@@ -84,6 +84,9 @@ class MotionToPhoton:
                 _keep(self._until_state, state.tick, stamps, self._ticks)
 
     def on_picture(self, tick: int, stamps: PictureStamps) -> None:
+        """A picture sent a second time closes the account: a report from now on may mean either."""
+        if tick in self._pictures:
+            self._until_state.pop(tick, None)
         _keep(self._pictures, tick, stamps, self._ticks)
 
     def on_seen(self, tick: int, displayed_ns: int) -> bool:
