@@ -13,7 +13,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from mart.protocol.errors import NotFound
 from mart.protocol.pose import Pose
@@ -76,24 +76,55 @@ class Limits:
 
 @dataclass(frozen=True)
 class Workspace:
-    """Where a tool may be sent, in the arm's base frame: a ring around the base axis, between two heights.
+    """Where a tool may be sent, in the arm's base frame: part of a shell around the base axis, before it and over the table.
 
-    Nearer than `radius_min_m` joint 4 meets its limit; beyond `radius_max_m` the arm is stretched (measured with the
-    tool pointing down).
+    Measured with the hand pointing down: nearer to the axis than `radius_min_m` joint 4 meets its limit; further than
+    `reach_m` from the point at `reach_center_z_m` on the axis the arm is stretched; beside and behind its base it ties itself up. Tilt and yaw keep
+    the wrist off its limits.
     """
 
     radius_min_m: float = 0.28
-    radius_max_m: float = 0.78
+    reach_m: float = 0.78
+    reach_center_z_m: float = 0.12
+    azimuth_max_rad: float = 1.2
     z_min_m: float = 0.0
-    z_max_m: float = 0.70
+    z_max_m: float = 0.65
+    tilt_max_rad: float = 0.85  # of the hand from straight down
+    yaw_max_rad: float = 1.9  # of the hand from the direction in which the arm reaches
 
-    def clamp(self, position_in_base: ArrayLike) -> NDArray[np.float64]:
-        """The nearest allowed position, shape (3,), metres."""
-        x, y, z = np.asarray(position_in_base, dtype=np.float64)
-        radius = math.hypot(x, y)
-        allowed = min(max(radius, self.radius_min_m), self.radius_max_m)
-        along_x, along_y = (x / radius, y / radius) if radius > 0 else (1.0, 0.0)
-        return np.array([along_x * allowed, along_y * allowed, min(max(z, self.z_min_m), self.z_max_m)])
+    def clamp(self, pose_tool_in_base: Pose) -> Pose:
+        """An allowed pose close to the given one; an allowed one is returned as it is, but for rounding."""
+        position = self._position(*pose_tool_in_base.position)
+        azimuth = math.atan2(position[1], position[0])
+        return Pose(position, self._turn(azimuth, *pose_tool_in_base.quaternion_wxyz))
+
+    def _position(self, x: float, y: float, z: float) -> NDArray[np.float64]:
+        z = _clip(z, self.z_min_m, self.z_max_m)
+        farthest_m = math.sqrt(self.reach_m**2 - (z - self.reach_center_z_m) ** 2)
+        radius = _clip(math.hypot(x, y), self.radius_min_m, farthest_m)
+        azimuth = _clip(math.atan2(y, x), -self.azimuth_max_rad, self.azimuth_max_rad)
+        return np.array([radius * math.cos(azimuth), radius * math.sin(azimuth), z])
+
+    def _turn(self, azimuth: float, w: float, x: float, y: float, z: float) -> NDArray[np.float64]:
+        """Every rotation is a turn about the vertical axis and then a tilt about a level one: limits each by itself."""
+        yaw, tilt = 2 * math.atan2(z, w), 2 * math.atan2(math.hypot(x, y), math.hypot(w, z))
+        tilt_direction = math.atan2(y, x) + yaw / 2
+        beside = math.remainder(yaw - azimuth, math.tau)
+        yaw = azimuth + _clip(beside, -self.yaw_max_rad, self.yaw_max_rad)
+        tilt = min(tilt, self.tilt_max_rad)
+        level, lean = math.cos(tilt / 2), math.sin(tilt / 2)
+        return np.array(
+            [
+                level * math.cos(yaw / 2),
+                lean * math.cos(tilt_direction - yaw / 2),
+                lean * math.sin(tilt_direction - yaw / 2),
+                level * math.sin(yaw / 2),
+            ]
+        )
+
+
+def _clip(value: float, low: float, high: float) -> float:
+    return min(max(value, low), high)
 
 
 @dataclass(frozen=True)

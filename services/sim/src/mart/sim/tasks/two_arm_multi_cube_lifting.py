@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from mart.protocol.tasks import Arm
 from mart.sim.tasks.scene import Judgement, Scene
+from mart.sim.world.gripper import GRASPABLE
 from mart.sim.world.palette import rgba
 from mart.sim.world.shadows import add_shadow
 from mart.sim.world.symbols import add_tile
@@ -34,6 +35,7 @@ class MultiCubeLifting(Scene):
                 mass=CUBE_MASS_KG,
                 rgba=rgba(arm.color),
                 material="paint",
+                **GRASPABLE,
             )
             for normal in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)):
                 x, y, z = (CUBE_HALF_M * axis for axis in normal)

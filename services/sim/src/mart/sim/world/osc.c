@@ -106,13 +106,19 @@ static void solve6(num x[6], const num l[6][6]) {
 }
 
 /* A new command: the goal is the measured pose moved by `delta`, given along the base frame's axes. */
-static void set_goal(num *block, const num base[9], const num position[3], const num rotation[9]) {
+static void set_goal(num *block, const num base[9], const num origin[3], const num position[3],
+                     const num rotation[9]) {
   num shift[3], axis[3], spin[9];
   turn(shift, base, block + DELTA);
   turn(axis, base, block + DELTA + 3);
   rotation_exp(spin, axis);
   for (int i = 0; i < 3; i++) block[GOAL_POSITION + i] = position[i] + shift[i];
   multiply(block + GOAL_ROTATION, spin, rotation);
+  /* The elbow stays over the line from base to tool: left behind, it would tie the arm up at its sides. */
+  num way[3];
+  for (int i = 0; i < 3; i++) way[i] = block[GOAL_POSITION + i] - origin[i];
+  block[POSTURE] = atan2(base[1] * way[0] + base[4] * way[1] + base[7] * way[2],
+                         base[0] * way[0] + base[3] * way[1] + base[6] * way[2]);
   block[MODE] = HOLD_GOAL;
 }
 
@@ -121,7 +127,7 @@ static void control_arm(const mjModel *m, mjData *d, const num *config, const nu
   if (block[MODE] == OFF) return;
   const int dof = (int)row[DOF], base = (int)row[BASE_BODY];
   const num *p = d->site_xpos + 3 * (int)row[SITE], *r = d->site_xmat + 9 * (int)row[SITE];
-  if (block[MODE] == NEW_DELTA) set_goal(block, d->xmat + 9 * base, p, r);
+  if (block[MODE] == NEW_DELTA) set_goal(block, d->xmat + 9 * base, d->xpos + 3 * base, p, r);
 
   /* Rotation first, then translation: the last pivots of A are then the mobility that is left for translation with
      the orientation kept, which is what vanishes when an arm is stretched. */

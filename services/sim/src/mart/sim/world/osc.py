@@ -40,8 +40,8 @@ class Gains:
     kp_posture: float = 10.0
     max_position_error_m: float = 0.10
     max_orientation_error_rad: float = 0.50
-    regular_mobility_position: float = 0.05
-    regular_mobility_orientation: float = 0.5
+    regular_mobility_position: float = 0.03
+    regular_mobility_orientation: float = 0.3
 
     def as_row(self) -> tuple[float, ...]:
         return (

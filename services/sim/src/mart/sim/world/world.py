@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mart.protocol.errors import Corrupt, InvalidInput
-from mart.protocol.pose import Pose
+from mart.protocol.pose import Pose, quaternion_conjugate, quaternion_log, quaternion_multiply
 from mart.protocol.tasks import Task, get_task
 from mart.sim.tasks import Judgement, Scene, scene_of
 from mart.sim.world import kinematics, model, osc, panda
@@ -36,7 +36,7 @@ class Diverged(Corrupt):
     """The simulation went out of numerical bounds; only a reset helps."""
 
     def __init__(self, sim_time_s: float) -> None:
-        super().__init__(f"The world ran out of numerical bounds at {sim_time_s:.3f} s: reset it.")
+        super().__init__(f"The world ran out of numerical bounds after {sim_time_s:.3f} s: reset it.")
 
 
 class World:
@@ -124,14 +124,13 @@ class World:
         target every tick lets a loaded arm sink.
         """
         measured = self.tool_pose_in_base(arm)
-        shift = self.task.workspace.clamp(target_tool_in_base.position) - measured.position
-        turn = Pose(np.zeros(3), target_tool_in_base.quaternion_wxyz) @ Pose(
-            np.zeros(3), measured.inverse().quaternion_wxyz
-        )
+        target = self.task.workspace.clamp(target_tool_in_base)
+        shift = target.position - measured.position
+        turn = quaternion_multiply(target.quaternion_wxyz, quaternion_conjugate(measured.quaternion_wxyz))
         return np.concatenate(
             [
                 _within_unit(shift / self.task.limits.step_m),
-                _within_unit(turn.log()[3:] / self.task.limits.step_rad),
+                _within_unit(quaternion_log(turn) / self.task.limits.step_rad),
                 [2.0 * min(max(gripper, 0.0), 1.0) - 1.0],
             ]
         )
@@ -149,10 +148,11 @@ class World:
             raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
         self._commands[:] = np.clip(actions, -1.0, 1.0) * self._action_scale
         self._modes[:] = osc.NEW_DELTA
+        begun_s = self.sim_time_s
         mujoco.mj_step(self.model, self.data, self._substeps)
         self._measure()  # of the new state: mj_step leaves the poses of its last substep's beginning
         if any(self.data.warning[warning].number for warning in _FATAL):
-            raise Diverged(self.sim_time_s)
+            raise Diverged(begun_s)
         self.data.userdata[-1] = next_success_ticks(int(self.data.userdata[-1]), self._judge().success_now)
 
     def integration_state(self) -> bytes:
