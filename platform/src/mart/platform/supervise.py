@@ -30,11 +30,10 @@ _BIN = Path(sys.executable).parent
 
 @dataclass(frozen=True)
 class Platform:
-    """All services are up. `bus` is a session of our own on their router."""
+    """All services are up, whoever runs them. `bus` is a session of our own on their router."""
 
     options: Options
     bus: Bus
-    supervisor: subprocess.Popen[bytes]
 
     @property
     def url(self) -> str:
@@ -79,7 +78,7 @@ def running_platform(options: Options) -> Iterator[Platform]:
     try:
         with _connected(options.router, supervisor) as bus:
             _await_alive(bus, options, supervisor)
-            yield Platform(options, bus, supervisor)
+            yield Platform(options, bus)
     finally:
         supervisor.send_signal(signal.SIGTERM)
         supervisor.wait()
