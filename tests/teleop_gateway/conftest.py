@@ -1,0 +1,43 @@
+"""What gateway tests share: a compiled room and a router. Both are slow to make and never changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import mujoco
+import pytest
+
+from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.messages import Model
+from mart.sim.world.world import World
+from tests.support.processes import free_port
+
+CONTROL_HZ = 20.0
+
+
+@pytest.fixture(scope="package")
+def model_message() -> Model:
+    world = World.build("two_arm_multi_cube_lifting", CONTROL_HZ)
+    return Model(
+        sha256=world.model_sha256,
+        mjb=world.model_bytes(),
+        task=world.task.name,
+        control_hz=CONTROL_HZ,
+        arms=world.arms,
+        mujoco_version=mujoco.__version__,
+    )
+
+
+@pytest.fixture
+def world() -> World:
+    world = World.build("two_arm_multi_cube_lifting", CONTROL_HZ)
+    world.reset(seed=1)
+    return world
+
+
+@pytest.fixture(scope="package")
+def router() -> Iterator[str]:
+    """The endpoint of a router of these tests' own."""
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    with ZenohBus.route(endpoint):
+        yield endpoint

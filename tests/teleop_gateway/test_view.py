@@ -1,0 +1,126 @@
+"""The view's thread: newest wins, one encode for all, keyframes in time, no state can stop it."""
+
+from __future__ import annotations
+
+import queue
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from mart.protocol import clock
+from mart.protocol.messages import Model, State, TickStamps
+from mart.sim.world.world import World
+from mart.teleop_gateway.encoder import Codec
+from mart.teleop_gateway.handover import Closed, Handover
+from mart.teleop_gateway.renderer import load_model
+from mart.teleop_gateway.view import KEYFRAME_EVERY_S, Picture, View
+
+
+class Watched:
+    """A running view and what comes out of it."""
+
+    def __init__(self, model: Model) -> None:
+        self.pictures: queue.Queue[Picture] = queue.Queue()
+        self.view = View(load_model(model), "arm0", model.control_hz, self.pictures.put)
+        self.view.start()
+
+    def next(self, holds: Callable[[Picture], bool] = lambda _: True, timeout_s: float = 5.0) -> Picture:
+        end_s = clock.monotonic_s() + timeout_s
+        while True:
+            picture = self.pictures.get(timeout=end_s - clock.monotonic_s())
+            if holds(picture):
+                return picture
+
+
+@pytest.fixture
+def watched(model_message: Model) -> Iterator[Watched]:
+    watched = Watched(model_message)
+    yield watched
+    watched.view.stop()
+
+
+def state(world: World, tick: int) -> State:
+    return State(tick=tick, integration_state=world.integration_state(), stamps=TickStamps(stepped_ns=1000 + tick))
+
+
+def test_a_state_becomes_a_picture_with_its_stamps(watched: Watched, world: World) -> None:
+    before_ns = clock.wall_ns()
+    watched.view.offer(state(world, 7), before_ns)
+    picture = watched.next()
+    assert (picture.tick, picture.image_ns, picture.encoded.codec) == (7, 1007, Codec.H264)
+    assert picture.encoded.keyframe  # the first
+    stamps = picture.stamps
+    assert before_ns == stamps.state_received_ns < stamps.rendered_ns < stamps.encoded_ns < clock.wall_ns()
+
+
+def test_a_slow_renderer_leaves_states_out(watched: Watched, world: World) -> None:
+    for tick in range(1, 101):
+        watched.view.offer(state(world, tick), 0)
+    ticks = [watched.next().tick]
+    while ticks[-1] != 100:
+        ticks.append(watched.next().tick)
+    assert len(ticks) < 20
+    assert ticks == sorted(ticks)
+
+
+def test_a_keyframe_comes_soon_also_while_the_world_rests(watched: Watched, world: World) -> None:
+    watched.view.offer(state(world, 7), 0)
+    watched.next()
+    start_s = clock.monotonic_s()
+    watched.view.request_keyframe(Codec.H264)
+    again = watched.next(lambda picture: picture.encoded.keyframe)
+    assert again.tick == 7
+    assert clock.monotonic_s() - start_s < 0.3
+
+
+def test_a_resting_world_is_sent_again_with_a_keyframe_now_and_then(watched: Watched, world: World) -> None:
+    watched.view.offer(state(world, 7), 0)
+    start_s = clock.monotonic_s()
+    watched.next()
+    watched.next(lambda picture: picture.encoded.keyframe)
+    assert clock.monotonic_s() - start_s == pytest.approx(KEYFRAME_EVERY_S, abs=1.0)
+
+
+def test_vp8_is_made_only_while_somebody_needs_it(watched: Watched, world: World) -> None:
+    watched.view.offer(state(world, 1), 0)
+    assert watched.next().encoded.codec is Codec.H264
+    watched.view.set_codecs({Codec.VP8, Codec.H264})
+    watched.view.offer(state(world, 2), 0)
+    assert {watched.next().encoded.codec, watched.next().encoded.codec} == {Codec.H264, Codec.VP8}
+    watched.view.set_codecs(set())
+    watched.view.offer(state(world, 3), 0)
+    watched.view.offer(state(world, 4), 0)
+    watched.next(lambda picture: picture.tick == 4)
+    assert watched.pictures.empty() or watched.next().encoded.codec is Codec.H264
+
+
+def test_a_foreign_state_is_left_out(watched: Watched, world: World) -> None:
+    watched.view.offer(State(tick=1, integration_state=b"\0" * 80), 0)
+    watched.view.offer(state(world, 2), 0)
+    assert watched.next().tick == 2
+
+
+def test_its_rate_is_measured(watched: Watched, world: World) -> None:
+    assert watched.view.frames_per_s() == 0.0
+    for tick in range(1, 6):
+        watched.view.offer(state(world, tick), 0)
+        watched.next(lambda picture, tick=tick: picture.tick == tick)  # type: ignore[misc]
+    assert watched.view.frames_per_s() > 10
+
+
+def test_a_closed_handover_says_so() -> None:
+    handover = Handover()
+    handover.close()
+    with pytest.raises(Closed):
+        handover.wait(idle_s=10, keyframe_s=10)
+
+
+def test_a_handover_waits_no_longer_than_told() -> None:
+    handover = Handover()
+    start_s = clock.monotonic_s()
+    assert handover.wait(idle_s=0.05, keyframe_s=10) is None
+    handover.request_keyframe(Codec.H264)
+    assert handover.wait(idle_s=10, keyframe_s=0.05) is None
+    assert clock.monotonic_s() - start_s < 1.0
+    assert handover.take_orders() == (frozenset(), {Codec.H264})
+    assert handover.take_orders() == (frozenset(), frozenset())
