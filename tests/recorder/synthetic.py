@@ -88,11 +88,11 @@ def states(
     for i in range(ticks + 1):
         if i:
             world = step(world, np.array([action(i, arm) for arm in range(len(ARMS))]))
-        made.append(_state(first_tick + i, i, world, number, boot, room))
+        made.append(_state(first_tick + i, i, world, number=number, boot=boot, room=room))
     return made
 
 
-def _state(tick: int, episode_tick: int, world: bytes, number: int, boot: int, room: str) -> State:
+def _state(tick: int, episode_tick: int, world: bytes, *, number: int, boot: int, room: str) -> State:
     fired_ns = wall_ns(tick)
     return State(
         room=room,

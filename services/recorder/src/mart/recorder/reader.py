@@ -15,8 +15,8 @@ from mart.protocol.errors import Corrupt, NotFound
 from mart.protocol.recording import (
     MAX_RECORD_BYTES,
     MODEL_ATTACHMENT,
-    PART_SUFFIX,
     PROFILE,
+    SUFFIX,
     CadenceRecord,
     EpisodeRecord,
     OperatorsRecord,
@@ -117,7 +117,7 @@ def messages(found: Iterator[McapRecord]) -> Iterator[tuple[Channel, Message]]:
 
 
 def _metadata(file: BoundedFile, path: Path) -> Iterator[Metadata]:
-    if path.name.endswith(PART_SUFFIX):
+    if path.suffix != SUFFIX:
         yield from (record for record in _until_cut(records(file), path) if isinstance(record, Metadata))
         return
     reader = _reader(file)
@@ -138,5 +138,5 @@ def _until_cut(found: Iterator[McapRecord], path: Path) -> Iterator[McapRecord]:
     try:
         yield from found
     except EndOfFile:
-        if not path.name.endswith(PART_SUFFIX):
+        if path.suffix == SUFFIX:
             raise

@@ -99,6 +99,8 @@ def _found(channel: Channel, schema: Schema, message: Message) -> Found:
 
 def _next_chunk(file: BoundedFile, start: int) -> int | None:
     """Where the next thing that looks like a chunk begins, at or after `start`."""
+    if start >= file.size:
+        return None
     with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as view:
         mark = view.find(_CHUNK_MARK, start)
         while mark >= 0:
