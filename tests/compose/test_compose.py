@@ -1,0 +1,86 @@
+"""On a clean engine: up, a session, down, up again, and everything is still there. Run by `make test-compose`."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from mart.platform.browser import running_browser
+from mart.platform.crew import Crew
+from mart.platform.plan import Options
+from mart.platform.session import Session
+from mart.platform.supervise import Platform
+from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.tasks import get_task
+from tests.compose.stack import Stack, join_code_in
+from tests.contract.repository import ROOT
+from tests.support.processes import free_port
+
+pytestmark = pytest.mark.timeout(1200)  # the first build installs everything six times
+
+
+@pytest.fixture(scope="module")
+def stack(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stack]:
+    stack = Stack("mart-test", free_port(), tmp_path_factory.mktemp("compose"))
+    stack.forget()
+    stack.up()
+    yield stack
+    log = ROOT / "test-output" / "compose.log"
+    log.parent.mkdir(exist_ok=True)
+    log.write_text(stack.logs())
+    stack.forget()
+
+
+@contextlib.contextmanager
+def visited(stack: Stack) -> Iterator[Platform]:
+    options = Options(
+        data_dir=stack.folder, router=f"tcp/{stack.address('router')}:7447", port=stack.port, seed=1
+    )
+    with ZenohBus.connect(options.router, wait_for_router=False) as bus:
+        platform = Platform(options, bus)
+        platform.logs_dir.mkdir(exist_ok=True)
+        yield platform
+
+
+def episodes(stack: Stack) -> list[dict[str, object]]:
+    listed: list[dict[str, object]] = json.loads(
+        stack.inside("recorder", "mart", "episodes", "list", "--json")
+    )["episodes"]
+    return listed
+
+
+def test_no_part_runs_as_root_or_can_write_to_its_own_code(stack: Stack) -> None:
+    for service in stack.services():
+        assert stack.inside(service, "id", "-u").strip() != "0"
+        assert (
+            stack.inside(service, "sh", "-c", "touch /opt/mart/probe 2>/dev/null || echo refused")
+            == "refused\n"
+        )
+
+
+def test_people_collect_a_verified_episode_and_the_next_start_finds_it(stack: Stack) -> None:
+    arms = [arm.name for arm in get_task("two_arm_multi_cube_lifting").arms]
+    with visited(stack) as platform, running_browser() as browser, contextlib.ExitStack() as session_ends:
+        people = session_ends.enter_context(Crew(platform, "expert", seed=1, browser=browser).seated(arms))
+        session = session_ends.enter_context(contextlib.closing(Session(platform.bus, platform.options.room)))
+        episode = session.run_episode(people)
+    assert (episode.outcome, episode.verified) == ("success", True), episode.verdict
+    assert [latency.arm for latency in episode.latencies] == arms
+    before = episodes(stack)
+    assert [Path(str(entry["path"])).name for entry in before] == [Path(episode.path).name]
+
+    code = (stack.folder / "join-code").read_text()
+    stack.down()
+    printed = stack.up()
+    assert join_code_in(printed) == code.strip()
+    assert episodes(stack) == before
+
+
+def test_killed_parts_come_back(stack: Stack) -> None:
+    for service in ("sim", "gateway", "recorder", "web"):
+        stack.kill(service)
+    assert "Lobby" in stack.up()
