@@ -11,6 +11,8 @@ from mart.protocol.pose import Pose, quaternion_exp
 from mart.teleop_gateway.frame import Flag, PhoneFrame
 from mart.teleop_gateway.guard import Hand
 
+NONE = Flag(0)
+
 metres = st.floats(-1.0, 1.0)
 angles_rad = st.floats(-math.pi, math.pi)
 positions = st.tuples(metres, metres, metres)
@@ -29,17 +31,19 @@ def phone_frame(
     gripper: float = 0.0,
     clutch: bool = False,
     tracking: bool = True,
-    more: Flag = Flag(0),
+    more: Flag = NONE,
 ) -> PhoneFrame:
     """A good frame; one every 16.7 ms of the sender's clock unless told."""
-    flags = more | (Flag.CLUTCH if clutch else Flag(0)) | (Flag.TRACKING if tracking else Flag(0))
+    flags = more | (Flag.CLUTCH if clutch else NONE) | (Flag.TRACKING if tracking else NONE)
     sent_us = sequence * 16_667 if sent_us is None else sent_us
     return PhoneFrame(epoch, sequence, 0, sent_us, position, quaternion_wxyz, gripper, flags)
 
 
-def hand(pose_phone_in_session: Pose, *, clutch: bool, gripper: float = 0.0, more: Flag = Flag(0)) -> Hand:
+def hand(pose_phone_in_session: Pose, *, clutch: bool, gripper: float = 0.0, more: Flag = NONE) -> Hand:
     """An admitted frame."""
     x, y, z = pose_phone_in_session.position.tolist()
     qw, qx, qy, qz = pose_phone_in_session.quaternion_wxyz.tolist()
-    frame = phone_frame(position=(x, y, z), quaternion_wxyz=(qw, qx, qy, qz), gripper=gripper, clutch=clutch, more=more)
+    frame = phone_frame(
+        position=(x, y, z), quaternion_wxyz=(qw, qx, qy, qz), gripper=gripper, clutch=clutch, more=more
+    )
     return Hand(frame, pose_phone_in_session, clutch)

@@ -18,10 +18,13 @@ SPS, PPS, IDR = 7, 8, 5
 both = pytest.mark.parametrize("codec", list(Codec))
 
 
+Y, X = np.mgrid[0 : tick_code.HEIGHT_PX, 0 : tick_code.WIDTH_PX]
+SCENE = np.stack([X * 0.3, Y * 0.4, 128 + 40 * np.sin(X / 30)], axis=2).astype(np.uint8)
+
+
 def picture(tick: int) -> tick_code.Image:
-    """A scene with an edge that moves, and its tick."""
-    y, x = np.mgrid[0 : tick_code.HEIGHT_PX, 0 : tick_code.WIDTH_PX]
-    rgb = np.stack([x * 0.3, y * 0.4, 128 + 40 * np.sin((x + 6 * tick) / 30)], axis=2).astype(np.uint8)
+    """A scene in which everything moves, and its tick."""
+    rgb = np.roll(SCENE, 3 * tick, axis=1)
     rgb[200:280, 4 * tick % 560 : 4 * tick % 560 + 80] = (213, 94, 0)
     tick_code.write(tick, rgb[tick_code.VIEW_HEIGHT_PX :])
     return rgb
@@ -89,7 +92,9 @@ def test_each_idr_carries_its_parameter_sets() -> None:
 def test_h264_is_constrained_baseline_without_reordering() -> None:
     reader = decoder(Codec.H264)
     types = {
-        frame.pict_type for encoded in encode(Codec.H264, range(60)) for frame in reader.decode(av.Packet(encoded.data))
+        frame.pict_type
+        for encoded in encode(Codec.H264, range(60))
+        for frame in reader.decode(av.Packet(encoded.data))
     }
     assert types <= {PictureType.I, PictureType.P}
     assert reader.has_b_frames == 0

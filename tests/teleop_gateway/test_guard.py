@@ -164,7 +164,7 @@ def test_the_clutch_counts_only_while_pressed_and_tracked(steps: list[tuple[bool
     for pressed, tracking, after_s in steps:
         hand = stream.send(after_s, clutch=pressed, tracking=tracking)
         assert hand is not None
-        doubt = not tracking or after_s > guard.GAP_S or stream.sequence == 1
+        doubt = not tracking or (pressed and (after_s > guard.GAP_S or stream.sequence == 1))
         let_go_since_doubt = not doubt and (let_go_since_doubt or not pressed)
         assert hand.clutch == (pressed and let_go_since_doubt)
         assert (Flag.CLUTCH in hand.frame.flags) == pressed

@@ -18,7 +18,9 @@ def state(tick: int, at_ns: int, waits_ms: list[int], *, fresh: bool = True, sta
     arm = ArmState(arm="arm0", fresh=fresh, arrived_ns=arrived)
     if stamped:
         arm.stamps.CopyFrom(CommandStamps(input_sent_ns=sent, gateway_received_ns=received))
-    return State(tick=tick, arms=[ArmState(arm="arm1"), arm], stamps=TickStamps(fired_ns=fired, stepped_ns=stepped))
+    return State(
+        tick=tick, arms=[ArmState(arm="arm1"), arm], stamps=TickStamps(fired_ns=fired, stepped_ns=stepped)
+    )
 
 
 def pass_through(latency: MotionToPhoton, tick: int, at_ns: int, waits_ms: list[int]) -> bool:
@@ -69,7 +71,9 @@ def test_a_picture_that_was_sent_again_is_not_counted() -> None:
 
 
 @pytest.mark.parametrize(
-    "lie", [START_NS, START_NS + 11_000 * MS, 0, -1, 10**30], ids=["early", "late", "zero", "negative", "huge"]
+    "lie",
+    [START_NS, START_NS + 11_000 * MS, 0, -1, 10**30],
+    ids=["early", "late", "zero", "negative", "huge"],
 )
 def test_what_cannot_be_true_is_not_counted(lie: int) -> None:
     latency = MotionToPhoton("arm0")
@@ -82,7 +86,10 @@ def test_what_cannot_be_true_is_not_counted(lie: int) -> None:
 def test_unknown_ticks_held_arms_and_unstamped_commands_have_no_account() -> None:
     latency = MotionToPhoton("arm0")
     assert not latency.on_seen(99, START_NS)
-    for tick, of in ((1, state(1, START_NS, [5] * 5, fresh=False)), (2, state(2, START_NS, [5] * 5, stamped=False))):
+    for tick, of in (
+        (1, state(1, START_NS, [5] * 5, fresh=False)),
+        (2, state(2, START_NS, [5] * 5, stamped=False)),
+    ):
         latency.on_state(of)
         latency.on_picture(tick, PictureStamps(START_NS, START_NS, START_NS))
         assert not latency.on_seen(tick, START_NS + 50 * MS)

@@ -96,7 +96,9 @@ def test_an_unknown_camera_is_named(model: mujoco.MjModel) -> None:
         Renderer(model, "arm9")
 
 
-def test_each_seat_sees_its_arm_from_its_own_side(model_message: Model, model: mujoco.MjModel, world: World) -> None:
+def test_each_seat_sees_its_arm_from_its_own_side(
+    model_message: Model, model: mujoco.MjModel, world: World
+) -> None:
     """The seats look along directions of their own; both lie well within a turn of the arm's own forward axis."""
     for arm in model_message.arms:
         azimuth_rad = camera_azimuth_rad(model_message, model, arm)

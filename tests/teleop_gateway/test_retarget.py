@@ -37,7 +37,9 @@ def test_pressing_moves_nothing(phone: Pose, tool: Pose, azimuth_rad: float) -> 
 
 
 @given(st.lists(st.tuples(poses, st.booleans(), poses), min_size=1, max_size=12), angles_rad)
-def test_an_open_clutch_holds_the_last_target(steps: list[tuple[Pose, bool, Pose]], azimuth_rad: float) -> None:
+def test_an_open_clutch_holds_the_last_target(
+    steps: list[tuple[Pose, bool, Pose]], azimuth_rad: float
+) -> None:
     retarget = Retarget(azimuth_rad)
     last: Pose | None = None
     for phone, clutch, tool in steps:
@@ -146,7 +148,9 @@ def test_the_gripper_follows_whatever_the_clutch_does() -> None:
 
 
 @given(angles_rad, st.floats(0.0, math.pi / 2))
-def test_heading_is_that_of_a_phone_held_anywhere_from_upright_to_flat(yaw_rad: float, pitch_rad: float) -> None:
+def test_heading_is_that_of_a_phone_held_anywhere_from_upright_to_flat(
+    yaw_rad: float, pitch_rad: float
+) -> None:
     found = heading_rad(resting_pose(yaw_rad, pitch_rad))
     assert math.cos(found - yaw_rad) == pytest.approx(1.0, abs=1e-9)
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from fractions import Fraction
 
 import pytest
 from aiortc.mediastreams import MediaStreamError
 
-from mart.teleop_gateway.encoder import Codec, Encoded
+from mart.teleop_gateway.encoder import CLOCK_HZ, Codec, Encoded
 from mart.teleop_gateway.track import EncodedTrack
 
 
@@ -58,7 +59,8 @@ def test_pictures_pass_in_order_with_their_time() -> None:
             track.put(encoded(number))
         packets = [await track.recv() for _ in range(3)]
         assert [bytes(packet) for packet in packets] == [b"\1", b"\2", b"\3"]
-        assert [packet.pts * packet.time_base for packet in packets] == pytest.approx([0.05, 0.1, 0.15])
+        assert [packet.pts for packet in packets] == [4500, 9000, 13500]
+        assert {packet.time_base for packet in packets} == {Fraction(1, CLOCK_HZ)}
 
     on_loop(body)
 

@@ -40,7 +40,9 @@ def watched(model_message: Model) -> Iterator[Watched]:
 
 
 def state(world: World, tick: int) -> State:
-    return State(tick=tick, integration_state=world.integration_state(), stamps=TickStamps(stepped_ns=1000 + tick))
+    return State(
+        tick=tick, integration_state=world.integration_state(), stamps=TickStamps(stepped_ns=1000 + tick)
+    )
 
 
 def test_a_state_becomes_a_picture_with_its_stamps(watched: Watched, world: World) -> None:
@@ -122,5 +124,5 @@ def test_a_handover_waits_no_longer_than_told() -> None:
     handover.request_keyframe(Codec.H264)
     assert handover.wait(idle_s=10, keyframe_s=0.05) is None
     assert clock.monotonic_s() - start_s < 1.0
-    assert handover.take_orders() == (frozenset(), {Codec.H264})
+    assert handover.take_orders() == (frozenset(), frozenset({Codec.H264}))
     assert handover.take_orders() == (frozenset(), frozenset())

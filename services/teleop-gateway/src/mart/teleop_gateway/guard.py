@@ -103,12 +103,12 @@ class Guard:
 
     def _accept(self, frame: PhoneFrame, now_s: float) -> Hand:
         pose = Pose(np.array(frame.position), np.array(frame.quaternion_wxyz))
-        tracking = Flag.TRACKING in frame.flags
-        if not tracking or now_s - self._last_s > GAP_S or self._jumped(frame, pose):
+        pressed, tracking = Flag.CLUTCH in frame.flags, Flag.TRACKING in frame.flags
+        if not tracking or (pressed and (now_s - self._last_s > GAP_S or self._jumped(frame, pose))):
             self._must_let_go = True
-        elif Flag.CLUTCH not in frame.flags:
+        elif not pressed:
             self._must_let_go = False
-        hand = Hand(frame, pose, Flag.CLUTCH in frame.flags and not self._must_let_go)
+        hand = Hand(frame, pose, clutch=pressed and not self._must_let_go)
         self._last, self._last_s = hand, now_s
         return hand
 
