@@ -98,7 +98,9 @@ function render() {
   const waiting = room && !room.stale ? waitingText(room) : "";
   setText(byId("waiting"), waiting);
   setShown(byId("waiting"), waiting !== "");
-  setShown(byId("no-picture"), byId("video").videoWidth === 0);
+  const seen = byId("video").videoWidth > 0;
+  setShown(byId("no-picture"), !seen);
+  byId("picture").classList.toggle("live", seen);
   document.body.classList.toggle("engaged", Boolean(status?.engaged));
   document.body.classList.toggle("can-drive", Boolean(seat?.mine));
   setShown(document.querySelector(".hand"), Boolean(seat?.mine));

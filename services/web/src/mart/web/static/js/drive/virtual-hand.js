@@ -9,7 +9,7 @@ const SETTLE_S = 0.06; // how soon a pressed key reaches full speed
 const DRAG_SPEED_M_PER_S = 0.8; // under the arm's own limit, so that a drag is followed and not cut
 const DRAG_TURN_RAD_PER_S = 4;
 
-/** The pose is screen-aligned: x right, y up, z towards the person. It starts anew whenever the clutch is released. */
+/** The pose is screen-aligned: x right, y up, z towards the person. It drifts back to the middle while let go. */
 export class VirtualHand {
   position = [0, 0, 0];
   quaternionWxyz = IDENTITY;
@@ -27,7 +27,7 @@ export class VirtualHand {
   /** `move` and `turn` are what the keys ask for, each component -1 … 1; `engaged`: the clutch is held. */
   step({ engaged, move, turn, slow = false }, dtS) {
     if (!engaged) {
-      this.#rest();
+      this.#rest(dtS);
       return;
     }
     const share = 1 - Math.exp(-dtS / SETTLE_S);
@@ -42,9 +42,8 @@ export class VirtualHand {
     this.quaternionWxyz = normalize(multiply(rotation, this.quaternionWxyz));
   }
 
-  #rest() {
-    this.position = [0, 0, 0];
-    this.quaternionWxyz = IDENTITY;
+  #rest(dtS) {
+    this.position = scale(this.position, Math.exp(-dtS)); // in one step it would look like a jump
     this.#velocity = [0, 0, 0];
     this.#turn = [0, 0, 0];
     this.#dragged = [0, 0, 0];

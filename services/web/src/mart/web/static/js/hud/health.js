@@ -20,11 +20,11 @@ export function showHealth(status, room) {
   byId("grade").dataset.grade = grade;
   byId("delay").dataset.grade = grade;
   setText(byId("rate"), room ? `${room.real_time_factor.toFixed(2)}× real time` : "");
-  if (byId("health").open) showBreakdown(status);
+  if (byId("health").open) showBreakdown(status, room);
 }
 
-function showBreakdown(status) {
-  const rows = breakdown(status);
+function showBreakdown(status, room) {
+  const rows = [...breakdown(status), ["Real time", room ? `${room.real_time_factor.toFixed(2)}×` : "–"]];
   byId("breakdown").replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
 }
 
