@@ -18,6 +18,7 @@ from mart.protocol.messages import (
 from mart.protocol.tasks import get_task
 
 STALE_AFTER_S = 1.0  # a sim speaks five times a second
+DEFAULT_CONTROL_HZ = 20.0  # a task's horizon counts ticks at this rate
 GONE_AFTER_S = 3.0  # without its liveliness token; a router's restart takes every token for about 2 s
 
 Json = dict[str, Any]
@@ -142,9 +143,10 @@ def _task_json(status: RoomStatus) -> Json:
     try:
         task = get_task(status.task, len(status.seats))
     except (NotFound, InvalidInput):  # a newer sim than this service: show the task under its own name
-        title, instruction = status.task, ""
+        title, instruction, time_limit_s = status.task, "", None
     else:
         title, instruction = task.title, task.instruction
+        time_limit_s = task.horizon_ticks / DEFAULT_CONTROL_HZ
         titles = {subtask.name: subtask.title for subtask in task.subtasks}
     progress = status.progress
     subtasks = [
@@ -155,6 +157,7 @@ def _task_json(status: RoomStatus) -> Json:
         "task": status.task,
         "title": title,
         "instruction": instruction,
+        "time_limit_s": time_limit_s,
         "progress": {"subtasks": subtasks, "success": progress.success, "failed": progress.failed},
     }
 

@@ -15,6 +15,7 @@ import { followRooms } from "./live.js";
 import { waitingText } from "./words.js";
 
 const NOTICE_MS = 6000;
+const MOVED_KEY = "mart.moved";
 const [, , roomName, , armId] = location.pathname.split("/").map(decodeURIComponent);
 
 let room = null;
@@ -86,12 +87,13 @@ function heard(message) {
   if (message.type !== "tick") return;
   if (status === null) driver.adoptGripper(message.gripper);
   status = message;
+  if (message.engaged) localStorage.setItem(MOVED_KEY, "yes");
   render();
 }
 
 function render() {
   const seat = ownSeat();
-  strip.update({ room, seat, link, pending: confirm.pending });
+  strip.update({ room, seat, link, pending: confirm.pending, isNew: !localStorage.getItem(MOVED_KEY) });
   showHealth(status, room);
   panel.update(status, driver.view(status));
   if (room) showPartners(room, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")));

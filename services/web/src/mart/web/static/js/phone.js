@@ -87,9 +87,7 @@ async function start(tracks) {
     say("This phone could not start", `${error.message} Press Start to try again.`);
     return;
   }
-  coach = new Coach(document.body.dataset.mode);
-  if (localStorage.getItem(COACHED_KEY)) coach = null;
-  setText(byId("tip"), coach?.tip ?? "");
+  coach ??= localStorage.getItem(COACHED_KEY) ? null : new Coach(document.body.dataset.mode);
   setShown(byId("begin"), false);
 }
 
@@ -130,7 +128,7 @@ function sendFrame(nowMs) {
 function guide(hand, nowMs) {
   if (!tracker || !coach?.see(hand, nowMs)) return;
   feel("step");
-  setText(byId("tip"), coach.tip || "That is all. Good luck.");
+  showLink();
   if (coach.finished) localStorage.setItem(COACHED_KEY, "yes");
 }
 
@@ -146,7 +144,7 @@ function heard(message) {
 
 function showLink() {
   setText(byId("link"), linkText());
-  setText(byId("hold-text"), status?.engaged ? "Moving" : "Hold to move");
+  setText(byId("hold-text"), coach?.tip || (status?.engaged ? "Moving" : "Hold to move"));
 }
 
 function linkText() {

@@ -16,10 +16,11 @@ const ACTIONS = {
 };
 
 /**
- * `{ label, figure, detail, recording, actions }` for: the `room` (null: unknown), one's own `seat`, the connection
- * (`link`: state, problem, role) and the newest `saved` episode of this room (null: none yet).
+ * `{ label, figure, limit, detail, recording, actions }` for: the `room` (null: unknown), one's own `seat`, the connection
+ * (`link`: state, problem, role), the newest `saved` episode of this room (null: none yet), and whether one is new
+ * here (`isNew`): has not moved the arm yet.
  */
-export function stripView({ room, seat, link, saved }) {
+export function stripView({ room, seat, link, saved, isNew = false }) {
   if (!room || !seat) {
     return view("No such seat", "This room is not open, or it has no such arm.", [ACTIONS.lobby]);
   }
@@ -27,11 +28,13 @@ export function stripView({ room, seat, link, saved }) {
   if (!seat.mine) return watching(room, seat);
   if (link.state !== LinkState.LIVE) return offline(link);
   if (room.barrier === "stopped") return view("Stopped", "An emergency stop is on; whoever pressed it lets go.");
-  return PHASES[room.episode.phase](room, seat, saved);
+  return PHASES[room.episode.phase](room, seat, saved, isNew);
 }
 
+const FIRST_MOVES = "Hold space; W A S D move the arm over the table, Q lifts, E lowers. G works the gripper.";
+
 const PHASES = {
-  practice(room, seat, saved) {
+  practice(room, seat, saved, isNew) {
     const others = room.seats.filter((other) => other.operator === "human" && !other.mine);
     if (seat.ready) {
       const late = others.filter((other) => !other.ready).map((other) => other.name);
@@ -42,14 +45,15 @@ const PHASES = {
       return view("Practice", `${eager.join(" and ")} ${eager.length > 1 ? "are" : "is"} ready to record`, [ACTIONS.ready]);
     }
     if (saved) return view(`${outcomeText(saved.outcome)}`, savedText(saved), [ACTIONS.again]);
-    return view("Practice", "Nothing is recorded until everybody is ready.", [ACTIONS.ready]);
+    return view("Practice", isNew ? FIRST_MOVES : "Nothing is recorded until everybody is ready.", [ACTIONS.ready]);
   },
   countdown(room) {
     return { ...view("Starts in", room.instruction), figure: String(Math.max(1, Math.ceil(room.episode.remaining_s))) };
   },
   recording(room) {
     const actions = [ACTIONS.success, ACTIONS.failure, ACTIONS.discard];
-    return { ...view("Recording", "", actions), figure: clockTime(room.episode.elapsed_s), recording: true };
+    const limit = room.time_limit_s ? `of ${clockTime(room.time_limit_s)}` : "";
+    return { ...view("Recording", "", actions), figure: clockTime(room.episode.elapsed_s), limit, recording: true };
   },
   ended(room) {
     const reason = room.episode.reason ? `${room.episode.reason}. ` : "";
@@ -58,7 +62,7 @@ const PHASES = {
 };
 
 function view(label, detail, actions = []) {
-  return { label, figure: "", detail, recording: false, actions };
+  return { label, figure: "", limit: "", detail, recording: false, actions };
 }
 
 function watching(room, seat) {

@@ -18,12 +18,13 @@ export class Strip {
   }
 
   /** `pending`: the command whose key has to be pressed once more. */
-  update({ room, seat, link, pending }) {
+  update({ room, seat, link, pending, isNew }) {
     if (room && ["countdown", "recording"].includes(room.episode.phase)) this.#saved = null;
-    const view = stripView({ room, seat, link, saved: this.#saved });
+    const view = stripView({ room, seat, link, saved: this.#saved, isNew });
     setText(byId("state-label"), view.label);
     byId("state-label").classList.toggle("recording", view.recording);
     setText(byId("state-figure"), view.figure);
+    setText(byId("state-limit"), view.limit);
     setText(byId("state-detail"), view.detail);
     setShown(byId("state-detail"), view.detail !== "");
     this.#showSubtasks(view.recording ? room.progress.subtasks : []);

@@ -9,13 +9,13 @@ const CLOSED = 0.8;
 
 const TIPS = {
   xr: [
-    "Hold the coloured area. The arm follows while you hold.",
+    "Hold here. The arm follows while you hold.",
     "Keep holding, and move the phone up.",
     "Keep holding, and turn the phone.",
     "Slide the bar to close the gripper.",
   ],
   touch: [
-    "Hold the coloured area. The arm follows while you hold.",
+    "Hold here. The arm follows while you hold.",
     "Slide up on the strip at the right.",
     "Hold, and tilt the phone.",
     "Slide the bar to close the gripper.",
@@ -41,9 +41,9 @@ export class Coach {
     return this.#step >= DONE.length;
   }
 
-  /** "2 of 4. Keep holding …", or nothing when all is done. */
+  /** "2 of 4: Keep holding …", or nothing when all is done. */
   get tip() {
-    return this.finished ? "" : `${this.#step + 1} of ${DONE.length}. ${TIPS[this.mode][this.#step]}`;
+    return this.finished ? "" : `${this.#step + 1} of ${DONE.length}: ${TIPS[this.mode][this.#step]}`;
   }
 
   /** Takes in what the hand does; true where a step was just done. */

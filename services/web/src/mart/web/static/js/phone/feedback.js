@@ -3,7 +3,6 @@
 const PATTERNS = {
   engaged: [15],
   step: [15, 60, 15],
-  grasped: [35],
   late: [20, 60, 20],
   lost: [80, 60, 80],
   stopped: [200],
