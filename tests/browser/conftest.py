@@ -1,0 +1,31 @@
+"""A whole platform and a real Chromium for the browser tests."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser
+
+from mart.platform.browser import running_browser
+from mart.platform.plan import Options
+from mart.platform.supervise import Platform, running_platform
+from tests.support.processes import free_port
+
+
+@pytest.fixture(scope="module")
+def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
+    options = Options(
+        data_dir=tmp_path_factory.mktemp("platform"),
+        router=f"tcp/127.0.0.1:{free_port()}",
+        port=free_port(),
+        seed=1,
+    )
+    with running_platform(options) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with running_browser() as running:
+        yield running

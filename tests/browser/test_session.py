@@ -1,0 +1,184 @@
+"""A collection session as people live it: lobby, seats, phones, an episode with a reload in the middle, and leaving."""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from mcap.reader import make_reader
+from playwright.sync_api import Browser, expect
+
+from mart.platform.supervise import Platform
+from mart.protocol import keys
+from mart.protocol.bus.base import Sample
+from mart.protocol.codec import decode
+from mart.protocol.messages import OUTCOME_SUCCESS, Event, State
+from tests.browser.people import Person, Phone, person
+
+WAIT_S = 60.0
+
+
+class Room:
+    """What the bus says of the room: the truth that pages are held against."""
+
+    def __init__(self, platform: Platform) -> None:
+        self._states: queue.Queue[State] = queue.Queue()
+        self._events: queue.Queue[Event] = queue.Queue()
+        room = platform.options.room
+        self._subscriptions = [
+            platform.bus.subscribe(keys.state(room).key, self._on_state),
+            platform.bus.subscribe(keys.event(room).key, self._on_event),
+        ]
+
+    def next_state(self) -> State:
+        """One that has not been published yet."""
+        while not self._states.empty():
+            self._states.get_nowait()
+        return self._states.get(timeout=WAIT_S)
+
+    def height_m(self, arm: str) -> float:
+        state = self.next_state()
+        return next(one.tool_in_base.z for one in state.arms if one.arm == arm)
+
+    def await_height(self, arm: str, at_least_m: float) -> None:
+        while self.height_m(arm) < at_least_m:
+            pass
+
+    def await_event(self, what: str) -> Event:
+        while (event := self._events.get(timeout=WAIT_S)).WhichOneof("what") != what:
+            pass
+        return event
+
+    def close(self) -> None:
+        for subscription in self._subscriptions:
+            subscription.close()
+
+    def _on_state(self, sample: Sample) -> None:
+        self._states.put(decode(State, sample.payload))
+
+    def _on_event(self, sample: Sample) -> None:
+        self._events.put(decode(Event, sample.payload))
+
+
+@pytest.fixture
+def room(platform: Platform) -> Iterator[Room]:
+    with contextlib.closing(Room(platform)) as listening:
+        yield listening
+
+
+def lift(room: Room, arm: str, phone: Phone) -> None:
+    """The arm follows the phone up by most of 8 cm."""
+    before_m = room.height_m(arm)
+    phone.hold()
+    phone.move(0.0, 0.08, 0.0, duration_s=1.5)
+    room.await_height(arm, before_m + 0.06)
+    phone.let_go()
+
+
+@pytest.mark.timeout(300)
+def test_two_people_record_an_episode_and_a_third_cannot_take_their_seats(
+    browser: Browser, platform: Platform, room: Room
+) -> None:
+    with (
+        person(browser, platform, "Ana") as ana,
+        person(browser, platform, "Ben", 960, 720) as ben,
+    ):
+        ana.join()
+        ana.shoot("lobby")
+        ana.take_seat("arm0")
+        ben.join()
+        ben.take_seat("arm1")
+        third_person_is_refused(browser, platform)
+
+        phones = {"arm0": ana.pair_phone(), "arm1": ben.pair_phone()}
+        for arm, phone in phones.items():
+            lift(room, arm, phone)
+            phone.page.screenshot(path=f"test-output/browser/phone-{arm}.png")
+
+        for someone in (ana, ben):
+            someone.press("ready")
+        room.await_event("episode_started")
+        ana.sees("Recording")
+        ana.shoot("recording")
+        lift(room, "arm0", phones["arm0"])
+
+        ana.page.reload()
+        ana.await_picture()
+        ana.sees("Recording")
+        lift(room, "arm1", phones["arm1"])
+        ana.press("success")
+        ended = room.await_event("episode_ended")
+        saved = room.await_event("episode_saved")
+        assert ended.episode_ended.outcome == OUTCOME_SUCCESS
+        assert saved.episode_saved.verified, saved.episode_saved.verdict
+        expect(ana.page.locator("#state-detail")).to_contain_text("Saved and verified", timeout=30_000)
+        ana.shoot("saved")
+        ben.shoot("saved")
+        assert_file_tells_who_drove(platform.options.data_dir / saved.episode_saved.path)
+        leaves(ben)
+        leaves(ana)
+
+
+def third_person_is_refused(browser: Browser, platform: Platform) -> None:
+    with person(browser, platform, "Cleo", 360, 740) as cleo:
+        cleo.join()
+        for arm, holder in (("arm0", "Ana"), ("arm1", "Ben")):
+            expect(cleo.seat(arm)).to_contain_text(holder)
+            expect(cleo.seat(arm).get_by_role("button", name="Take seat")).to_be_hidden()
+        cleo.shoot("lobby-full")
+        # Also where the page is not asked.
+        answer = cleo.page.evaluate(
+            """async () => {
+              const response = await fetch("/api/rooms/room-1/seats/arm0", {
+                method: "POST",
+                headers: { "Content-Type": "application/json" },
+                body: JSON.stringify({ operator: "human" }),
+              });
+              return [response.status, (await response.json()).error.message];
+            }"""
+        )
+        assert answer[0] == 409
+        assert "Ana" in answer[1]
+
+
+def assert_file_tells_who_drove(path: Path) -> None:
+    with path.open("rb") as file:
+        metadata = {record.name: record.metadata for record in make_reader(file).iter_metadata()}
+    assert metadata["mart.episode"]["outcome"] == "success"
+    assert "Ana" in metadata["mart.operators"]["arm0"]
+    assert "Ben" in metadata["mart.operators"]["arm1"]
+
+
+def leaves(someone: Person) -> None:
+    someone.page.get_by_role("button", name="Leave").click()
+    expect(someone.page.locator(".seat").first).to_be_visible(timeout=30_000)
+    expect(someone.page.get_by_text(f"{someone.name}, ready")).to_have_count(0)
+
+
+@pytest.mark.timeout(240)
+def test_a_newcomer_alone_records_within_a_minute_of_try_it(
+    browser: Browser, platform: Platform, room: Room
+) -> None:
+    with person(browser, platform, "Nia") as nia:
+        nia.page.goto(platform.url)
+        nia.page.get_by_label("Your name").fill("Nia")
+        nia.page.get_by_label("Join code").fill(platform.join_code)
+        nia.page.get_by_role("button", name="Try it").click()
+        nia.await_picture()
+        before_m = room.height_m("arm0")
+        nia.page.keyboard.down("Space")
+        nia.page.keyboard.down("KeyQ")
+        room.await_height("arm0", before_m + 0.05)
+        nia.page.keyboard.up("KeyQ")
+        nia.page.keyboard.up("Space")
+        nia.shoot("practice")
+        nia.page.keyboard.press("n")
+        room.await_event("episode_started")
+        nia.sees("Recording")
+        nia.shoot("recording")
+        nia.press("failure")
+        room.await_event("episode_saved")
+        expect(nia.page.locator("#state-detail")).to_contain_text("Saved", timeout=30_000)
