@@ -44,7 +44,9 @@ def report(name: str, metrics: dict[str, Any], peer: dict[str, Any], bars: list[
         for key, value in figures.items():
             print(f"{title}  {key:<{width}}  {_readable(value)}")
     for bar in bars:
-        print(f"bar   {bar.name:<{width}}  {_readable(bar.value)} ({_readable(bar.bar)}) {'holds' if bar.holds else 'MISSED'}")
+        print(
+            f"bar   {bar.name:<{width}}  {_readable(bar.value)} ({_readable(bar.bar)}) {'holds' if bar.holds else 'MISSED'}"
+        )
     print(f"written to {path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path}")
 
 
@@ -63,7 +65,11 @@ def _processor() -> str:
     info = Path("/proc/cpuinfo")
     if not info.is_file():
         return platform.processor()
-    names = [line.partition(":")[2].strip() for line in info.read_text().splitlines() if line.startswith("model name")]
+    names = [
+        line.partition(":")[2].strip()
+        for line in info.read_text().splitlines()
+        if line.startswith("model name")
+    ]
     return names[0] if names else platform.machine()
 
 

@@ -61,7 +61,9 @@ class Expert:
         tool = Pose(
             observations[f"{name}/tool_position_in_base"], observations[f"{name}/tool_quaternion_in_base"]
         )
-        arrived = self._waypoint is not None and self._hand.has_reached(self._waypoint.pose_tool_in_base, tool)
+        arrived = self._waypoint is not None and self._hand.has_reached(
+            self._waypoint.pose_tool_in_base, tool
+        )
         return Sight(observations, sim_time_s, tool, float(observations[f"{name}/gripper"][0]), arrived)
 
     def _next_waypoint(self, sight: Sight) -> Waypoint:

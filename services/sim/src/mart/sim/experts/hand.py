@@ -29,12 +29,12 @@ class Hand:
 
     def move(self, goal: Pose, measured: Pose, pace: float, elapsed_s: float) -> Pose:
         """One moment of moving towards `goal` at `pace` times the usual speed; the pose to command."""
-        start = self._leashed(measured)
+        start = self._reference or measured
         factor = pace * self._speed_factor
         shift, turn = difference(goal, start)
         shift = _shortened(shift, _stride(shift, self._skill.speed_m_per_s * factor, elapsed_s))
         turn = _shortened(turn, _stride(turn, self._skill.turn_rad_per_s * factor, elapsed_s))
-        self._reference = moved(start, shift, turn)
+        self._reference = _leashed(moved(start, shift, turn), measured)
         self._shake(elapsed_s)
         return moved(self._reference, self._tremor[:3], self._tremor[3:])
 
@@ -51,12 +51,6 @@ class Hand:
         last = self._reference or measured
         self._reference = None
         return last
-
-    def _leashed(self, measured: Pose) -> Pose:
-        if self._reference is None:
-            return measured
-        shift, turn = difference(self._reference, measured)
-        return moved(measured, _shortened(shift, _LEASH_M), _shortened(turn, _LEASH_RAD))
 
     def _shake(self, elapsed_s: float) -> None:
         """An Ornstein-Uhlenbeck step, exact for any time."""
@@ -75,6 +69,11 @@ def moved(start: Pose, shift: NDArray[np.float64], turn: NDArray[np.float64]) ->
     """The inverse of `difference`."""
     turned = Pose.exp(np.concatenate([np.zeros(3), turn])) @ Pose(np.zeros(3), start.quaternion_wxyz)
     return Pose(start.position + shift, turned.quaternion_wxyz)
+
+
+def _leashed(reference: Pose, measured: Pose) -> Pose:
+    shift, turn = difference(reference, measured)
+    return moved(measured, _shortened(shift, _LEASH_M), _shortened(turn, _LEASH_RAD))
 
 
 def _near(goal: Pose, pose: Pose, metres: float, radians: float) -> bool:

@@ -35,15 +35,18 @@ def finger_target_m(gripper: float) -> float:
     return STROKE_M * (1.0 - 2.0 * gripper)
 
 
-def add_fingers(
-    spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: str, masks: dict[str, int]
-) -> None:
+def add_fingers(spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: str, masks: dict[str, int]) -> None:
     # Turned over, so that the tool's axes are the base's while the hand points straight down: its usual orientations
     # are then far from where a canonical quaternion (w >= 0) jumps.
     hand.add_site(name=f"{arm}/tool", pos=(0, 0, TOOL_Z_M), quat=(0, 1, 0, 0), size=(0.005, 0, 0), group=4)
     for side, turn in (("left", (1.0, 0.0, 0.0, 0.0)), ("right", (0.0, 0.0, 0.0, 1.0))):
         finger = hand.add_body(name=f"{arm}/{side}_finger", pos=(0, 0, FINGER_Z_M), quat=turn)
-        finger.mass, finger.ipos, finger.fullinertia, finger.explicitinertial = _MASS_KG, (0, 0, 0), _INERTIA, True
+        finger.mass, finger.ipos, finger.fullinertia, finger.explicitinertial = (
+            _MASS_KG,
+            (0, 0, 0),
+            _INERTIA,
+            True,
+        )
         finger.add_joint(
             name=f"{arm}/{side}_finger",
             type=mujoco.mjtJoint.mjJNT_SLIDE,
@@ -83,7 +86,13 @@ def _add_pads(finger: mujoco.MjsBody, name: str, masks: dict[str, int]) -> None:
         **masks,
     )
     finger.add_geom(
-        name=f"{name}_knuckle", type=box, size=(0.010, 0.008, 0.017), pos=(0, 0.014, 0.0176), condim=1, group=3, **masks
+        name=f"{name}_knuckle",
+        type=box,
+        size=(0.010, 0.008, 0.017),
+        pos=(0, 0.014, 0.0176),
+        condim=1,
+        group=3,
+        **masks,
     )
 
 

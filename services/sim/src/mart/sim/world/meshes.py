@@ -21,7 +21,14 @@ def mesh_path(part: str, detail: Detail) -> Path:
     package = find_spec("gymnasium_robotics")
     if package is None or package.origin is None:
         raise Unavailable("The Panda's meshes are missing: pip install gymnasium-robotics.")
-    path = Path(package.origin).parent / _FOLDER / ("collision" if detail == "hull" else "visual") / f"{part}.stl"
+    path = (
+        Path(package.origin).parent
+        / _FOLDER
+        / ("collision" if detail == "hull" else "visual")
+        / f"{part}.stl"
+    )
     if not path.is_file():
-        raise Unavailable(f"{path} is missing: install the gymnasium-robotics version named in constraints.txt.")
+        raise Unavailable(
+            f"{path} is missing: install the gymnasium-robotics version named in constraints.txt."
+        )
     return path

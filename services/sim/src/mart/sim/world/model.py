@@ -23,13 +23,17 @@ def substeps(control_hz: float) -> tuple[int, float]:
     """
     low, high = _CONTROL_HZ
     if not low <= control_hz <= high:
-        raise InvalidInput(f"A control rate of {control_hz} Hz was given; it must be from {low:g} to {high:g} Hz.")
+        raise InvalidInput(
+            f"A control rate of {control_hz} Hz was given; it must be from {low:g} to {high:g} Hz."
+        )
     period_s = 1.0 / control_hz
     number = math.ceil(period_s / _LARGEST_TIMESTEP_S - 1e-9)
     return number, period_s / number
 
 
-def build(scene: Scene, timestep_s: float, detail: Detail = "hull", gains: osc.Gains | None = None) -> mujoco.MjModel:
+def build(
+    scene: Scene, timestep_s: float, detail: Detail = "hull", gains: osc.Gains | None = None
+) -> mujoco.MjModel:
     spec = mujoco.MjSpec()
     spec.modelname = scene.task.name
     spec.compiler.degree = False

@@ -20,7 +20,9 @@ HOLD_GOAL, NEW_DELTA = 1.0, 2.0
 
 # One arm's part of userdata: mode, delta (6), finger, goal position (3), goal rotation (9), posture (7).
 MODE = 0
-COMMAND = slice(1, 8)  # delta along the base frame's axes (metres, then rotation vector), then finger target (metres)
+COMMAND = slice(
+    1, 8
+)  # delta along the base frame's axes (metres, then rotation vector), then finger target (metres)
 GOAL_POSITION = slice(8, 11)
 GOAL_ROTATION = slice(11, 20)
 POSTURE = slice(20, 27)

@@ -35,7 +35,11 @@ class Link:
     inertia: tuple[float, float, float, float, float, float]
 
 
-_BASE_MASS = (0.629769, (-0.041018, -0.00014, 0.049974), (0.00315, 0.00388, 0.004285, 8.29e-7, 0.00015, 8.23e-6))
+_BASE_MASS = (
+    0.629769,
+    (-0.041018, -0.00014, 0.049974),
+    (0.00315, 0.00388, 0.004285, 8.29e-7, 0.00015, 8.23e-6),
+)
 _HAND_MASS = (0.73, (-0.01, 0.0, 0.03), (0.001, 0.0025, 0.0017, 0.0, 0.0, 0.0))
 
 LINKS = (
@@ -82,7 +86,9 @@ def _add_mesh(spec: mujoco.MjSpec, part: str, level: Detail) -> None:
 def add_panda(spec: mujoco.MjSpec, arm: Arm, index: int, detail: Detail) -> None:
     """Adds the arm with its gripper, joints, motors and the site `{arm}/tool` at the middle of the finger pads."""
     body = spec.worldbody.add_body(
-        name=f"{arm.name}/base", pos=arm.pose_base_in_world.position, quat=arm.pose_base_in_world.quaternion_wxyz
+        name=f"{arm.name}/base",
+        pos=arm.pose_base_in_world.position,
+        quat=arm.pose_base_in_world.quaternion_wxyz,
     )
     _set_inertia(body, *_BASE_MASS)
     _add_shell(body, "link0", detail, _masks(index, reaches_objects=False))
@@ -113,10 +119,16 @@ def _masks(index: int, *, reaches_objects: bool) -> dict[str, int]:
     cannot meet the things on the table."""
     own = 2 << index
     others = sum(2 << other for other in range(MAX_ARMS) if other != index)
-    return {"contype": own, "conaffinity": others | 1} if reaches_objects else {"contype": 0, "conaffinity": others}
+    return (
+        {"contype": own, "conaffinity": others | 1}
+        if reaches_objects
+        else {"contype": 0, "conaffinity": others}
+    )
 
 
-def _set_inertia(body: mujoco.MjsBody, mass: float, center: tuple[float, ...], inertia: tuple[float, ...]) -> None:
+def _set_inertia(
+    body: mujoco.MjsBody, mass: float, center: tuple[float, ...], inertia: tuple[float, ...]
+) -> None:
     body.mass, body.ipos, body.fullinertia, body.explicitinertial = mass, center, inertia, True
 
 

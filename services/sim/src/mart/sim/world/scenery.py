@@ -18,7 +18,11 @@ from mart.sim.world.shadows import add_shadow, add_shadow_material
 TABLE_HALF_M = (0.60, 0.55)
 _TABLE_THICKNESS_M = 0.04
 FLOOR_Z_M = -0.75
-_BOX, _PLANE, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_CYLINDER
+_BOX, _PLANE, _CYLINDER = (
+    mujoco.mjtGeom.mjGEOM_BOX,
+    mujoco.mjtGeom.mjGEOM_PLANE,
+    mujoco.mjtGeom.mjGEOM_CYLINDER,
+)
 
 
 @dataclass(frozen=True)
@@ -54,7 +58,11 @@ def add_room(spec: mujoco.MjSpec, task: Task) -> None:
     world.add_geom(type=_PLANE, size=(4, 4, 0.1), pos=(0, 0, FLOOR_Z_M), material="floor", **looks)
     half_x, half_y = TABLE_HALF_M
     world.add_geom(
-        name="table", type=_BOX, size=(half_x, half_y, _TABLE_THICKNESS_M / 2), pos=(0, 0, -_TABLE_THICKNESS_M / 2), material="edge"
+        name="table",
+        type=_BOX,
+        size=(half_x, half_y, _TABLE_THICKNESS_M / 2),
+        pos=(0, 0, -_TABLE_THICKNESS_M / 2),
+        material="edge",
     )
     world.add_geom(type=_PLANE, size=(half_x, half_y, 0.1), pos=(0, 0, 0.0003), material="table", **looks)
     for x in (-1, 1):
@@ -64,8 +72,21 @@ def add_room(spec: mujoco.MjSpec, task: Task) -> None:
             world.add_geom(type=_CYLINDER, size=size, pos=leg, material="metal", **looks)
     for arm in task.arms:
         x, y, _ = arm.pose_base_in_world.position
-        world.add_geom(type=_CYLINDER, size=(0.10, -FLOOR_Z_M / 2 - 0.012, 0), pos=(x, y, FLOOR_Z_M / 2 - 0.012), material="metal", **looks)
-        world.add_geom(type=_CYLINDER, size=(0.125, 0.012, 0), pos=(x, y, -0.012), material="paint", rgba=rgba(arm.color), **looks)
+        world.add_geom(
+            type=_CYLINDER,
+            size=(0.10, -FLOOR_Z_M / 2 - 0.012, 0),
+            pos=(x, y, FLOOR_Z_M / 2 - 0.012),
+            material="metal",
+            **looks,
+        )
+        world.add_geom(
+            type=_CYLINDER,
+            size=(0.125, 0.012, 0),
+            pos=(x, y, -0.012),
+            material="paint",
+            rgba=rgba(arm.color),
+            **looks,
+        )
         add_shadow(spec, arm.name, radius_m=0.065, tint=arm.color)
 
 

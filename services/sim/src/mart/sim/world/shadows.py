@@ -27,7 +27,9 @@ class Shadows:
             for i in range(model.nbody)
             if model.body_mocapid[i] >= 0
         ]
-        self._tools = [(mocap, model.site(f"{name}/tool").id) for name, mocap in casters if _is_arm(model, name)]
+        self._tools = [
+            (mocap, model.site(f"{name}/tool").id) for name, mocap in casters if _is_arm(model, name)
+        ]
         self._things = [(mocap, model.body(name).id) for name, mocap in casters if not _is_arm(model, name)]
         self._data = data
 

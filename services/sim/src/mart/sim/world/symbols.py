@@ -9,7 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 # Corners and the angle of the first one; equal areas look equally large.
-_POLYGONS = {"circle": (32, 0.0), "square": (4, math.pi / 4), "triangle": (3, math.pi / 2), "diamond": (4, 0.0)}
+_POLYGONS = {
+    "circle": (32, 0.0),
+    "square": (4, math.pi / 4),
+    "triangle": (3, math.pi / 2),
+    "diamond": (4, 0.0),
+}
 _THICKNESS_M = 0.0004
 _WHITE = (0.98, 0.98, 0.98, 1.0)
 

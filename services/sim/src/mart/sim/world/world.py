@@ -22,14 +22,18 @@ from mart.sim.world import kinematics, model, osc, panda
 from mart.sim.world.arm import MeasuredArm
 from mart.sim.world.gripper import STROKE_M, finger_target_m
 from mart.sim.world.meshes import Detail
-from mart.sim.world.shadows import Shadows
 from mart.sim.world.progress import Progress, next_success_ticks
+from mart.sim.world.shadows import Shadows
 
 Array = NDArray[np.float64]
 
 ACTION_SIZE = 7  # 6 of motion, 1 of gripper
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
-_FATAL = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
+_FATAL = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
 
 
 class Diverged(Corrupt):
@@ -59,7 +63,11 @@ class World:
         self._arms = {arm.name: MeasuredArm(self.model, self.data, arm.name) for arm in scene.task.arms}
         self._shadows = Shadows(self.model, self.data)
         blocks = self.data.userdata[: osc.BLOCK_SIZE * len(self.arms)].reshape(len(self.arms), osc.BLOCK_SIZE)
-        self._modes, self._commands, self._postures = blocks[:, osc.MODE], blocks[:, osc.COMMAND], blocks[:, osc.POSTURE]
+        self._modes, self._commands, self._postures = (
+            blocks[:, osc.MODE],
+            blocks[:, osc.COMMAND],
+            blocks[:, osc.POSTURE],
+        )
 
     @classmethod
     def build(
@@ -143,7 +151,9 @@ class World:
         """
         actions = np.asarray(actions, dtype=np.float64)
         if actions.shape != (len(self.arms), ACTION_SIZE):
-            raise InvalidInput(f"Actions of shape {actions.shape} were given; ({len(self.arms)}, {ACTION_SIZE}) is needed.")
+            raise InvalidInput(
+                f"Actions of shape {actions.shape} were given; ({len(self.arms)}, {ACTION_SIZE}) is needed."
+            )
         if not np.isfinite(actions).all():
             raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
         self._commands[:] = np.clip(actions, -1.0, 1.0) * self._action_scale

@@ -1,0 +1,125 @@
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from mart.protocol.errors import NotFound
+from mart.protocol.pose import Pose
+from mart.sim.experts import Expert, get_skill, skill_names
+from mart.sim.world import World
+
+TASK = "two_arm_multi_cube_lifting"
+
+
+@dataclass
+class Ended:
+    success: bool
+    ticks: int
+
+
+@pytest.fixture(scope="module")
+def worlds() -> dict[int, World]:
+    return {arms: World.build(TASK, arms=arms) for arms in (2, 3)}
+
+
+def perform(world: World, seed: int, skill: str, late_ticks: int = 0, most_ticks: int = 600) -> Ended:
+    """One episode in lockstep; every expert sees the world as it was `late_ticks` ago."""
+    world.reset(seed)
+    randoms = np.random.default_rng(seed).spawn(len(world.arms))
+    experts = {
+        arm: Expert(world.task, arm, get_skill(skill), random)
+        for arm, random in zip(world.arms, randoms, strict=True)
+    }
+    targets = {arm: world.tool_pose_in_base(arm) for arm in world.arms}
+    seen = deque(
+        [({arm: world.observations_for(arm) for arm in world.arms}, world.sim_time_s)], maxlen=late_ticks + 1
+    )
+    for tick in range(1, most_ticks + 1):
+        actions = []
+        for arm, expert in experts.items():
+            intent = expert.act(seen[0][0][arm], seen[0][1])
+            if intent.engaged:
+                targets[arm] = intent.target_tool_in_base
+            actions.append(world.action_for(arm, targets[arm], intent.gripper))
+        world.step(actions)
+        seen.append(({arm: world.observations_for(arm) for arm in world.arms}, world.sim_time_s))
+        progress = world.progress()
+        if progress.success or progress.failed:
+            return Ended(progress.success, tick)
+    return Ended(False, most_ticks)
+
+
+@pytest.mark.parametrize("skill", skill_names())
+@pytest.mark.parametrize("late_ticks", [0, 4])
+def test_experts_succeed_even_when_they_see_late(
+    worlds: dict[int, World], skill: str, late_ticks: int
+) -> None:
+    assert [perform(worlds[2], seed, skill, late_ticks).success for seed in range(5)] == [True] * 5
+
+
+def test_three_experts_share_a_world(worlds: dict[int, World]) -> None:
+    assert perform(worlds[3], 0, "expert").success
+
+
+def test_better_skill_is_faster(worlds: dict[int, World]) -> None:
+    means = [np.mean([perform(worlds[2], seed, skill).ticks for seed in range(3)]) for skill in skill_names()]
+    assert means[0] * 1.2 < means[1]
+    assert means[1] * 1.2 < means[2]
+    assert means[0] < 100
+
+
+def test_the_same_seed_wants_the_same(worlds: dict[int, World]) -> None:
+    assert perform(worlds[2], 1, "novice") == perform(worlds[2], 1, "novice")
+
+
+def test_shown_the_same_moment_again_an_expert_wants_the_same_again(worlds: dict[int, World]) -> None:
+    world = worlds[2]
+    world.reset(0)
+    expert = Expert(world.task, "arm0", get_skill("average"), np.random.default_rng(0))
+    seen = world.observations_for("arm0")
+    wanted = [expert.act(seen, 3.0 + 0.05 * tick) for tick in range(30)][-1]
+    for _ in range(20):
+        again = expert.act(seen, 3.0 + 0.05 * 29)
+        metres, radians = again.target_tool_in_base.distance_to(wanted.target_tool_in_base)
+        assert (metres, radians, again.gripper) == pytest.approx((0, 0, wanted.gripper), abs=1e-6)
+
+
+def test_a_dropped_cube_is_picked_up_again(worlds: dict[int, World]) -> None:
+    world = worlds[2]
+    world.reset(2)
+    experts = {
+        arm: Expert(world.task, arm, get_skill("expert"), np.random.default_rng(0)) for arm in world.arms
+    }
+    targets: dict[str, Pose] = {}
+    knocked = False
+    for _ in range(400):
+        actions = []
+        for arm, expert in experts.items():
+            intent = expert.act(world.observations_for(arm), world.sim_time_s)
+            targets[arm] = intent.target_tool_in_base
+            actions.append(world.action_for(arm, targets[arm], intent.gripper))
+        world.step(actions)
+        if world.progress().success_ticks == 5 and not knocked:
+            knocked = True
+            world.data.joint("cube0").qpos[:3] = (-0.15, 0.1, 0.02)
+        if world.progress().success:
+            break
+    assert knocked
+    assert world.progress().success
+
+
+def test_an_expert_lets_go_of_the_clutch_now_and_then(worlds: dict[int, World]) -> None:
+    world = worlds[2]
+    world.reset(0)
+    expert = Expert(world.task, "arm0", get_skill("novice"), np.random.default_rng(0))
+    intents = [expert.act(world.observations_for("arm0"), 0.05 * tick) for tick in range(40)]
+    assert not intents[0].engaged
+    assert intents[-1].engaged
+
+
+def test_an_unknown_skill_is_refused() -> None:
+    with pytest.raises(NotFound, match="Did you mean 'expert'"):
+        get_skill("expret")
