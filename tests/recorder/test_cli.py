@@ -1,0 +1,131 @@
+"""`mart episodes …` as people and scripts use it."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mart.protocol.cli import main
+from mart.recorder.labels import Kind, read
+from tests.recorder import synthetic
+from tests.recorder.files import write_episode, write_part
+from tests.support.processes import free_port
+
+
+class Mart:
+    """Runs `mart …` in this process, with no router anywhere."""
+
+    def __init__(
+        self, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], data_dir: Path
+    ) -> None:
+        self._monkeypatch, self._capsys = monkeypatch, capsys
+        self.episodes_dir = data_dir / "episodes"
+        monkeypatch.setenv("MART_DATA_DIR", str(data_dir))
+        monkeypatch.setenv("MART_ROUTER", f"tcp/127.0.0.1:{free_port()}")
+
+    def __call__(self, *arguments: object, code: int = 0) -> str:
+        """Standard output, or standard error where it fails."""
+        self._monkeypatch.setattr("sys.argv", ["mart", *map(str, arguments)])
+        with pytest.raises(SystemExit) as stopped:
+            main()
+        printed = self._capsys.readouterr()
+        assert stopped.value.code == code, printed
+        return printed.err if code and not printed.out else printed.out
+
+    def json(self, *arguments: object, code: int = 0) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads(self(*arguments, "--json", code=code))
+        return found
+
+
+@pytest.fixture
+def mart(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Mart:
+    return Mart(monkeypatch, capsys, tmp_path)
+
+
+@pytest.fixture
+def path(mart: Mart) -> Path:
+    return write_episode(mart.episodes_dir).path
+
+
+def test_list_json_has_what_scripts_ask_for(mart: Mart, path: Path) -> None:
+    (row,) = mart.json("episodes", "list")["episodes"]
+    assert row["path"] == str(path)
+    assert (row["task"], row["outcome"], row["verified"], row["ticks"]) == (
+        synthetic.TASK,
+        "success",
+        True,
+        30,
+    )
+    assert row["real_time_factor"] == pytest.approx(1.0)
+    assert row["operators"] == {"arm0": "human Ana", "arm1": "hold"}
+
+
+@pytest.mark.parametrize("what", ["root", "day", "file", "nothing"])
+def test_list_takes_files_and_folders(mart: Mart, path: Path, what: str) -> None:
+    given = {"root": [path.parents[1]], "day": [path.parent], "file": [path], "nothing": []}[what]
+    assert len(mart.json("episodes", "list", *given)["episodes"]) == 1
+    assert "human Ana" in mart("episodes", "list", *given)
+
+
+def test_a_day_gets_no_catalogue_of_its_own(mart: Mart, path: Path) -> None:
+    mart("episodes", "list", path.parent)
+    assert [entry.name for entry in path.parent.iterdir()] == [path.name]
+
+
+def test_without_episodes_it_says_so(mart: Mart) -> None:
+    assert mart("episodes", "list") == "There are no episodes.\n"
+    assert mart.json("episodes", "list") == {"episodes": []}
+
+
+def test_show_tells_all(mart: Mart, path: Path) -> None:
+    metadata = mart.json("episodes", "show", path)["metadata"]
+    assert metadata["mart.episode"]["room"] == synthetic.ROOM
+    assert "waited_for_arm1_s" in mart("episodes", "show", path)
+
+
+def test_labels_are_laid_over_and_the_file_is_untouched(mart: Mart, path: Path) -> None:
+    before = path.read_bytes()
+    mart("episodes", "label", path, "--outcome", "failure", "--note", "cube slipped", "--drop")
+    (row,) = mart.json("episodes", "list")["episodes"]
+    assert (row["outcome"], row["note"], row["dropped"]) == ("failure", "cube slipped", True)
+    mart("episodes", "label", path, "--undrop")
+    assert not mart.json("episodes", "list")["episodes"][0]["dropped"]
+    assert [label.kind for label in read(mart.episodes_dir)] == [Kind.OUTCOME, Kind.NOTE, Kind.USE, Kind.USE]
+    assert path.read_bytes() == before
+
+
+def test_repair_needs_no_router(mart: Mart) -> None:
+    file, _, _ = write_part(mart.episodes_dir, synthetic.states(10))
+    file.flush()
+    file.abandon()
+    (one,) = mart.json("episodes", "repair")["repaired"]
+    assert one["part"] == str(file.path)
+    assert mart.json("episodes", "list")["episodes"][0]["verdict"] == "unverified"
+    assert mart("episodes", "repair") == "There is nothing to repair.\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("list", "nowhere"), "There is no nowhere"),
+        (("show", "nowhere.mcap"), "There is no file nowhere.mcap"),
+        (("verify",), "Could not reach a router"),
+        (("label", "{path}"), "Nothing to say was given"),
+        (("label", "{path}", "--note", "x" * 3000), "A note of 3000 characters was given"),
+        (("replay", "{path}"), "Could not reach a router"),
+    ],
+)
+def test_a_failure_is_one_line(mart: Mart, path: Path, arguments: tuple[str, ...], sentence: str) -> None:
+    said = mart("episodes", *(argument.format(path=path) for argument in arguments), code=1)
+    assert re.fullmatch(r"mart: .+\n", said)
+    assert sentence in said
+
+
+def test_a_broken_file_is_named(mart: Mart, path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:5000])
+    assert "is damaged" in mart("episodes", "show", path, code=1)
+    assert "is damaged" in mart("episodes", "list")

@@ -1,0 +1,202 @@
+"""The recorder as a process on a real bus: with a real room and its replica, and killed in the middle of an episode."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager
+from pathlib import Path
+
+import pytest
+
+from mart.protocol import clock, codec, keys, recording
+from mart.protocol.bus import Bus, Sample
+from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.errors import Conflict
+from mart.protocol.messages import (
+    OPERATOR_SCRIPT,
+    EpisodeRequest,
+    Event,
+    RoomReply,
+    SeatRequest,
+    State,
+    raise_error,
+)
+from mart.recorder.reader import EpisodeFile
+from tests.recorder import synthetic
+from tests.support.processes import Running, running_router, running_service, started
+
+_PATIENCE_S = 60.0
+_ROOM = synthetic.ROOM
+_ALIVE = keys.alive("recorder", "recorder-1")
+
+
+class Ear:
+    """Hears the events of all rooms."""
+
+    def __init__(self, bus: Bus) -> None:
+        self._events: list[Event] = []
+        self._heard = threading.Condition()
+        self._subscription = bus.subscribe(keys.EVERY_EVENT, self._hear)
+
+    def await_saved(self, count: int) -> list[Event.EpisodeSaved]:
+        """The saved episodes, as soon as there are so many."""
+
+        def saved() -> list[Event.EpisodeSaved]:
+            return [event.episode_saved for event in self._events if event.HasField("episode_saved")]
+
+        with self._heard:
+            assert self._heard.wait_for(lambda: len(saved()) >= count, _PATIENCE_S), self._events
+            return saved()
+
+    def close(self) -> None:
+        self._subscription.close()
+
+    def _hear(self, sample: Sample) -> None:
+        with self._heard:
+            self._events.append(codec.decode(Event, sample.payload))
+            self._heard.notify_all()
+
+
+@pytest.fixture
+def endpoint() -> Iterator[str]:
+    with running_router() as endpoint:
+        yield endpoint
+
+
+@pytest.fixture
+def bus(endpoint: str) -> Iterator[Bus]:
+    with ZenohBus.connect(endpoint) as bus:
+        yield bus
+
+
+@contextmanager
+def recorder(endpoint: str, data_dir: Path) -> Iterator[Running]:
+    with running_service(["recorder"], endpoint, data_dir, kind="recorder", id="recorder-1") as running:
+        yield running
+
+
+def mart(endpoint: str, data_dir: Path, *command: str) -> dict[str, object]:
+    """What a command prints as JSON."""
+    with started([*command, "--json"], endpoint, data_dir) as running:
+        assert running.process.wait(_PATIENCE_S) == 0, running.log()
+        found: dict[str, object] = json.loads(running.log())
+        return found
+
+
+class ToyRoom:
+    """Publishes the toy room's episode in real time, as a sim would."""
+
+    def __init__(self, bus: Bus) -> None:
+        self._states = bus.publisher(keys.state(_ROOM))
+        self._events = bus.publisher(keys.event(_ROOM))
+        self._model = bus.serve(
+            keys.model(_ROOM), lambda request: request.reply(codec.encode(synthetic.MODEL))
+        )
+
+    def play(self, states: list[State], period_s: float = 0.05) -> None:
+        due_s = clock.monotonic_s()
+        for state in states:
+            clock.sleep_s(due_s - clock.monotonic_s())
+            self._states.put(codec.encode(state))
+            due_s += period_s
+
+    def say(self, event: Event) -> None:
+        self._events.put(codec.encode(event))
+
+    def close(self) -> None:
+        self._model.close()
+
+
+def recorded_ticks(path: Path) -> list[int]:
+    return [message.sequence for message in EpisodeFile.open(path).messages(recording.STATE)]
+
+
+def test_kill_9_loses_a_second_at_most_and_recording_goes_on(endpoint: str, bus: Bus, tmp_path: Path) -> None:
+    """20 Hz: a second is 20 ticks."""
+    first = synthetic.states(100)
+    with closing(Ear(bus)) as ear, closing(ToyRoom(bus)) as room:
+        with recorder(endpoint, tmp_path) as running:
+            room.say(synthetic.started())
+            room.play(first[:61])
+            gone = threading.Event()
+            with closing(bus.watch(_ALIVE, lambda _key, alive: None if alive else gone.set())):
+                running.kill()
+                assert gone.wait(1.0), "nobody was told within a second"
+            (part,) = tmp_path.rglob("*.mcap.part")
+            assert recorded_ticks(part)[-1] >= 60 - 20
+        with recorder(endpoint, tmp_path):
+            ear.await_saved(1)
+            room.play(first[61:])
+            room.say(synthetic.ended(100))
+            ear.await_saved(2)
+            room.say(synthetic.started(2, 200))
+            room.play(synthetic.states(20, number=2, first_tick=200))
+            room.say(synthetic.ended(220, 2))
+            saved = ear.await_saved(3)
+    repaired, rest, second = (tmp_path / event.path for event in saved)
+    assert EpisodeFile.open(repaired).episode.repaired
+    assert recorded_ticks(repaired) == list(range(recorded_ticks(repaired)[-1] + 1))
+    assert recorded_ticks(rest) == list(range(61, 101))
+    assert not EpisodeFile.open(rest).episode.complete
+    assert EpisodeFile.open(rest).episode.outcome == "success"
+    assert EpisodeFile.open(second).episode.complete
+
+
+def _ask(bus: Bus, topic: keys.Topic, request: SeatRequest | EpisodeRequest) -> None:
+    raise_error(codec.decode(RoomReply, bus.query(topic, codec.encode(request), 5.0)).error)
+
+
+def _begin_episode(bus: Bus) -> None:
+    """As soon as the room is in practice."""
+    deadline_s = clock.monotonic_s() + _PATIENCE_S
+    ready = EpisodeRequest(ready=EpisodeRequest.Ready(arm="arm0", ready=True))
+    while True:
+        try:
+            return _ask(bus, keys.episode(_ROOM), ready)
+        except Conflict:  # the episode before has just ended
+            if clock.monotonic_s() > deadline_s:
+                raise
+            clock.sleep_s(0.1)
+
+
+def test_an_episode_of_two_scripts_is_recorded_and_verified_bit_for_bit(
+    endpoint: str, bus: Bus, tmp_path: Path
+) -> None:
+    services = {
+        ("sim", "--room", _ROOM): ("sim", _ROOM),
+        ("replica",): ("replica", "replica-1"),
+        ("experts",): ("experts", "experts"),
+        ("recorder",): ("recorder", "recorder-1"),
+    }
+    with ExitStack() as running, closing(Ear(bus)) as ear:
+        for command, (kind, name) in services.items():
+            running.enter_context(running_service(command, endpoint, tmp_path, kind=kind, id=name))
+        for arm in ("arm0", "arm1"):
+            assign = SeatRequest.Assign(arm=arm, operator=OPERATOR_SCRIPT)
+            _ask(bus, keys.seat(_ROOM), SeatRequest(assign=assign))
+        _begin_episode(bus)
+        (saved,) = ear.await_saved(1)
+        path = tmp_path / saved.path
+        listed = mart(endpoint, tmp_path, "episodes", "list")["episodes"]
+        verified = mart(endpoint, tmp_path, "episodes", "verify", str(path))
+        replayed = mart(endpoint, tmp_path, "episodes", "replay", str(path))
+    assert (saved.verified, saved.verdict) == (True, "verified"), EpisodeFile.open(path).verification.detail
+    assert isinstance(listed, list)
+    (row,) = listed
+    assert row["path"] == str(path)
+    assert (row["outcome"], row["verified"], row["complete"]) == ("success", True, True)
+    assert row["operators"] == {"arm0": "script", "arm1": "script"}
+    assert row["real_time_factor"] > 0.9
+    assert verified["episodes"] == [
+        {
+            "path": str(path),
+            "verdict": "verified",
+            "detail": f"{row['ticks']} ticks re-simulated bit for bit.",
+        }
+    ]
+    episode = EpisodeFile.open(path).episode
+    assert replayed["stretches"] == [
+        {"first_tick": episode.first_tick, "last_tick": episode.last_tick, "different": []}
+    ]
