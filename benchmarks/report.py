@@ -44,9 +44,8 @@ def report(name: str, metrics: dict[str, Any], peer: dict[str, Any], bars: list[
         for key, value in figures.items():
             print(f"{title}  {key:<{width}}  {_readable(value)}")
     for bar in bars:
-        print(
-            f"bar   {bar.name:<{width}}  {_readable(bar.value)} ({_readable(bar.bar)}) {'holds' if bar.holds else 'MISSED'}"
-        )
+        verdict = "holds" if bar.holds else "MISSED"
+        print(f"bar   {bar.name:<{width}}  {_readable(bar.value)} ({_readable(bar.bar)}) {verdict}")
     print(f"written to {path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path}")
 
 

@@ -11,8 +11,15 @@ if mujoco is None or mujoco.origin is None:
 
 # The loops run over 3, 6 and 7 elements, so most of the time goes to counting unless they are unrolled. Contraction
 # to fused multiply-add stays off: results must not depend on what the compiler happens to fuse.
-FLAGS = """-O2 -std=c11 -funroll-loops -fpeel-loops --param max-completely-peel-times=64
---param max-completely-peeled-insns=2000 -ffp-contract=off""".split()
+FLAGS = [
+    "-O2",
+    "-std=c11",
+    "-funroll-loops",
+    "-fpeel-loops",
+    *("--param", "max-completely-peel-times=64"),
+    *("--param", "max-completely-peeled-insns=2000"),
+    "-ffp-contract=off",
+]
 
 setup(
     ext_modules=[

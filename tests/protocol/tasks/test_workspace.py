@@ -15,14 +15,18 @@ numbers = st.floats(-3, 3)
 poses = st.builds(lambda *twist: Pose.exp(twist), *[numbers] * 6)
 
 
-def allowed_pose(
-    azimuth: float, radius: float, z: float, yaw: float, tilt: float, tilt_direction: float
-) -> Pose:
-    lean = Pose.exp([0, 0, 0, tilt * math.cos(tilt_direction), tilt * math.sin(tilt_direction), 0])
-    turn = Pose.exp([0, 0, 0, 0, 0, azimuth + yaw])
-    return Pose(
-        np.array([radius * math.cos(azimuth), radius * math.sin(azimuth), z]), (lean @ turn).quaternion_wxyz
+@st.composite
+def allowed_poses(draw: st.DrawFn) -> Pose:
+    azimuth, radius, z = draw(st.floats(-1.19, 1.19)), draw(st.floats(0.29, 0.57)), draw(st.floats(0.0, 0.64))
+    yaw, tilt, level = (
+        draw(st.floats(-1.89, 1.89)),
+        draw(st.floats(0, 0.84)),
+        draw(st.floats(-math.pi, math.pi)),
     )
+    lean = Pose.exp([0, 0, 0, tilt * math.cos(level), tilt * math.sin(level), 0])
+    turn = Pose.exp([0, 0, 0, 0, 0, azimuth + yaw])
+    position = np.array([radius * math.cos(azimuth), radius * math.sin(azimuth), z])
+    return Pose(position, (lean @ turn).quaternion_wxyz)
 
 
 @given(poses)
@@ -42,18 +46,8 @@ def test_clamping_twice_changes_nothing(pose: Pose) -> None:
     assert space.clamp(once).distance_to(once) == pytest.approx((0, 0), abs=1e-6)
 
 
-@given(
-    st.floats(-1.19, 1.19),
-    st.floats(0.29, 0.57),
-    st.floats(0.0, 0.64),
-    st.floats(-1.89, 1.89),
-    st.floats(0, 0.84),
-    st.floats(-math.pi, math.pi),
-)
-def test_an_allowed_pose_stays_as_it_is(
-    azimuth: float, radius: float, z: float, yaw: float, tilt: float, tilt_direction: float
-) -> None:
-    pose = allowed_pose(azimuth, radius, z, yaw, tilt, tilt_direction)
+@given(allowed_poses())
+def test_an_allowed_pose_stays_as_it_is(pose: Pose) -> None:
     assert space.clamp(pose).distance_to(pose) == pytest.approx((0, 0), abs=1e-7)
 
 

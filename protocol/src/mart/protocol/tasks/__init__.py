@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import ModuleType
+
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.tasks import two_arm_multi_cube_lifting
 from mart.protocol.tasks.task import (
@@ -40,7 +42,7 @@ def task_names() -> tuple[str, ...]:
 
 def arm_counts(name: str) -> tuple[int, ...]:
     """How many arms this task can be built with."""
-    return _entry(name).ARM_COUNTS
+    return tuple(_entry(name).ARM_COUNTS)
 
 
 def get_task(name: str, arms: int | None = None) -> Task:
@@ -49,15 +51,15 @@ def get_task(name: str, arms: int | None = None) -> Task:
     Raises NotFound for an unknown name and InvalidInput for a number of arms that the task cannot have.
     """
     entry = _entry(name)
-    if arms is None:
-        return entry.task(entry.DEFAULT_ARMS)
-    if arms not in entry.ARM_COUNTS:
+    number = entry.DEFAULT_ARMS if arms is None else arms
+    if number not in entry.ARM_COUNTS:
         allowed = ", ".join(map(str, entry.ARM_COUNTS))
-        raise InvalidInput(f"{arms} arms were asked for; {name} can have {allowed}.")
-    return entry.task(arms)
+        raise InvalidInput(f"{number} arms were asked for; {name} can have {allowed}.")
+    task: Task = entry.task(number)
+    return task
 
 
-def _entry(name: str):  # type: ignore[no-untyped-def]  # a catalogue module
+def _entry(name: str) -> ModuleType:
     if name not in _ENTRIES:
         raise NotFound.named("task", name, _ENTRIES)
     return _ENTRIES[name]

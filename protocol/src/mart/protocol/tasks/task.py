@@ -3,8 +3,8 @@
 Geometry, resets, success and experts are in `mart.sim`; this is what a lobby, a gateway, a recorder and a trainer need
 to know without a simulator.
 
-Frames: the world's z = 0 is the table top. A base frame stands level, x towards the work. A tool frame sits in the middle
-of the finger pads; its axes are the base's while the hand points straight down and the fingers close along y.
+Frames: the world's z = 0 is the table top. A base frame stands level, x towards the work. A tool frame sits in the
+middle of the finger pads; its axes are the base's while the hand points straight down and the fingers close along y.
 """
 
 from __future__ import annotations
@@ -76,11 +76,11 @@ class Limits:
 
 @dataclass(frozen=True)
 class Workspace:
-    """Where a tool may be sent, in the arm's base frame: part of a shell around the base axis, before it and over the table.
+    """Where a tool may be sent, in the arm's base frame: part of a shell around the base axis, over the table.
 
     Measured with the hand pointing down: nearer to the axis than `radius_min_m` joint 4 meets its limit; further than
-    `reach_m` from the point at `reach_center_z_m` on the axis the arm is stretched; beside and behind its base it ties itself up. Tilt and yaw keep
-    the wrist off its limits.
+    `reach_m` from the point at `reach_center_z_m` on the axis the arm is stretched; beside and behind its base it ties
+    itself up. The limits of tilt (from straight down) and yaw (from the direction of reach) keep the wrist off its own.
     """
 
     radius_min_m: float = 0.28
@@ -89,8 +89,8 @@ class Workspace:
     azimuth_max_rad: float = 1.2
     z_min_m: float = 0.0
     z_max_m: float = 0.65
-    tilt_max_rad: float = 0.85  # of the hand from straight down
-    yaw_max_rad: float = 1.9  # of the hand from the direction in which the arm reaches
+    tilt_max_rad: float = 0.85
+    yaw_max_rad: float = 1.9
 
     def clamp(self, pose_tool_in_base: Pose) -> Pose:
         """An allowed pose close to the given one; an allowed one is returned as it is, but for rounding."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Waypoint, go, stay
+from mart.sim.experts.plan import CLOSED, OPEN, Aim, Plan, Sight, Waypoint, go, stay
 from mart.sim.experts.skill import Skill
 
 _HOVER_M = 0.10
@@ -33,13 +33,17 @@ def lift_cube(arm: Arm, skill: Skill, sight: Sight) -> Plan:
         sight = yield from go(sight, lambda now: Waypoint(_over(cube_in_base(now), _HOVER_M), OPEN))
         sight = yield from stay(sight, Waypoint(_over(cube_in_base(sight), _HOVER_M), OPEN), skill.settle_s)
         grasp = _over(cube_in_base(sight), 0.0)
-        sight = yield from go(sight, lambda _, pose=grasp: Waypoint(pose, OPEN, pace=0.6))
+        sight = yield from go(sight, _straight_to(grasp))
         sight = yield from stay(sight, Waypoint(grasp, CLOSED), _CLOSING_S + skill.settle_s)
         up = Pose(np.array([*grasp.position[:2], _LIFT_Z_M]), grasp.quaternion_wxyz)
         sight = yield Waypoint(up, CLOSED, pace=0.8)
         while held(sight):
             sight = yield Waypoint(up, CLOSED, pace=0.8)
         sight = yield from stay(sight, Waypoint(up, OPEN), skill.settle_s)
+
+
+def _straight_to(pose_tool_in_base: Pose) -> Aim:
+    return lambda _: Waypoint(pose_tool_in_base, OPEN, pace=0.6)
 
 
 def _over(cube_in_base: Pose, height_m: float) -> Pose:

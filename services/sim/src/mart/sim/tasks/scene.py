@@ -46,7 +46,7 @@ class Scene(ABC):
         """Subtasks, success and failure at this instant."""
 
     def start_pose_in_base(self, arm: Arm, random: np.random.Generator) -> Pose:
-        """Where the arm's tool is when an episode begins: in front of its base, up, pointing down, give or take 3 cm."""
+        """Where the arm's tool is when an episode begins: up before its base, pointing down, give or take 3 cm."""
         position = np.array([0.45, 0.0, 0.20]) + random.uniform(-0.03, 0.03, 3)
         return Pose(position, Pose.identity().quaternion_wxyz)
 

@@ -39,7 +39,7 @@ class MultiCubeLifting(Scene):
             )
             for normal in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)):
                 x, y, z = (CUBE_HALF_M * axis for axis in normal)
-                add_tile(spec, cube, arm.symbol, 0.009, (x, y, z), normal)
+                add_tile(spec, cube, arm.symbol, radius_m=0.009, position=(x, y, z), normal=normal)
             add_shadow(spec, cube_of(arm.name), radius_m=0.05)
 
     def place_objects(self, model: mujoco.MjModel, data: mujoco.MjData, random: np.random.Generator) -> None:

@@ -1,14 +1,14 @@
 """The Franka Hand's fingers: two pads that hold by friction alone.
 
-One gripper serves every task. Settled by tests with a 4 cm, 0.1 kg cube: it creeps 0.03 mm in 10 s of holding and 0.25 mm
-through 5 s of shaking by 3 cm.
+One gripper serves every task. Settled by tests with a 4 cm, 0.1 kg cube: it creeps 0.03 mm in 10 s of holding and
+0.25 mm through 5 s of shaking by 3 cm.
 
 - Both fingers are driven by position servos that saturate, so that the force on an object does not depend on its width.
 - An equality keeps them centred; without it two saturated fingers have no stiffness along their common axis.
 - Heavy joint damping makes closing take six ticks; a lighter one drives the pads through each other.
 - impratio and elliptic cones (scenery.py) decide whether things creep; force and friction hardly do.
-- Pads have no contact priority: MuJoCo takes the larger condim and friction of a pair, so each object decides whether it
-  may pivot between them (GRASPABLE may not; leave out its torsional friction and it will).
+- Pads have no contact priority: MuJoCo takes the larger condim and friction of a pair, so each object decides whether
+  it may pivot between them (GRASPABLE may not; leave out its torsional friction and it will).
 """
 
 from __future__ import annotations

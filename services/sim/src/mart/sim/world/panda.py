@@ -110,7 +110,8 @@ def add_panda(spec: mujoco.MjSpec, arm: Arm, index: int, detail: Detail) -> None
     _set_inertia(hand, *_HAND_MASS)
     _add_shell(hand, "hand", detail, _masks(index, reaches_objects=True), rgba(arm.color))
     for side in (-1, 1):
-        add_tile(spec, hand, arm.symbol, 0.016, (0.0325 * side, 0.0, 0.018), (side, 0, 0))
+        position = (0.0325 * side, 0.0, 0.018)
+        add_tile(spec, hand, arm.symbol, radius_m=0.016, position=position, normal=(side, 0, 0))
     gripper.add_fingers(spec, hand, arm.name, _masks(index, reaches_objects=True))
 
 

@@ -32,6 +32,7 @@ def add_tile(
     spec: mujoco.MjSpec,
     body: mujoco.MjsBody,
     symbol: str,
+    *,
     radius_m: float,
     position: tuple[float, float, float],
     normal: tuple[float, float, float],

@@ -37,10 +37,10 @@ def _paint_side(image: Image, arm: Arm, x: Image, y: Image) -> None:
     radius = np.hypot(x, y)
     _blend(image, color, 0.30 * np.exp(-((radius / 0.30) ** 2)))
     _blend(image, np.zeros(3), 0.35 * np.exp(-((radius / 0.15) ** 4)))
-    corners = outline(arm.symbol, _SYMBOL_RADIUS_M) @ np.array(
-        [[0, 1], [-1, 0]]
-    )  # upright for someone facing the arm
-    _blend(image, color, _inside(corners + (_SYMBOL_IN_BASE_M, 0.0), x, y))
+    facing = np.array([[0, 1], [-1, 0]])  # upright for someone who faces the arm
+    corners = outline(arm.symbol, _SYMBOL_RADIUS_M) @ facing
+    corners[:, 0] += _SYMBOL_IN_BASE_M
+    _blend(image, color, _inside(corners, x, y))
 
 
 def _paint_frame(image: Image, from_edge_m: Image) -> None:

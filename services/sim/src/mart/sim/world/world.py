@@ -47,8 +47,8 @@ class World:
     """A compiled task and its state. Build with `World.build`, then `reset` before anything else.
 
     Actions: shape (arms, 7), each number in [-1, 1] (clipped): translation along the arm's base axes over
-    `task.limits.step_m`, rotation vector about them over `task.limits.step_rad`, gripper -1 open … +1 closed. They count
-    from the tool's measured pose.
+    `task.limits.step_m`, rotation vector about them over `task.limits.step_rad`, gripper -1 open … +1 closed. They
+    count from the tool's measured pose.
     """
 
     def __init__(self, scene: Scene, control_hz: float, detail: Detail = "hull") -> None:
