@@ -92,7 +92,8 @@ def read(root: Path) -> list[Label]:
     if not path.exists():
         return []
     labels = []
-    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+    lines = path.read_bytes().removesuffix(b"\n").split(b"\n")  # a note may hold what str.splitlines splits at
+    for number, line in enumerate(lines, 1):
         try:
             labels.append(_parse(line))
         except (ValueError, KeyError, TypeError, InvalidInput) as error:
@@ -142,7 +143,7 @@ def _fields(label: Label) -> dict[str, object]:
     return fields | ({"detail": label.detail} if label.detail else {})
 
 
-def _parse(line: str) -> Label:
+def _parse(line: bytes) -> Label:
     fields = json.loads(line)
     return Label(
         path=str(fields["path"]),

@@ -238,7 +238,7 @@ class Recorder:
             self._announcer.notice(episode.room, "error", text)
             return
         self._announcer.saved(saved)
-        self._refresh()
+        self._repair()  # what a full disk had left, now that there may be room
 
     def _repair(self) -> None:
         for saved in log_repairs(repair_all(self._root, self._verify)):

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import fcntl
 import logging
+import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -168,14 +169,15 @@ class _Mended:
 @contextmanager
 def _exclusive(path: Path) -> Iterator[bool]:
     """Whether nobody is writing this file; if so, nobody else repairs it meanwhile."""
-    with path.open("rb") as file:
+    with ExitStack() as stack:
         try:
+            file = stack.enter_context(path.open("rb"))
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            _log.info("%s is being written; it is left alone", path)
+        except (BlockingIOError, FileNotFoundError) as error:
+            _log.debug("%s is left alone: %s", path, error)
             yield False
         else:
-            yield True
+            yield os.fstat(file.fileno()).st_nlink > 0  # 0: somebody has just finished with it
 
 
 def log_repairs(repairs: Iterator[Repaired]) -> Iterator[Saved]:

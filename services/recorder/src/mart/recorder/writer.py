@@ -32,9 +32,11 @@ class EpisodeWriter:
         self.messages = 0
         self.described = False
         self.has_model = False
-        self._file = path.open("xb")
-        self._lock = path.open("rb")
+        opening = path.with_name(f".{path.name}.opening")  # a repair must not find it before it is locked
+        self._file = opening.open("wb")
+        self._lock = opening.open("rb")
         fcntl.flock(self._lock, fcntl.LOCK_EX)
+        opening.rename(path)
         self._mcap = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
