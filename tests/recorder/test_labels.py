@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mart.protocol.errors import InvalidInput
@@ -21,6 +21,7 @@ _label = st.one_of(
 )
 
 
+@settings(max_examples=40)
 @given(st.lists(_label, max_size=8))
 def test_labels_read_back(tmp_path_factory: pytest.TempPathFactory, said: list[Label]) -> None:
     root = tmp_path_factory.mktemp("labels")

@@ -92,8 +92,10 @@ def read(root: Path) -> list[Label]:
     if not path.exists():
         return []
     labels = []
-    lines = path.read_bytes().removesuffix(b"\n").split(b"\n")  # a note may hold what str.splitlines splits at
-    for number, line in enumerate(lines, 1):
+    lines = (
+        path.read_bytes().removesuffix(b"\n").split(b"\n")
+    )  # a note may hold what str.splitlines splits at
+    for number, line in enumerate(filter(None, lines), 1):
         try:
             labels.append(_parse(line))
         except (ValueError, KeyError, TypeError, InvalidInput) as error:

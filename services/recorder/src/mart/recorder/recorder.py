@@ -1,7 +1,6 @@
 """The recorder: what arrives for each room goes into the file of its episode; finished files are verified and named.
 
-The caller's thread takes arrivals and writes. Workers save (which waits for re-simulation), fetch models and repair
-what an earlier run has left. A file belongs to one of them at a time.
+The caller's thread takes arrivals and writes; what takes longer is left to a `Saver`.
 """
 
 from __future__ import annotations
@@ -9,11 +8,9 @@ from __future__ import annotations
 import copy
 import logging
 import shutil
-import sqlite3
 import threading
 from collections import Counter
-from collections.abc import Callable, Iterable
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
@@ -23,16 +20,15 @@ from google.protobuf.message import Message
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus import Bus
-from mart.protocol.errors import InvalidInput, MartError
-from mart.protocol.messages import Command, Event, Model, RoomStatus, State
+from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import Command, Event, RoomStatus, State
 from mart.recorder.announce import Announcer
 from mart.recorder.capture import Arrival, Batch, Inbox, Kind
-from mart.recorder.catalog import list_folder
 from mart.recorder.episode import Episode, RoomFacts
 from mart.recorder.models import Models
-from mart.recorder.repair import log_repairs, repair_all
 from mart.recorder.room import Action, Closed, Opened, RoomTracker
-from mart.recorder.save import Verify, part_path, save
+from mart.recorder.save import Verify, part_path
+from mart.recorder.saver import Saver, describe
 from mart.recorder.writer import EpisodeWriter
 
 M = TypeVar("M", bound=Message)
@@ -71,31 +67,31 @@ class Room:
 class Rejects:
     """Counts what cannot be used and says so once a second at most."""
 
-    counts: Counter[str] = field(default_factory=Counter)
+    counts: Counter[Kind] = field(default_factory=Counter)
     said_s: float = float("-inf")
 
     def add(self, arrival: Arrival, error: InvalidInput, now_s: float) -> None:
-        self.counts[arrival.key] += 1
+        self.counts[arrival.kind] += 1
         if now_s - self.said_s >= _LOG_EVERY_S:
             self.said_s = now_s
-            _log.warning("%s is ignored (%d so far): %s", arrival.key, self.counts[arrival.key], error)
+            what, count = arrival.kind.name.lower(), self.counts[arrival.kind]
+            _log.warning("A %s on %s is ignored (%d so far): %s", what, arrival.key, count, error)
 
 
 class Recorder:
     def __init__(self, data_dir: Path, bus: Bus, inbox: Inbox, verify: Verify) -> None:
         self._root = data_dir.resolve() / "episodes"
         self._inbox = inbox
-        self._verify = verify
         self._models = Models(bus)
         self._announcer = Announcer(bus, data_dir.resolve())
         self._rooms: dict[str, Room] = {}
         self._rejects = Rejects()
-        self._workers = ThreadPoolExecutor(max_workers=2, thread_name_prefix="save")
+        self._saver = Saver(self._root, self._models, self._announcer, verify)
 
     def run(self, stop: threading.Event) -> None:
         """Records until told to stop, then saves what is open."""
         self._root.mkdir(parents=True, exist_ok=True)
-        self._work("Repair", self._repair)
+        self._saver.repair()
         try:
             while not stop.is_set():
                 self.step(_STEP_S)
@@ -121,7 +117,7 @@ class Recorder:
         """Ends what is being recorded and waits until everything is saved."""
         for room in self._rooms.values():
             self._apply(room, room.tracker.finish("the recorder was stopped"))
-        self._workers.shutdown(wait=True)
+        self._saver.close()
 
     def _take(self, arrival: Arrival, now_s: float) -> None:
         """Raises InvalidInput for what cannot be used."""
@@ -160,7 +156,7 @@ class Recorder:
             raise InvalidInput(f"A message of room {said[:64]!r} was sent under the key of {name!r}.")
         if room.boot != boot:
             room.boot = boot
-            self._work("Fetching a model", self._models.fetch, name, boot)
+            self._saver.fetch_model(name, boot)
 
     def _apply(self, room: Room, actions: Iterable[Action]) -> None:
         for action in actions:
@@ -195,25 +191,16 @@ class Recorder:
         if episode.is_glimpse:
             file.discard()
         else:
-            self._work("Saving", self._save, file, episode, copy.deepcopy(room.facts))
+            self._saver.save(file, episode, copy.deepcopy(room.facts))
 
     def _flush(self, room: Room, now_s: float) -> None:
         assert room.file is not None
         room.flushed_s = now_s
         try:
-            self._describe(room.file, room.facts, self._models.known(room.facts.room, room.boot))
+            describe(room.file, room.facts, self._models.known(room.facts.room, room.boot))
             room.file.flush()
         except OSError as error:
             self._give_up(room, error)
-
-    def _describe(self, file: EpisodeWriter, facts: RoomFacts, model: Model | None) -> None:
-        """Writes what is known about the room, once it is known."""
-        if model is not None and not file.has_model:
-            facts.learn_model(model)
-        if facts.is_complete and not file.described:
-            file.describe(facts.record())
-        if model is not None and not file.has_model and file.described:
-            file.attach_model(model, clock.wall_ns())
 
     def _give_up(self, room: Room, error: OSError) -> None:
         """The disk is full or broken: this episode is over, the room and its next episode are not."""
@@ -227,30 +214,6 @@ class Recorder:
         text = f"Recording of episode{number} stopped: {error.strerror}.{where} The next one is tried again."
         self._announcer.notice(room.facts.room, "error", text)
 
-    def _save(self, file: EpisodeWriter, episode: Episode, facts: RoomFacts) -> None:
-        try:
-            self._describe(file, facts, self._models.fetch(episode.room, episode.boot))
-            saved = save(file, episode, facts, self._root, self._verify, repaired=False)
-        except (OSError, MartError) as error:
-            file.abandon()
-            why = error.strerror if isinstance(error, OSError) else error
-            text = f"Episode {episode.number} could not be completed: {why}. It is kept as {file.path}."
-            self._announcer.notice(episode.room, "error", text)
-            return
-        self._announcer.saved(saved)
-        self._repair()  # what a full disk had left, now that there may be room
-
-    def _repair(self) -> None:
-        for saved in log_repairs(repair_all(self._root, self._verify)):
-            self._announcer.saved(saved)
-        self._refresh()
-
-    def _refresh(self) -> None:
-        try:
-            list_folder(self._root)
-        except (OSError, sqlite3.Error) as error:  # it is derived: the next one makes up for it
-            _log.warning("The catalogue could not be brought up to date: %s", error)
-
     def _report_losses(self, batch: Batch) -> None:
         if not batch.lost_frames and not batch.lost_messages:
             return
@@ -260,14 +223,6 @@ class Recorder:
             room.tracker.lost(batch.lost_messages, batch.lost_frames)
             if room.file is not None:
                 self._announcer.notice(room.facts.room, level, text)
-
-    def _work(self, what: str, call: Callable[..., object], *arguments: object) -> None:
-        def report(done: Future[object]) -> None:
-            error = done.exception()
-            if error is not None:
-                _log.error("%s failed", what, exc_info=error)
-
-        self._workers.submit(call, *arguments).add_done_callback(report)
 
 
 def _decode(kind: type[M], arrival: Arrival) -> M:

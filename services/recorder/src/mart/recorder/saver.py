@@ -1,0 +1,87 @@
+"""What takes its time, on threads of its own: saving (which waits for re-simulation), fetching models, repairing."""
+
+from __future__ import annotations
+
+import logging
+import sqlite3
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+
+from mart.protocol import clock
+from mart.protocol.errors import MartError
+from mart.protocol.messages import Model
+from mart.recorder.announce import Announcer
+from mart.recorder.catalog import list_folder
+from mart.recorder.episode import Episode, RoomFacts
+from mart.recorder.models import Models
+from mart.recorder.repair import log_repairs, repair_all
+from mart.recorder.save import Verify, save
+from mart.recorder.writer import EpisodeWriter
+
+_log = logging.getLogger(__name__)
+
+
+class Saver:
+    """Files given to `save` are its own from then on."""
+
+    def __init__(self, root: Path, models: Models, announcer: Announcer, verify: Verify) -> None:
+        self._root = root
+        self._models = models
+        self._announcer = announcer
+        self._verify = verify
+        self._workers = ThreadPoolExecutor(max_workers=2, thread_name_prefix="saver")
+
+    def fetch_model(self, room: str, boot: int) -> None:
+        """So that it is known when an episode begins."""
+        self._work("Fetching a model", self._models.fetch, room, boot)
+
+    def save(self, file: EpisodeWriter, episode: Episode, facts: RoomFacts) -> None:
+        self._work("Saving", self._save, file, episode, facts)
+
+    def repair(self) -> None:
+        """Makes episodes of what an earlier run has left."""
+        self._work("Repairing", self._repair)
+
+    def close(self) -> None:
+        """Waits until everything is done."""
+        self._workers.shutdown(wait=True)
+
+    def _save(self, file: EpisodeWriter, episode: Episode, facts: RoomFacts) -> None:
+        try:
+            describe(file, facts, self._models.fetch(episode.room, episode.boot))
+            saved = save(file, episode, facts, self._root, self._verify, repaired=False)
+        except (OSError, MartError) as error:
+            file.abandon()
+            why = error.strerror if isinstance(error, OSError) else error
+            text = f"Episode {episode.number} could not be completed: {why}. It is kept as {file.path}."
+            self._announcer.notice(episode.room, "error", text)
+            return
+        self._announcer.saved(saved)
+        self._repair()  # what a full disk had left, now that there may be room
+
+    def _repair(self) -> None:
+        for saved in log_repairs(repair_all(self._root, self._verify)):
+            self._announcer.saved(saved)
+        try:
+            list_folder(self._root)
+        except (OSError, sqlite3.Error) as error:  # it is derived: the next one makes up for it
+            _log.warning("The catalogue could not be brought up to date: %s", error)
+
+    def _work(self, what: str, call: Callable[..., object], *arguments: object) -> None:
+        def report(done: Future[object]) -> None:
+            error = done.exception()
+            if error is not None:
+                _log.error("%s failed", what, exc_info=error)
+
+        self._workers.submit(call, *arguments).add_done_callback(report)
+
+
+def describe(file: EpisodeWriter, facts: RoomFacts, model: Model | None) -> None:
+    """Writes what is known about the room, once it is known."""
+    if model is not None and not file.has_model:
+        facts.learn_model(model)
+    if facts.is_complete and not file.described:
+        file.describe(facts.record())
+    if model is not None and not file.has_model and file.described:
+        file.attach_model(model, clock.wall_ns())
