@@ -8,6 +8,7 @@ from collections.abc import Iterable
 
 import ifaddr
 
+_VIRTUAL = ("docker", "br-", "veth", "virbr", "cni")  # networks inside this machine, which come and go
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
 
@@ -26,7 +27,7 @@ def lan_addresses() -> tuple[str, ...]:
         ipaddress.IPv4Address(address.ip)
         for adapter in ifaddr.get_adapters()
         for address in adapter.ips
-        if isinstance(address.ip, str)
+        if isinstance(address.ip, str) and not adapter.name.startswith(_VIRTUAL)
     ]
     usable = {address for address in found if not (address.is_loopback or address.is_link_local)}
     return tuple(

@@ -101,7 +101,7 @@ function render() {
   setText(byId("waiting"), waiting);
   setShown(byId("waiting"), waiting !== "");
   const seen = byId("video").videoWidth > 0;
-  setShown(byId("no-picture"), !seen);
+  setShown(byId("no-picture"), !seen && Boolean(seat));
   byId("picture").classList.toggle("live", seen);
   document.body.classList.toggle("engaged", Boolean(status?.engaged));
   document.body.classList.toggle("can-drive", Boolean(seat?.mine));

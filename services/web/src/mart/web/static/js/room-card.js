@@ -87,9 +87,9 @@ function seatRow(room, arm, attempt) {
 function seatText(seat) {
   switch (seat.operator) {
     case "hold":
-      return "Free, holds still";
+      return "Free";
     case "script":
-      return "Free, a script drives";
+      return "Free, script drives";
     default:
       return seat.ready ? `${holder(seat)}, ready` : holder(seat);
   }
