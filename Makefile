@@ -56,11 +56,12 @@ test-compose: $(VENV)/.tools ## Build the images and collect an episode through 
 	@$(BIN)/pytest tests/compose
 
 .PHONY: check
-check: $(VENV)/.tools check-proto ## Check style, types, import rules and that generated code is fresh
+check: $(VENV)/.tools check-proto ## Check style, types, import rules, generated code and the repository's own rules
 	@$(BIN)/ruff check
 	@$(BIN)/ruff format --check
 	@$(BIN)/mypy
-	@$(BIN)/lint-imports
+	@$(BIN)/lint-imports --no-logo
+	@$(BIN)/pytest --quiet tests/contract
 
 .PHONY: format
 format: $(VENV)/.tools ## Format the code and mend what the linter can mend
@@ -100,6 +101,7 @@ help: ## List the verbs
 
 $(VENV)/bin/python:
 	@tools/system-packages build
+	@echo "Installing into $(VENV) …" >&2
 	@$(PYTHON) -m venv $(VENV)
 
 # mujoco-core carries the headers that the sim's C code is compiled against, so it comes before the parts.
