@@ -36,7 +36,7 @@ class Phone:
 
     def hold(self) -> None:
         self.page.locator("#hold").dispatch_event("pointerdown", {"pointerId": 1, "isPrimary": True})
-        expect(self.page.locator("#hold-text")).to_have_text("Moving", timeout=_WAIT_MS)
+        expect(self.page.locator("#hold")).to_have_attribute("aria-pressed", "true")
 
     def let_go(self) -> None:
         self.page.locator("#hold").dispatch_event("pointerup", {"pointerId": 1, "isPrimary": True})

@@ -15,7 +15,7 @@ from mart.platform.supervise import Platform
 from mart.protocol import keys
 from mart.protocol.bus.base import Sample
 from mart.protocol.codec import decode
-from mart.protocol.messages import OUTCOME_SUCCESS, Event, State
+from mart.protocol.messages import OUTCOME_SUCCESS, ArmState, Event, State
 from tests.browser.people import Person, Phone, person
 
 WAIT_S = 60.0
@@ -39,9 +39,15 @@ class Room:
             self._states.get_nowait()
         return self._states.get(timeout=WAIT_S)
 
+    def next_arm(self, arm: str) -> ArmState:
+        return next(one for one in self.next_state().arms if one.arm == arm)
+
     def height_m(self, arm: str) -> float:
-        state = self.next_state()
-        return next(one.tool_in_base.z for one in state.arms if one.arm == arm)
+        return self.next_arm(arm).tool_in_base.z
+
+    def await_engaged(self, arm: str) -> None:
+        while not self.next_arm(arm).engaged:
+            pass
 
     def await_height(self, arm: str, at_least_m: float) -> None:
         while self.height_m(arm) < at_least_m:
@@ -73,6 +79,7 @@ def lift(room: Room, arm: str, phone: Phone) -> None:
     """The arm follows the phone up by most of 8 cm."""
     before_m = room.height_m(arm)
     phone.hold()
+    room.await_engaged(arm)
     phone.move(0.0, 0.08, 0.0, duration_s=1.5)
     room.await_height(arm, before_m + 0.06)
     phone.let_go()
