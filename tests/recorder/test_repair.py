@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+import tracemalloc
 from collections import Counter
 from functools import cached_property
 from pathlib import Path
@@ -14,6 +16,7 @@ from mcap.opcode import Opcode
 from mart.protocol import codec, recording
 from mart.protocol.errors import Unavailable
 from mart.protocol.recording import Verdict
+from mart.recorder.entry import video_entry
 from mart.recorder.reader import EpisodeFile
 from mart.recorder.repair import Repaired, repair_all
 from mart.recorder.salvage import Found, Salvage
@@ -205,3 +208,22 @@ def test_without_a_replica_it_is_saved_unverified(tmp_path: Path, left: Left) ->
     assert one.saved is not None
     assert one.saved.verification.verdict is Verdict.UNVERIFIED
     assert one.saved.verification.detail == "No replica is up."
+
+
+def test_memory_stays_at_a_chunk_whatever_the_file(tmp_path: Path) -> None:
+    file, _, _ = write_part(tmp_path, synthetic.states(5))
+    noise = random.Random(0)
+    for frame in range(150):
+        video = synthetic.video(frame, is_key=False, data=noise.randbytes(100_000))
+        file.add(video_entry("front", video, codec.encode(video), synthetic.wall_ns(frame)))
+    file.flush()
+    file.abandon()
+    tracemalloc.start()
+    try:
+        kept = sum(1 for _ in Salvage(file.path).found())
+        _, peak_bytes = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert kept > 150
+    assert file.path.stat().st_size > 15_000_000
+    assert peak_bytes < 5_000_000
