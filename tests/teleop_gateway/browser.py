@@ -61,8 +61,8 @@ class Browser:
         return tick_code.read(luma(await self.next_frame()))
 
     def send_frame(self, frame: PhoneFrame | bytes) -> None:
-        assert self.pose is not None
-        self.pose.send(frame if isinstance(frame, bytes) else frame.encode())
+        if self.pose is not None and self.pose.readyState == "open":
+            self.pose.send(frame if isinstance(frame, bytes) else frame.encode())
 
     def hand(
         self, epoch: int, position: tuple[float, float, float] = (0.0, 0.0, 0.0), **given: Any

@@ -1,0 +1,171 @@
+"""A room as a seat sees it on the bus: a real world and real messages, ticked by the test instead of a barrier."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import itertools
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mart.protocol import clock, codec, keys
+from mart.protocol.bus.aio import AsyncBus
+from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.messages import (
+    BARRIER_PHASE_RUNNING,
+    OPERATOR_HUMAN,
+    Answer,
+    ArmState,
+    Command,
+    Model,
+    Offer,
+    Operator,
+    RoomStatus,
+    State,
+    TickStamps,
+    pose_from_message,
+    pose_message,
+    raise_error,
+)
+from mart.protocol.messages import (
+    Seat as SeatMessage,
+)
+from mart.protocol.tokens import Role, SeatToken, sign
+from mart.sim.world.world import World
+from mart.teleop_gateway.assignment import Assignment
+from mart.teleop_gateway.seat import Seat
+from mart.teleop_gateway.settings import GatewaySettings
+from tests.support.mailbox import Mailbox
+from tests.teleop_gateway.browser import Exchange, in_background
+
+SECRET = b"s" * 32
+_numbers = itertools.count(1)
+
+
+class Room:
+    """Its arm0 follows commands; nobody waits for anybody."""
+
+    def __init__(self, bus: ZenohBus, world: World, model: Model) -> None:
+        self.name = f"test-{next(_numbers)}"
+        self.world = world
+        self.tick_number = 0
+        self.boot = 1
+        self._newest: Command | None = None
+        self._used = 0
+        self._status = RoomStatus(room=self.name, barrier=BARRIER_PHASE_RUNNING)
+        self._states = bus.publisher(keys.state(self.name))
+        self._statuses = bus.publisher(keys.status(self.name))
+        bus.serve(keys.model(self.name), lambda request: request.reply(codec.encode(model)))
+        bus.subscribe(
+            keys.command(self.name, "arm0").key, lambda s: self._keep(codec.decode(Command, s.payload))
+        )
+
+    def seat(self, epoch: int, operator: int = OPERATOR_HUMAN) -> None:
+        """Who holds arm0, told to everyone."""
+        del self._status.seats[:]
+        self._status.seats.append(SeatMessage(arm="arm0", operator=Operator.Name(operator), epoch=epoch))
+        self._statuses.put(codec.encode(self._status))
+
+    def reset(self, seed: int) -> None:
+        self.world.reset(seed)
+        self._newest = None
+        self._publish(None)
+
+    def tick(self) -> None:
+        actions = np.zeros((len(self.world.arms), 7))
+        command = self._newest
+        if command is not None:
+            target = pose_from_message(command.target_tool_in_base)
+            actions[0] = self.world.action_for("arm0", target, command.gripper)
+        self.world.step(actions)
+        self._publish(command)
+
+    async def run(self) -> None:
+        """At 20 Hz."""
+        while True:
+            self.tick()
+            self._statuses.put(codec.encode(self._status))
+            await asyncio.sleep(0.05)
+
+    def _keep(self, command: Command) -> None:
+        self._newest = command
+
+    def _publish(self, command: Command | None) -> None:
+        self.tick_number += 1
+        now_ns = clock.wall_ns()
+        arm = ArmState(arm="arm0", tool_in_base=pose_message(self.world.tool_pose_in_base("arm0")))
+        if command is not None:
+            arm.fresh = command.sequence > self._used
+            arm.sequence = self._used = command.sequence
+            arm.arrived_ns = command.stamps.sent_ns
+            arm.stamps.CopyFrom(command.stamps)
+        state = State(
+            room=self.name,
+            tick=self.tick_number,
+            boot=self.boot,
+            sim_time_s=self.world.sim_time_s,
+            real_time_factor=1.0,
+            integration_state=self.world.integration_state(),
+            arms=[arm],
+            stamps=TickStamps(due_ns=now_ns, fired_ns=now_ns, stepped_ns=clock.wall_ns()),
+        )
+        self._states.put(codec.encode(state))
+
+
+@dataclass
+class SeatUnderTest:
+    """A seat that runs in this process, and its room."""
+
+    seat: Seat
+    room: Room
+    bus: AsyncBus
+
+    def token(self, role: Role, **claims: object) -> str:
+        given = {
+            "room": self.room.name,
+            "arm": "arm0",
+            "epoch": 1,
+            "role": role,
+            "holder_id": "ana",
+            "expires_s": clock.wall_ns() * 1e-9 + 60,
+            **claims,
+        }
+        return sign(SeatToken(**given), SECRET)  # type: ignore[arg-type]
+
+    def exchange(self, role: Role, token: str | None = None) -> Exchange:
+        """Signals over the bus, as the web service does."""
+
+        async def exchange(sdp: str) -> str:
+            offer = Offer(token=self.token(role) if token is None else token, sdp=sdp)
+            return (await self.offer(role, codec.encode(offer))).sdp
+
+        return exchange
+
+    async def offer(self, role: Role, payload: bytes) -> Answer:
+        reply = await self.bus.query(keys.signal(self.room.name, "arm0", role), payload, 10.0)
+        answer = codec.decode(Answer, reply)
+        raise_error(answer.error)
+        return answer
+
+    def commands(self) -> Mailbox[Command]:
+        return Mailbox(self.bus.bus, keys.command(self.room.name, "arm0").key, Command)
+
+
+@contextlib.asynccontextmanager
+async def running_seat(router: str, world: World, model: Model) -> AsyncIterator[SeatUnderTest]:
+    """A seat of epoch 1 that answers offers, in a room that ticks."""
+    loop = asyncio.get_running_loop()
+    with (
+        ZenohBus.connect(router) as mine,
+        ZenohBus.connect(router) as seats,
+        ZenohBus.connect(router) as video,
+    ):
+        room = Room(mine, world, model)
+        settings = GatewaySettings(router=router)
+        seat = Seat(AsyncBus(seats, loop), video, settings, Assignment(room.name, "arm0"), SECRET)
+        async with in_background(seat.run()), in_background(room.run()):
+            await asyncio.sleep(0)  # both have begun
+            room.seat(epoch=1)
+            yield SeatUnderTest(seat, room, AsyncBus(mine, loop))
