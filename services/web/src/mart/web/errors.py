@@ -34,7 +34,9 @@ class WrongHost(InvalidInput):
 
 class TooLarge(InvalidInput):
     def __init__(self, limit_bytes: int) -> None:
-        super().__init__(f"The request's body is too long; at most {limit_bytes} bytes are allowed.")
+        super().__init__(
+            f"The request's body is too long, or does not say its length; at most {limit_bytes} bytes are allowed."
+        )
 
 
 class TooMany(MartError):

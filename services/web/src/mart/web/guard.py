@@ -53,7 +53,8 @@ class Guard:
         if changes and headers.get("origin") != f"https://{host}":
             raise WrongOrigin(headers.get("origin"))
         # A length must be told: the server then holds the sender to it.
-        if "transfer-encoding" in headers or int(headers.get("content-length", "0")) > MAX_BODY_BYTES:
+        length = headers.get("content-length", "0")
+        if "transfer-encoding" in headers or not length.isdecimal() or int(length) > MAX_BODY_BYTES:
             raise TooLarge(MAX_BODY_BYTES)
 
 

@@ -1,0 +1,74 @@
+"""The web application on an in-memory bus, with a room behind it; and people with a session each."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator, Awaitable, Callable
+
+import httpx
+import pytest
+
+from mart.protocol.bus.aio import AsyncBus
+from mart.protocol.bus.memory import MemoryBus, MemoryNetwork
+from mart.web.app import create_app
+from mart.web.people import People
+from mart.web.rooms import Rooms
+from mart.web.site import Site
+from tests.web.room import Room
+
+JOIN_CODE = "ABCD-2345"
+ORIGIN = "https://localhost"
+
+Client = httpx.AsyncClient
+Enter = Callable[..., Awaitable[Client]]
+
+
+@pytest.fixture
+def anyio_backend() -> str:
+    return "asyncio"
+
+
+@pytest.fixture
+def bus() -> MemoryBus:
+    return MemoryNetwork().connect()
+
+
+@pytest.fixture
+async def site(bus: MemoryBus) -> AsyncIterator[Site]:
+    aio = AsyncBus(bus, asyncio.get_running_loop())
+    with contextlib.closing(Rooms(aio)) as rooms, contextlib.closing(People(":memory:")) as people:
+        yield Site(
+            bus=aio,
+            rooms=rooms,
+            people=people,
+            join_code=JOIN_CODE,
+            secret=b"0123456789abcdef0123456789abcdef",
+            names=("localhost", "lab.example"),
+            lan_host="192.168.1.5",
+        )
+
+
+@pytest.fixture
+async def room(site: Site, bus: MemoryBus) -> AsyncIterator[Room]:
+    with contextlib.closing(Room(bus)) as room:
+        await asyncio.sleep(0)  # what the room said at its opening is on its way to the site
+        yield room
+
+
+@pytest.fixture
+async def enter(site: Site) -> AsyncIterator[Enter]:
+    """`await enter("Ana")` is a browser that has joined; `await enter()` one that has not."""
+    app = create_app(site)
+    async with contextlib.AsyncExitStack() as clients:
+
+        async def make(name: str = "", address: str = "10.0.0.1") -> Client:
+            transport = httpx.ASGITransport(app, raise_app_exceptions=False, client=(address, 50000))
+            client = Client(transport=transport, base_url=ORIGIN, headers={"Origin": ORIGIN})
+            await clients.enter_async_context(client)
+            if name:
+                joined = await client.post("/api/join", json={"code": JOIN_CODE, "name": name})
+                assert joined.status_code == 200
+            return client
+
+        yield make

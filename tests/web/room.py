@@ -1,0 +1,106 @@
+"""A room on the bus without a world: the sim's own rules for seats and episodes, a status at every change."""
+
+from __future__ import annotations
+
+import contextlib
+
+from mart.protocol import clock, codec, keys
+from mart.protocol.bus.base import Bus, Request
+from mart.protocol.errors import MartError
+from mart.protocol.messages import (
+    BARRIER_PHASE_RUNNING,
+    EpisodeRequest,
+    Event,
+    RoomReply,
+    RoomStatus,
+    Seat,
+    SeatRequest,
+    error_message,
+)
+from mart.protocol.tasks import get_task
+from mart.sim.episode import EpisodeCourse
+from mart.sim.seats import SeatHolder, SeatTable
+
+TASK = "two_arm_multi_cube_lifting"
+
+
+class Room:
+    """Open from its making until `close`, which takes its liveliness token away."""
+
+    def __init__(self, bus: Bus, name: str = "room-1", arms: int = 2) -> None:
+        task = get_task(TASK, arms)
+        self.name = name
+        self.seats = SeatTable(task.arm_names)
+        self.course = EpisodeCourse(room_seed=1, horizon_ticks=task.horizon_ticks)
+        self.tick = 1
+        self._subtasks = task.subtasks
+        with contextlib.ExitStack() as opened:
+            self._events = opened.enter_context(contextlib.closing(bus.publisher(keys.event(name))))
+            self._statuses = opened.enter_context(contextlib.closing(bus.publisher(keys.status(name))))
+            opened.enter_context(contextlib.closing(bus.serve(keys.seat(name), self._on_seat)))
+            opened.enter_context(contextlib.closing(bus.serve(keys.episode(name), self._on_episode)))
+            opened.enter_context(contextlib.closing(bus.announce(keys.alive("sim", name))))
+            self._opened = opened.pop_all()
+        self.publish()
+
+    def close(self) -> None:
+        self._opened.close()
+
+    def status(self) -> RoomStatus:
+        status = RoomStatus(
+            room=self.name,
+            task=TASK,
+            control_hz=20.0,
+            tick=self.tick,
+            real_time_factor=1.0,
+            barrier=BARRIER_PHASE_RUNNING,
+            seats=[self._seat(seat) for seat in self.seats],
+            wall_ns=clock.wall_ns(),
+        )
+        course = self.course
+        status.episode.number, status.episode.phase = course.number, course.phase
+        status.episode.outcome, status.episode.reason = course.outcome, course.reason
+        status.episode.remaining_s = course.remaining_s(clock.monotonic_s())
+        for subtask in self._subtasks:
+            status.progress.subtasks.add(name=subtask.name)
+        return status
+
+    def publish(self) -> None:
+        self._statuses.put(codec.encode(self.status()))
+
+    def tell(self, event: Event) -> None:
+        event.room = self.name
+        self._events.put(codec.encode(event))
+
+    def _seat(self, seat: SeatHolder) -> Seat:
+        return Seat(
+            arm=seat.arm,
+            operator=seat.operator,
+            epoch=seat.epoch,
+            holder_id=seat.holder_id,
+            name=seat.name,
+            ready=self.course.is_ready(seat.arm),
+        )
+
+    def _on_seat(self, request: Request) -> None:
+        reply = RoomReply()
+        try:
+            seat = self.seats.answer(codec.decode(SeatRequest, request.payload))
+            self.course.seats_changed(self.seats, clock.monotonic_s())
+            reply.seat.CopyFrom(self._seat(seat))
+        except MartError as error:
+            reply.error.CopyFrom(error_message(error))
+        self._reply(request, reply)
+
+    def _on_episode(self, request: Request) -> None:
+        reply = RoomReply()
+        try:
+            self.course.answer(codec.decode(EpisodeRequest, request.payload), self.seats, clock.monotonic_s())
+        except MartError as error:
+            reply.error.CopyFrom(error_message(error))
+        self._reply(request, reply)
+
+    def _reply(self, request: Request, reply: RoomReply) -> None:
+        reply.status.CopyFrom(self.status())
+        request.reply(codec.encode(reply))
+        self.publish()
