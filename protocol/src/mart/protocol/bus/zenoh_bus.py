@@ -2,7 +2,9 @@
 
 Settings and their reasons (measured on Zenoh 1.10.2): a lease of 2 s finds a frozen peer in about 2 s, the default
 takes 10; multicast off, or any peer on the network joins; shared memory off, because a receiver that is descheduled
-for 100 ms silently loses messages over it; `connect/timeout_ms` -1 keeps a client trying until a router is there.
+for 100 ms silently loses messages over it; `connect/timeout_ms` -1 keeps a client trying until a router is there, at
+first every 0.1 s and at least every second, so that a router's return is noticed (the default waits 1 to 4 s); 16
+batches a queue instead of 2, because a burst of 8 commands on a busy machine lost 18 % with 2 and none with 16.
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ from mart.protocol.keys import Priority, Topic
 _log = logging.getLogger(__name__)
 
 _LEASE_MS = 2000
+_QUEUED_BATCHES = 16
 
 _PRIORITY = {
     Priority.REAL_TIME: zenoh.Priority.REAL_TIME,
@@ -167,7 +170,12 @@ def _open(settings: dict[str, Any], endpoint: str) -> zenoh.Session:
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
         "transport/link/tx/lease": _LEASE_MS,
+        "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2},
         "transport/shared_memory/enabled": False,
+        **{
+            f"transport/link/tx/queue/size/{queue}": _QUEUED_BATCHES
+            for queue in ("real_time", "data_high", "data")
+        },
     }
     for path, value in (common | settings).items():
         config.insert_json5(path, json.dumps(value))
