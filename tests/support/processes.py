@@ -92,6 +92,7 @@ def running_service(
     data_dir: Path | None,
     kind: str,
     id: str,
+    *,
     environment: Mapping[str, str] | None = None,
     timeout_s: float = _START_TIMEOUT_S,
 ) -> Iterator[Running]:

@@ -59,7 +59,7 @@ class Decision:
     silent: arms whose seat is to be given up.
     """
 
-    phase: BarrierPhase.ValueType
+    phase: BarrierPhase
     waiting_for: tuple[tuple[str, float], ...]
     silent: tuple[str, ...]
     firing: Firing | None
@@ -70,7 +70,7 @@ class Decision:
 class _Lane:
     """What the barrier knows of one seat."""
 
-    operator: Operator.ValueType
+    operator: Operator
     epoch: int
     heard_s: float  # when a command was last accepted, or when the seat got its holder
     newest: Arrival | None = None
@@ -92,7 +92,7 @@ class Barrier:
         self.rejected: Counter[Rejection] = Counter()
         self._lanes = {arm: _Lane(OPERATOR_HOLD, 0, now_s) for arm in arms}
 
-    def seat(self, arm: str, operator: Operator.ValueType, epoch: int, now_s: float) -> None:
+    def seat(self, arm: str, operator: Operator, epoch: int, now_s: float) -> None:
         """The seat has a new holder: what the old one said no longer counts."""
         self._lanes[arm] = _Lane(operator, epoch, now_s)
 
@@ -157,7 +157,7 @@ class Barrier:
             return Rejection.OLD_SEQUENCE
         return None
 
-    def _phase(self, now_s: float) -> tuple[BarrierPhase.ValueType, tuple[tuple[str, float], ...]]:
+    def _phase(self, now_s: float) -> tuple[BarrierPhase, tuple[tuple[str, float], ...]]:
         driven = self._driven().items()
         stops = tuple(
             (arm, now_s - lane.stopped_since_s) for arm, lane in driven if lane.stopped_since_s is not None
@@ -186,7 +186,7 @@ class Barrier:
         return Firing(arrivals, due_s, straggler, late_s)
 
     def _next_s(self, now_s: float, world_may_run: bool) -> float:
-        """The next moment at which the answer may change without a new command; `now_s` where it has changed already."""
+        """When the answer may change without a new command; `now_s` where it has changed already."""
         moments = [
             moment
             for lane in self._driven().values()

@@ -55,7 +55,7 @@ class Started:
 @dataclass(frozen=True)
 class Ended:
     number: int
-    outcome: Outcome.ValueType
+    outcome: Outcome
     ticks: int
     reason: str
 
@@ -74,10 +74,10 @@ class EpisodeCourse:
 
     def __init__(self, room_seed: int, horizon_ticks: int, number: int = 0) -> None:
         self.number = number
-        self.phase: EpisodePhase.ValueType = EPISODE_PHASE_PRACTICE
+        self.phase: EpisodePhase = EPISODE_PHASE_PRACTICE
         self.seed = seed_of(room_seed, "practice", number)
         self.ticks = 0
-        self.outcome: Outcome.ValueType = OUTCOME_UNSPECIFIED
+        self.outcome: Outcome = OUTCOME_UNSPECIFIED
         self.reason = ""
         self.interrupted = False
         self._room_seed = room_seed
@@ -154,13 +154,13 @@ class EpisodeCourse:
         """The room was paused or stopped."""
         self.interrupted = self.interrupted or self.recording
 
-    def end(self, outcome: Outcome.ValueType, reason: str, now_s: float) -> Sequence[Step]:
+    def end(self, outcome: Outcome, reason: str, now_s: float) -> Sequence[Step]:
         self.phase = EPISODE_PHASE_ENDED
         self.outcome, self.reason = outcome, reason
         self._until_s = now_s + ENDED_S
         return (Ended(self.number, outcome, self.ticks, reason),)
 
-    def abandon(self, outcome: Outcome.ValueType, reason: str, now_s: float) -> Sequence[Step]:
+    def abandon(self, outcome: Outcome, reason: str, now_s: float) -> Sequence[Step]:
         """Back to practice with a fresh world at once; a recording ends with this outcome."""
         if self.recording:
             return (*self.end(outcome, reason, now_s), *self._practice())
@@ -210,7 +210,7 @@ class EpisodeCourse:
         )
         return (ResetWorld(self.seed),)
 
-    def _begin(self, phase: EpisodePhase.ValueType, seed: int) -> None:
+    def _begin(self, phase: EpisodePhase, seed: int) -> None:
         self.phase, self.seed, self.ticks = phase, seed, 0
         self.outcome, self.reason, self.interrupted = OUTCOME_UNSPECIFIED, "", False
         self._ready = frozenset()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from mart.protocol import clock, codec, keys
@@ -75,7 +76,7 @@ class Experts:
             self._statuses, self._states = {}, {}
             return taken
 
-    def _guarded(self, handle, room: str, payload: bytes) -> None:
+    def _guarded(self, handle: Callable[[str, bytes], None], room: str, payload: bytes) -> None:
         try:
             handle(room, payload)
         except MartError as error:

@@ -28,28 +28,28 @@ class Pace:
 
 
 class RealTimeFactor:
-    """Simulated over wall time, during the last `window_s` seconds."""
+    """Simulated over wall time, from tick to tick, during about the last `window_s` seconds."""
 
     def __init__(self, period_s: float, now_s: float, window_s: float = 2.0) -> None:
         self._period_s = period_s
         self._window_s = window_s
-        self._began_s = now_s
         self._ticks_s: deque[float] = deque()
+        self.restart(now_s)
 
     def restart(self, now_s: float) -> None:
-        """Forgets what was: the world begins anew now."""
-        self._began_s = now_s
+        """Forgets what was: the world begins anew, its first tick is due now."""
         self._ticks_s.clear()
+        self._ticks_s.append(now_s - self._period_s)
 
     def ticked(self, now_s: float) -> None:
         self._ticks_s.append(now_s)
 
     def value(self, now_s: float) -> float:
-        """1.0 until the first two periods have passed: there is nothing to tell before."""
-        while self._ticks_s and self._ticks_s[0] <= now_s - self._window_s:
+        """1.0 until two periods have passed: there is nothing to tell before."""
+        until_s = max(self._ticks_s[-1], now_s - self._period_s)  # a tick that is not due yet is not missing
+        while len(self._ticks_s) > 1 and self._ticks_s[1] <= until_s - self._window_s:
             self._ticks_s.popleft()
-        elapsed_s = now_s - self._began_s
+        elapsed_s = until_s - self._ticks_s[0]
         if elapsed_s < 2 * self._period_s:
             return 1.0
-        # The first tick is due at the very beginning, so n ticks fill n periods, one of them still running.
-        return len(self._ticks_s) * self._period_s / min(elapsed_s + self._period_s, self._window_s)
+        return (len(self._ticks_s) - 1) * self._period_s / elapsed_s

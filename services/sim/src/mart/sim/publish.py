@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
+import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.messages import (
@@ -13,23 +14,29 @@ from mart.protocol.messages import (
     Event,
     Model,
     Observation,
+    PoseMessage,
     Progress,
     Seat,
     Subtask,
     Waiting,
     WorldState,
-    pose_message,
 )
 from mart.sim.admission import Arrival
 from mart.sim.episode import EpisodeCourse
 from mart.sim.seats import SeatHolder
-from mart.sim.world import World
 from mart.sim.world import Progress as WorldProgress
+from mart.sim.world import World
+
+# What any operator sees, by name: see mart.protocol.tasks.
+Seen = Mapping[str, NDArray[np.float64]]
 
 
-def arm_state(world: World, seat: SeatHolder, arrival: Arrival | None, action: Sequence[float]) -> ArmState:
-    """One arm after a tick. `arrival`: the command that moved it, None for a held arm; `action`: empty after a reset."""
-    state = measured_arm(world, seat.arm, action)
+def arm_state(seen: Seen, seat: SeatHolder, arrival: Arrival | None, action: Sequence[float]) -> ArmState:
+    """One arm after a tick.
+
+    arrival: the command that moved it, None for a held arm. action: empty after a reset.
+    """
+    state = measured_arm(seen, seat.arm, action)
     state.source = seat.operator
     state.seat_epoch = seat.epoch
     if arrival is not None:
@@ -41,18 +48,17 @@ def arm_state(world: World, seat: SeatHolder, arrival: Arrival | None, action: S
     return state
 
 
-def measured_arm(world: World, arm: str, action: Sequence[float]) -> ArmState:
+def measured_arm(seen: Seen, arm: str, action: Sequence[float]) -> ArmState:
     """What can be known of an arm without a seat: where it is and what was done."""
-    return ArmState(
-        arm=arm,
-        tool_in_base=pose_message(world.tool_pose_in_base(arm)),
-        gripper=world.gripper(arm),
-        action=action,
-    )
+    x, y, z = seen[f"{arm}/tool_position_in_base"].tolist()
+    qw, qx, qy, qz = seen[f"{arm}/tool_quaternion_in_base"].tolist()
+    (gripper,) = seen[f"{arm}/gripper"].tolist()
+    pose = PoseMessage(x=x, y=y, z=z, qw=qw, qx=qx, qy=qy, qz=qz)
+    return ArmState(arm=arm, tool_in_base=pose, gripper=gripper, action=action)
 
 
-def observations(values: Mapping[str, NDArray]) -> list[Observation]:
-    return [Observation(name=name, value=value.ravel().tolist()) for name, value in values.items()]
+def observations(seen: Seen) -> list[Observation]:
+    return [Observation(name=name, value=value.ravel().tolist()) for name, value in seen.items()]
 
 
 def progress(progress: WorldProgress) -> Progress:
@@ -65,14 +71,15 @@ def progress(progress: WorldProgress) -> Progress:
     )
 
 
-def world_state(world: World, actions: NDArray | None) -> WorldState:
+def world_state(world: World, actions: NDArray[np.float64] | None) -> WorldState:
     """A world of a rollout. `actions`: shape (arms, 7), what was done in its last tick; None after a reset."""
+    seen = world.observations()
     return WorldState(
-        observations=observations(world.observations()),
+        observations=observations(seen),
         progress=progress(world.progress()),
         integration_state=world.integration_state(),
         arms=[
-            measured_arm(world, arm, () if actions is None else actions[index].tolist())
+            measured_arm(seen, arm, () if actions is None else actions[index].tolist())
             for index, arm in enumerate(world.arms)
         ],
         sim_time_s=world.sim_time_s,
@@ -110,7 +117,7 @@ def waiting(arms: Iterable[tuple[str, float]]) -> list[Waiting]:
     return [Waiting(arm=arm, since_s=since_s) for arm, since_s in arms]
 
 
-def barrier_changed(phase: BarrierPhase.ValueType, arms: Iterable[tuple[str, float]]) -> Event:
+def barrier_changed(phase: BarrierPhase, arms: Iterable[tuple[str, float]]) -> Event:
     return Event(barrier_changed=Event.BarrierChanged(phase=phase, waiting_for=waiting(arms)))
 
 

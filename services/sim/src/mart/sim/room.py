@@ -60,13 +60,14 @@ class Room:
         record: RoomRecord,
         voice: Voice,
         keep: Callable[[RoomRecord], None],
+        *,
         pace: float = 1.0,
     ) -> None:
         now_s = clock.monotonic_s()
         self._name, self._world, self._voice, self._keep, self._record = name, world, voice, keep, record
         self._boot_ns = clock.wall_ns()
         self._seats = SeatTable(world.arms)
-        self._seats.restore(record.seats)
+        self._seats.restore(record.holders())
         self._barrier = Barrier(world.arms, world.control_period_s / pace, now_s)
         for seat in self._seats:
             self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
@@ -90,7 +91,8 @@ class Room:
         except Rejected as error:
             self._barrier.rejected[error.reason] += 1
         else:
-            self._barrier.offer(arrival)
+            if self._barrier.offer(arrival) is None:
+                self._ticker.aim(arrival)
 
     def answer_seat(self, request: SeatRequest) -> RoomReply:
         try:
@@ -113,7 +115,7 @@ class Room:
 
     def episode_saved(self, saved: Event.EpisodeSaved) -> None:
         good = saved.verified and saved.outcome == OUTCOME_SUCCESS
-        self._remember(saved=self._record.saved + 1, good=self._record.good + good)
+        self._remember(self._record.with_changes(saved=self._record.saved + 1, good=self._record.good + good))
 
     def advance(self) -> float:
         """Does what is due; returns the monotonic time, seconds, at which to call again if nothing arrives before."""
@@ -178,7 +180,7 @@ class Room:
             self._status_due_s = now_s
 
     def _start(self, step: Started, now_s: float) -> None:
-        self._remember(episodes=step.number)
+        self._remember(self._record.with_changes(episodes=step.number))
         self._tell(
             Event(
                 episode_started=Event.EpisodeStarted(
@@ -218,7 +220,7 @@ class Room:
 
     def _seat_changed(self, seat: SeatHolder, now_s: float) -> None:
         self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
-        self._remember(seats=tuple(self._seats))
+        self._remember(self._record.with_seats(self._seats))
         self._tell(Event(seat_changed=self._seat_message(seat)))
         self._do(self._course.seats_changed(self._seats, now_s), now_s)
         self._status_due_s = now_s
@@ -252,6 +254,6 @@ class Room:
         newest = self._barrier.newest(seat.arm) if seat.operator != OPERATOR_HOLD else None
         return publish.seat(seat, self._course.is_ready(seat.arm), newest)
 
-    def _remember(self, **changes: object) -> None:
-        self._record = self._record.with_changes(**changes)
-        self._keep(self._record)
+    def _remember(self, record: RoomRecord) -> None:
+        self._record = record
+        self._keep(record)

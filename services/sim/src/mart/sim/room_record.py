@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from mart.protocol.errors import Corrupt
+from mart.protocol.messages import operator_from_word, operator_word
 from mart.sim.seats import SeatHolder
+
+
+class SeatRecord(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    arm: str
+    operator: Literal["human", "policy", "script", "hold"]
+    epoch: int = Field(ge=1)
+    holder_id: str
+    name: str
 
 
 class RoomRecord(BaseModel):
@@ -21,7 +33,28 @@ class RoomRecord(BaseModel):
     episodes: int = Field(0, ge=0)
     saved: int = Field(0, ge=0)
     good: int = Field(0, ge=0)
-    seats: tuple[SeatHolder, ...] = ()
+    seats: tuple[SeatRecord, ...] = ()
+
+    def holders(self) -> list[SeatHolder]:
+        return [
+            SeatHolder(seat.arm, operator_from_word(seat.operator), seat.epoch, seat.holder_id, seat.name)
+            for seat in self.seats
+        ]
+
+    def with_seats(self, seats: Iterable[SeatHolder]) -> RoomRecord:
+        records = tuple(
+            SeatRecord.model_validate(
+                {
+                    "arm": seat.arm,
+                    "operator": operator_word(seat.operator),
+                    "epoch": seat.epoch,
+                    "holder_id": seat.holder_id,
+                    "name": seat.name,
+                }
+            )
+            for seat in seats
+        )
+        return self.with_changes(seats=records)
 
     def with_changes(self, **changes: Any) -> RoomRecord:
         return self.model_copy(update=changes)
@@ -32,7 +65,7 @@ def load(path: Path) -> RoomRecord | None:
     if not path.exists():
         return None
     try:
-        return RoomRecord.model_validate_json(path.read_text())
+        return RoomRecord.model_validate_json(path.read_bytes())
     except ValidationError as error:
         raise Corrupt(
             f"{path} is not the record of a room ({error.error_count()} faults); delete it to let the room begin anew."

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+
 from mart.protocol.errors import Conflict, Forbidden, InvalidInput, NotFound
 from mart.protocol.messages import (
     OPERATOR_HOLD,
@@ -29,7 +30,7 @@ class SeatHolder:
     """One seat. `holder_id` is empty for hold and script; `name` is what others see."""
 
     arm: str
-    operator: Operator.ValueType = OPERATOR_HOLD
+    operator: Operator = OPERATOR_HOLD
     epoch: int = 1
     holder_id: str = ""
     name: str = ""
@@ -67,11 +68,11 @@ class SeatTable:
         """The seats that this person or policy holds."""
         return tuple(seat for seat in self if seat.holder_id == holder_id) if holder_id else ()
 
-    def of_operator(self, operator: Operator.ValueType) -> tuple[SeatHolder, ...]:
+    def of_operator(self, operator: Operator) -> tuple[SeatHolder, ...]:
         return tuple(seat for seat in self if seat.operator == operator)
 
     def answer(self, request: SeatRequest) -> SeatHolder:
-        """Does what a request asks. Raises what `claim`, `release` and `assign` raise, InvalidInput for an empty one."""
+        """Does what a request asks. Raises what claim, release and assign raise; InvalidInput for an empty one."""
         match request.WhichOneof("what"):
             case "claim":
                 claim = request.claim
@@ -82,8 +83,11 @@ class SeatTable:
                 return self.assign(request.assign.arm, request.assign.operator)
         raise InvalidInput("An empty seat request was given; ask to claim, release or assign a seat.")
 
-    def claim(self, arm: str, holder_id: str, name: str, operator: Operator.ValueType) -> SeatHolder:
-        """Gives a free seat to `holder_id`; its holder gets it back unchanged. Raises SeatTaken, InvalidInput, NotFound."""
+    def claim(self, arm: str, holder_id: str, name: str, operator: Operator) -> SeatHolder:
+        """Gives a free seat to `holder_id`; its holder gets it back unchanged.
+
+        Raises SeatTaken, InvalidInput or NotFound.
+        """
         seat = self[arm]
         if operator not in _CLAIMING:
             raise InvalidInput("A seat is claimed for a human or a policy; assign it to set script or hold.")
@@ -104,7 +108,7 @@ class SeatTable:
             raise Forbidden(f"{arm} was to be left, but it is not your seat; only its holder can leave it.")
         return self._change(seat, OPERATOR_HOLD)
 
-    def assign(self, arm: str, operator: Operator.ValueType) -> SeatHolder:
+    def assign(self, arm: str, operator: Operator) -> SeatHolder:
         """Sets a free seat to script or hold. Raises SeatTaken, InvalidInput, NotFound."""
         seat = self[arm]
         if operator not in _FREE:
@@ -122,7 +126,7 @@ class SeatTable:
         self._seats.update((seat.arm, seat) for seat in seats if seat.arm in self._seats)
 
     def _change(
-        self, seat: SeatHolder, operator: Operator.ValueType, holder_id: str = "", name: str = ""
+        self, seat: SeatHolder, operator: Operator, holder_id: str = "", name: str = ""
     ) -> SeatHolder:
         changed = replace(seat, operator=operator, epoch=seat.epoch + 1, holder_id=holder_id, name=name)
         self._seats[seat.arm] = changed

@@ -19,11 +19,15 @@ _SEED_BITS = 32
 
 def serve_room(settings: SimSettings) -> None:
     """Raises what building a world raises, Corrupt where the room's record cannot be read."""
-    world = World.build(settings.task, settings.control_hz, settings.arms)
+    serve_world(settings, World.build(settings.task, settings.control_hz, settings.arms))
+
+
+def serve_world(settings: SimSettings, world: World) -> None:
+    """The room of `settings` around a world that exists already."""
     with connected(settings, "sim", settings.room) as service, contextlib.ExitStack() as opened:
         mailbox = loop.Mailbox()
         voice = opened.enter_context(contextlib.closing(loop.BusVoice(service.bus, settings.room)))
-        room = Room(settings.room, world, _record(settings), voice, _keeper(settings), settings.pace)
+        room = Room(settings.room, world, _record(settings), voice, _keeper(settings), pace=settings.pace)
         doorway = opened.enter_context(
             contextlib.closing(loop.Doorway(service.bus, settings.room, room, world, mailbox))
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,8 @@ from mart.sim.pacing import RealTimeFactor
 from mart.sim.seats import SeatTable
 from mart.sim.targets import Targets
 from mart.sim.world import Progress, World
+
+NOBODY: Mapping[str, Arrival] = MappingProxyType({})
 
 
 class Ticker:
@@ -44,20 +47,23 @@ class Ticker:
         """The world as it is, before it begins to run."""
         self._real_time_factor.restart(now_s)
         wall_ns = clock.wall_ns()
-        return self._state(seats, course, {}, None, TickStamps(fired_ns=wall_ns, stepped_ns=wall_ns), now_s)
+        return self._state(seats, course, now_s, stamps=TickStamps(fired_ns=wall_ns, stepped_ns=wall_ns))
+
+    def aim(self, arrival: Arrival) -> None:
+        """Works out beforehand what an accepted command asks for."""
+        self._targets.aim(arrival)
 
     def advance(self, firing: Firing, seats: SeatTable, course: EpisodeCourse, now_s: float) -> State:
         """One control period. Raises Diverged where the physics left its bounds."""
         fired_ns = clock.wall_ns()
-        actions = self._targets.actions(firing.arrivals)
-        self._world.step(actions)
+        actions = self._targets.step(firing.arrivals)
         stamps = TickStamps(
             due_ns=fired_ns - round((now_s - firing.due_s) * 1e9),
             fired_ns=fired_ns,
             stepped_ns=clock.wall_ns(),
         )
         self._real_time_factor.ticked(now_s)
-        state = self._state(seats, course, firing.arrivals, actions, stamps, now_s)
+        state = self._state(seats, course, now_s, stamps=stamps, arrivals=firing.arrivals, actions=actions)
         state.straggler = firing.straggler or ""
         state.straggler_late_s = firing.late_s
         if course.recording:
@@ -68,13 +74,15 @@ class Ticker:
         self,
         seats: SeatTable,
         course: EpisodeCourse,
-        arrivals: Mapping[str, Arrival],
-        actions: NDArray[np.float64] | None,
-        stamps: TickStamps,
         now_s: float,
+        *,
+        stamps: TickStamps,
+        arrivals: Mapping[str, Arrival] = NOBODY,
+        actions: NDArray[np.float64] | None = None,
     ) -> State:
         self.tick += 1
         self.progress = self._world.progress()
+        seen = self._world.observations()
         return State(
             room=self._room,
             tick=self.tick,
@@ -84,14 +92,14 @@ class Ticker:
             integration_state=self._world.integration_state(),
             arms=[
                 publish.arm_state(
-                    self._world,
+                    seen,
                     seat,
                     arrivals.get(seat.arm),
                     () if actions is None else actions[index].tolist(),
                 )
                 for index, seat in enumerate(seats)
             ],
-            observations=publish.observations(self._world.observations()),
+            observations=publish.observations(seen),
             progress=publish.progress(self.progress),
             episode=course.number if course.recording else 0,
             boot=self._boot_ns,
