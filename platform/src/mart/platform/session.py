@@ -82,7 +82,8 @@ class Session:
             path=saved.episode_saved.path,
             outcome=outcome_word(ended.episode_ended.outcome),
             ticks=ended.episode_ended.ticks,
-            real_time_factor=ended.episode_ended.ticks / started.episode_started.control_hz / wall_s,
+            # The first tick fires at once, so n ticks last n - 1 periods.
+            real_time_factor=(ended.episode_ended.ticks - 1) / started.episode_started.control_hz / wall_s,
             verified=saved.episode_saved.verified,
             verdict=saved.episode_saved.verdict,
             latencies=tuple(latency for _, latency in sorted(self._latest_latency.items())),

@@ -29,6 +29,10 @@ class Visitor:
         rooms: list[dict[str, Any]] = self._request("GET", "api/rooms")["rooms"]
         return rooms
 
+    def is_room_answering(self, room: str) -> bool:
+        """False where the lobby shows the room as silent, or not at all."""
+        return any(one["room"] == room and not one.get("stale", False) for one in self.rooms())
+
     def take(self, room: str, arm: str) -> None:
         self._request("POST", f"api/rooms/{room}/seats/{arm}", {"operator": "human"})
 

@@ -32,6 +32,15 @@ class Service:
     stop: threading.Event
 
 
+@dataclass(frozen=True)
+class AsyncService:
+    """The same on an event loop; it is asked to end by cancelling its main task."""
+
+    kind: str
+    id: str
+    bus: AsyncBus
+
+
 @contextlib.contextmanager
 def running(settings: Settings, kind: str, id: str) -> Iterator[Service]:
     """A service with a thread of its own (sim, recorder). Its liveliness token lives as long as the block."""
@@ -58,7 +67,7 @@ def connected(settings: Settings, kind: str, id: str) -> Iterator[Service]:
 
 
 @contextlib.contextmanager
-def announced(service: Service) -> Iterator[None]:
+def announced(service: Service | AsyncService) -> Iterator[None]:
     """The service's liveliness token lives as long as the block."""
     with contextlib.closing(service.bus.announce(keys.alive(service.kind, service.id))):
         _log.info("%s %s is up", service.kind, service.id)
@@ -66,21 +75,22 @@ def announced(service: Service) -> Iterator[None]:
     _log.info("%s %s stops", service.kind, service.id)
 
 
-def run_async(settings: Settings, kind: str, id: str, main: Callable[[AsyncBus], Awaitable[None]]) -> None:
-    """An asyncio service (gateway, web): `main` is cancelled when the process is asked to end."""
+def run_async(
+    settings: Settings, kind: str, id: str, main: Callable[[AsyncService], Awaitable[None]]
+) -> None:
+    """An asyncio service (gateway, web): `main` is cancelled when the process is asked to end.
+
+    `main` says itself when the service is `announced`.
+    """
 
     async def supervise() -> None:
         loop = asyncio.get_running_loop()
         with contextlib.closing(await asyncio.to_thread(ZenohBus.connect, settings.router)) as bus:
-            token = bus.announce(keys.alive(kind, id))
-            task = asyncio.ensure_future(main(AsyncBus(bus, loop)))
+            task = asyncio.ensure_future(main(AsyncService(kind, id, AsyncBus(bus, loop))))
             for number in _STOP_SIGNALS:
                 loop.add_signal_handler(number, task.cancel)
-            _log.info("%s %s is up at %s", kind, id, settings.router)
             with contextlib.suppress(asyncio.CancelledError):
                 await task
-            token.close()
-            _log.info("%s %s stops", kind, id)
 
     configure_logging(settings.log_level, kind)
     asyncio.run(supervise())

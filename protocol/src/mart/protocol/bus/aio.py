@@ -44,6 +44,9 @@ class AsyncBus:
     async def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
         return await asyncio.to_thread(self.bus.query, topic, payload, timeout_s)
 
+    def announce(self, alive_key: str) -> Closable:
+        return self.bus.announce(alive_key)
+
     def watch(self, alive_expression: str, handler: Callable[[str, bool], None]) -> Closable:
         return self.bus.watch(alive_expression, lambda key, alive: self._soon(handler, key, alive))
 

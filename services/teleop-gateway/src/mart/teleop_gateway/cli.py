@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import click
 
-from mart.protocol.bus.aio import AsyncBus
-
 
 @click.command()
 @click.option(
@@ -13,11 +11,15 @@ from mart.protocol.bus.aio import AsyncBus
 )
 def gateway(name: str) -> None:
     """Run a gateway: one process for each seat that a person holds."""
-    from mart.protocol.service import run_async
+    from mart.protocol.service import AsyncService, announced, run_async
     from mart.teleop_gateway.gateway import KIND, Gateway
     from mart.teleop_gateway.settings import GatewaySettings
 
-    run_async(GatewaySettings(), KIND, name, lambda bus: Gateway(bus, name).run())
+    async def serve(service: AsyncService) -> None:
+        with announced(service):
+            await Gateway(service.bus, name).run()
+
+    run_async(GatewaySettings(), KIND, name, serve)
 
 
 @click.command()
@@ -33,7 +35,7 @@ def phone(
     """Run an emulated phone, led by the intents of `mart experts --intent`."""
     import asyncio
 
-    from mart.protocol.service import run_async
+    from mart.protocol.service import AsyncService, announced, run_async
     from mart.teleop_gateway.emulator import EmulatedPhone
     from mart.teleop_gateway.link import LinkProfile
     from mart.teleop_gateway.pairing import LobbyClient, Pairing
@@ -43,10 +45,10 @@ def phone(
         async with LobbyClient(url, insecure) as lobby:
             return await lobby.pair(code)
 
-    async def drive(bus: AsyncBus) -> None:
+    async def drive(service: AsyncService) -> None:
         async with LobbyClient(url, insecure) as lobby:
             emulated = EmulatedPhone(
-                bus,
+                service.bus,
                 lambda sdp: lobby.offer(pairing, sdp),
                 room=pairing.room,
                 arm=pairing.arm,
@@ -54,7 +56,8 @@ def phone(
                 link=LinkProfile(delay_ms / 1e3, jitter_ms / 1e3, loss_percent / 1e2),
                 scale=settings.hand_scale,
             )
-            await emulated.run()
+            with announced(service):
+                await emulated.run()
 
     settings = GatewaySettings()
     pairing = asyncio.run(pair())

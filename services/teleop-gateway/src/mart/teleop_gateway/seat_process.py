@@ -13,10 +13,9 @@ import os
 import sys
 
 from mart.protocol import tokens
-from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.bus.zenoh_bus import ZenohBus
-from mart.protocol.service import run_async
-from mart.teleop_gateway.assignment import WARM, Assignment
+from mart.protocol.service import AsyncService, run_async
+from mart.teleop_gateway.assignment import SEAT_KIND, WARM, Assignment
 from mart.teleop_gateway.seat import Seat
 from mart.teleop_gateway.settings import GatewaySettings
 
@@ -31,14 +30,14 @@ def main() -> None:
 def _serve(assignment: Assignment) -> None:
     settings = GatewaySettings()
 
-    async def run(bus: AsyncBus) -> None:
+    async def run(service: AsyncService) -> None:
         secret = tokens.load_or_create_secret(settings.secret_path)
         with contextlib.closing(await asyncio.to_thread(ZenohBus.connect, settings.router)) as video_bus:
-            seat = Seat(bus, video_bus, settings, assignment, secret)
+            seat = Seat(service.bus, video_bus, settings, assignment, secret)
             await _until_gateway_ends(asyncio.ensure_future(seat.run()))
 
     logging.getLogger("aioice").setLevel(logging.WARNING)  # it tells about every candidate pair
-    run_async(settings, "seat-process", assignment.id, run)
+    run_async(settings, SEAT_KIND, assignment.id, run)
 
 
 async def _until_gateway_ends(seat: asyncio.Future[None]) -> None:

@@ -29,4 +29,4 @@ def web(as_json: bool, **options: Any) -> None:
         name = next(iter(settings.public_names), settings.web_host)
         url = f"https://{in_url(name)}:{port}/"
         print_result({"url": url, "join_code": join_code}, f"Lobby {url}  join code {join_code}", as_json)
-        run_async(settings, "web", "web", lambda bus: serve(settings, bus, listener, join_code))
+        run_async(settings, "web", "web", lambda service: serve(settings, service, listener, join_code))

@@ -13,8 +13,8 @@ from collections.abc import Callable
 import uvicorn
 
 from mart.protocol import clock
-from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.errors import Unavailable
+from mart.protocol.service import AsyncService, announced
 from mart.protocol.tokens import load_or_create_secret
 from mart.web.app import create_app
 from mart.web.certificate import Certificate, ensure_certificate
@@ -43,14 +43,16 @@ def listen(host: str, port: int) -> socket.socket:
         ) from error
 
 
-async def serve(settings: WebSettings, bus: AsyncBus, listener: socket.socket, join_code: str) -> None:
+async def serve(
+    settings: WebSettings, service: AsyncService, listener: socket.socket, join_code: str
+) -> None:
     """Until cancelled, or stopped by a signal."""
     names = site_names((*settings.public_names, settings.web_host))
     with contextlib.ExitStack() as stack:
         people = stack.enter_context(contextlib.closing(People(settings.sessions_path)))
-        rooms = stack.enter_context(contextlib.closing(Rooms(bus)))
+        rooms = stack.enter_context(contextlib.closing(Rooms(service.bus)))
         site = Site(
-            bus=bus,
+            bus=service.bus,
             rooms=rooms,
             people=people,
             join_code=join_code,
@@ -58,10 +60,12 @@ async def serve(settings: WebSettings, bus: AsyncBus, listener: socket.socket, j
             names=names,
             lan_host=_lan_host(settings),
         )
-        await _serve_site(settings, site, listener)
+        await _serve_site(settings, service, site, listener)
 
 
-async def _serve_site(settings: WebSettings, site: Site, listener: socket.socket) -> None:
+async def _serve_site(
+    settings: WebSettings, service: AsyncService, site: Site, listener: socket.socket
+) -> None:
     def ensure() -> Certificate:
         return ensure_certificate(settings.certificates_dir, site.names, _now())
 
@@ -83,7 +87,9 @@ async def _serve_site(settings: WebSettings, site: Site, listener: socket.socket
     assert config.ssl is not None
     renewal = None if settings.certificate else asyncio.ensure_future(_renew(ensure, config.ssl))
     try:
-        await _run(uvicorn.Server(config), listener)
+        # Whoever comes before the server is quite up waits in the listener's queue.
+        with announced(service):
+            await _run(uvicorn.Server(config), listener)
     finally:
         if renewal is not None:
             renewal.cancel()
