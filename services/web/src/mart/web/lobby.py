@@ -46,6 +46,11 @@ class Lobby:
         if room in self._rooms:
             self._rooms[room] = replace(self._rooms[room], alive=alive)
 
+    @property
+    def unheard(self) -> set[str]:
+        """Rooms whose sim runs and that have not said anything yet."""
+        return self._alive - self._rooms.keys()
+
     def status(self, room: str, now_s: float) -> RoomStatus:
         """Raises NotFound, with the rooms that are open, where there is no such room."""
         self._forget(now_s)

@@ -32,6 +32,7 @@ _log = logging.getLogger(__name__)
 QUERY_TIMEOUT_S = 3.0
 _MAX_STATUS_BYTES = 64 * 1024
 _MAX_WAITING_EVENTS = 64
+_SETTLE_S = 2.0
 
 
 class Listener:
@@ -76,6 +77,17 @@ class Rooms:
     def close(self) -> None:
         while self._opened:
             self._opened.pop().close()
+
+    async def settled(self) -> None:
+        """Until every room that is open now has been heard of, so that the first page shows them all.
+
+        A room speaks five times a second; one that is silent for `_SETTLE_S` is not waited for.
+        """
+        deadline_s = clock.monotonic_s() + _SETTLE_S
+        with self.listen() as listener:
+            await listener.wait(_SETTLE_S / 10)  # tokens that exist already come one by one
+            while self.lobby.unheard and (left_s := deadline_s - clock.monotonic_s()) > 0:
+                await listener.wait(left_s)
 
     def services(self) -> dict[str, list[str]]:
         """Who is alive: kind → ids."""

@@ -47,7 +47,7 @@ async def serve(
     settings: WebSettings, service: AsyncService, listener: socket.socket, join_code: str
 ) -> None:
     """Until cancelled, or stopped by a signal."""
-    names = site_names((*settings.public_names, settings.web_host))
+    names = site_names(settings.public_names, settings.web_host)
     with contextlib.ExitStack() as stack:
         people = stack.enter_context(contextlib.closing(People(settings.sessions_path)))
         rooms = stack.enter_context(contextlib.closing(Rooms(service.bus)))
@@ -87,6 +87,7 @@ async def _serve_site(
     assert config.ssl is not None
     renewal = None if settings.certificate else asyncio.ensure_future(_renew(ensure, config.ssl))
     try:
+        await site.rooms.settled()
         # Whoever comes before the server is quite up waits in the listener's queue.
         with announced(service):
             await _run(uvicorn.Server(config), listener)
@@ -118,7 +119,7 @@ async def _renew(ensure: Callable[[], Certificate], context: ssl.SSLContext) -> 
 def _lan_host(settings: WebSettings) -> str:
     """What a phone should call this site; empty where it cannot reach it."""
     if settings.public_names:
-        return settings.public_names[0]
+        return next((name for name in settings.public_names if not is_loopback(name)), "")
     if settings.web_host in _EVERY_ADDRESS:
         return next(iter(lan_addresses()), "")
     return "" if is_loopback(settings.web_host) else settings.web_host
