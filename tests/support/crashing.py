@@ -1,0 +1,36 @@
+"""Finds the processes that a supervised platform runs, to kill them as a crash would. Linux only: reads /proc."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+from pathlib import Path
+
+from mart.platform.supervise import Platform
+
+
+def kill_service(platform: Platform, command: str) -> None:
+    """kill -9 of `mart {command} …`; the supervisor is left to notice."""
+    os.kill(_service_pid(platform, command), signal.SIGKILL)
+
+
+def kill_seat_process(platform: Platform, arm: str) -> None:
+    """kill -9 of the gateway's process for the seat of `arm`."""
+    log = next(platform.logs_dir.glob("gateway-*.log")).read_text()
+    served = re.findall(rf"{platform.options.room} {arm} is served by process (\d+)", log)
+    os.kill(int(served[-1]), signal.SIGKILL)
+
+
+def _service_pid(platform: Platform, command: str) -> int:
+    supervisor = int((platform.options.data_dir / "run" / "supervisord.pid").read_text())
+    (pid,) = (child for child in _children(supervisor) if command in _words(child)[:3])
+    return pid
+
+
+def _children(pid: int) -> list[int]:
+    return [int(word) for word in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def _words(pid: int) -> list[str]:
+    return Path(f"/proc/{pid}/cmdline").read_bytes().decode().split("\0")
