@@ -74,9 +74,11 @@ def test_people_collect_a_verified_episode_and_the_next_start_finds_it(stack: St
     assert [Path(str(entry["path"])).name for entry in before] == [Path(episode.path).name]
 
     code = (stack.folder / "join-code").read_text()
+    certificate = (stack.folder / "certificates/site.crt").read_text()
     stack.down()
     printed = stack.up()
     assert join_code_in(printed) == code.strip()
+    assert (stack.folder / "certificates/site.crt").read_text() == certificate
     assert episodes(stack) == before
 
 

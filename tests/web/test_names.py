@@ -22,11 +22,15 @@ def test_the_name_in_a_host_header(header: str, name: str) -> None:
     assert host_name(header) == name
 
 
-def test_public_names_come_first_and_nothing_comes_twice() -> None:
-    names = site_names(("Lab.example", "localhost"))
-    assert names[:2] == ("lab.example", "localhost")
+def test_told_names_come_first_nothing_comes_twice_and_nothing_is_found_beside_them() -> None:
+    names = site_names(("Lab.example", "localhost"), "0.0.0.0")
+    assert names == ("lab.example", "localhost", "127.0.0.1", "::1")
+
+
+def test_without_told_names_the_machine_goes_by_all_of_its_own() -> None:
+    names = site_names((), "192.0.2.7")
+    assert {"192.0.2.7", "localhost", *lan_addresses()} <= set(names)
     assert len(names) == len(set(names))
-    assert {"127.0.0.1", "::1"} < set(names)
 
 
 def test_lan_addresses_are_addresses_that_others_can_use() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ipaddress
 import socket
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 import ifaddr
 
@@ -12,13 +12,18 @@ _VIRTUAL = ("docker", "br-", "veth", "virbr", "cni")  # networks inside this mac
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
 
-def site_names(public_names: Iterable[str]) -> tuple[str, ...]:
-    """The public names first, then the loopback's, the host's and every local network address; without repeats."""
-    host = socket.gethostname().lower()
-    local = (host, f"{host}.local") if "." not in host else (host,)
-    return tuple(
-        dict.fromkeys((*(name.lower() for name in public_names), *LOOPBACK, *local, *lan_addresses()))
-    )
+def site_names(public_names: Sequence[str], listening_at: str) -> tuple[str, ...]:
+    """The public names and the loopback's; where no public ones are given, all that this machine is called.
+
+    Told names do not change with the network, so neither does a certificate made for them.
+    """
+    told = public_names or (listening_at, *_host_names(), *lan_addresses())
+    return tuple(dict.fromkeys((*(name.lower() for name in told), *LOOPBACK)))
+
+
+def _host_names() -> tuple[str, ...]:
+    host = socket.gethostname()
+    return (host, f"{host}.local") if "." not in host else (host,)
 
 
 def lan_addresses() -> tuple[str, ...]:
