@@ -40,10 +40,11 @@ class Web:
     def client(self) -> httpx.Client:
         return httpx.Client(base_url=self.origin, verify=self.trust, headers={"Origin": self.origin})
 
-    def joined(self, name: str) -> httpx.Client:
-        client = self.client()
-        assert client.post("/api/join", json={"code": self.join_code, "name": name}).status_code == 200
-        return client
+    @contextlib.contextmanager
+    def joined(self, name: str) -> Iterator[httpx.Client]:
+        with self.client() as client:
+            assert client.post("/api/join", json={"code": self.join_code, "name": name}).status_code == 200
+            yield client
 
     def live(self, client: httpx.Client, origin: str | None = None) -> ClientConnection:
         cookie = "; ".join(f"{cookie.name}={cookie.value}" for cookie in client.cookies.jar)
@@ -127,14 +128,15 @@ def test_a_second_service_at_the_same_address_says_so(web: Web, tmp_path: Path) 
 def test_a_restart_keeps_people_joined_and_ends_cleanly(tmp_path: Path) -> None:
     port = free_port()
     command = ["web", "--port", str(port)]
-    with running_router() as endpoint:
+    with contextlib.ExitStack() as stack:
+        endpoint = stack.enter_context(running_router())
         with running_service(command, endpoint, tmp_path, kind="web", id="web") as first:
             trust = ssl.create_default_context(cafile=str(tmp_path / "certificates" / "site.crt"))
-            site = Web(first, port, endpoint, tmp_path, trust)
-            ana = site.joined("Ana")
-            with site.live(ana) as live:
+            web = Web(first, port, endpoint, tmp_path, trust)
+            ana = stack.enter_context(web.joined("Ana"))
+            with web.live(ana) as live:
                 live.recv(timeout=5)
                 assert first.terminate() == 0
             assert "Traceback" not in first.log()
-        with running_service(command, endpoint, tmp_path, kind="web", id="web"), ana:
+        with running_service(command, endpoint, tmp_path, kind="web", id="web"):
             assert ana.get("/api/me").json()["name"] == "Ana"

@@ -1,7 +1,7 @@
 // The operator's page: the picture, the hand that drives, and what is going on.
 
 import * as api from "./api.js";
-import { armName, badge } from "./arms.js";
+import { armName, badge, isFree } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { Driver } from "./drive/driver.js";
 import { Confirm } from "./hud/confirm.js";
@@ -9,7 +9,7 @@ import { HandPanel } from "./hud/hand-panel.js";
 import { showHealth } from "./hud/health.js";
 import { showPartners } from "./hud/partners.js";
 import { Strip } from "./hud/strip.js";
-import { nowUs, SeatLink } from "./link/seat-link.js";
+import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
 import { waitingText } from "./words.js";
@@ -21,6 +21,7 @@ const [, , roomName, , armId] = location.pathname.split("/").map(decodeURICompon
 let room = null;
 let status = null;
 let noticeTimer = 0;
+let followed = 0; // the seat epoch that the connection is for
 
 const confirm = new Confirm(() => render());
 const strip = new Strip((command) => run(command));
@@ -68,12 +69,17 @@ const drives = () => link.role === "browser" && status !== null;
 
 function onRooms(rooms) {
   room = rooms.find((one) => one.room === roomName) ?? null;
-  const seat = ownSeat();
-  if (seat && link.epoch && seat.epoch > link.epoch) {
-    link.epoch = seat.epoch;
-    link.reconnect();
-  }
+  follow(ownSeat());
   render();
+}
+
+/** Every holder of the seat is a connection of its own; a seat that nobody holds shows no picture. */
+function follow(seat) {
+  if (!seat || seat.epoch === followed) return;
+  followed = seat.epoch;
+  status = null;
+  if (isFree(seat)) link.close();
+  else link.connect();
 }
 
 function onEvent(event) {
@@ -100,13 +106,19 @@ function render() {
   const waiting = room && !room.stale ? waitingText(room) : "";
   setText(byId("waiting"), waiting);
   setShown(byId("waiting"), waiting !== "");
-  const seen = byId("video").videoWidth > 0;
-  setShown(byId("no-picture"), !seen && Boolean(seat));
-  byId("picture").classList.toggle("live", seen);
+  showPicture(seat);
   document.body.classList.toggle("engaged", Boolean(status?.engaged));
   document.body.classList.toggle("can-drive", Boolean(seat?.mine));
   setShown(document.querySelector(".hand"), Boolean(seat?.mine));
   setText(byId("leave"), confirm.pending === "leave" ? "Press Q again" : seat?.mine ? "Leave" : "Lobby");
+}
+
+function showPicture(seat) {
+  const seen = byId("video").videoWidth > 0;
+  const empty = seat && isFree(seat) ? "Nobody drives this arm, so there is no picture." : "Connecting to the scene…";
+  setText(byId("no-picture"), empty);
+  setShown(byId("no-picture"), Boolean(seat) && (!seen || isFree(seat)));
+  byId("picture").classList.toggle("live", seen && link.state === LinkState.LIVE);
 }
 
 /** A key was pressed: some have to be pressed twice. */

@@ -76,6 +76,7 @@ function connect(pairing) {
     onState: showLink,
     onStatus: heard,
   });
+  link.connect();
   everyFrame(sendFrame);
 }
 

@@ -77,7 +77,7 @@ function offline({ state, problem }) {
 }
 
 function savedText({ path, verified, verdict, size_bytes: size, outcome }) {
-  const kept = outcome === "discarded" ? "Kept, and labelled discarded" : "Saved";
-  const checked = verified ? " and verified" : verdict ? `, ${verdict}` : "";
-  return `${kept}${checked}: ${path} (${fileSize(size)})`;
+  const file = `${path} (${fileSize(size)})`;
+  if (outcome === "discarded") return `Kept, and labelled discarded: ${file}`;
+  return `Saved${verified ? " and verified" : verdict && `, ${verdict}`}: ${file}`;
 }

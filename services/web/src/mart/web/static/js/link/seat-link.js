@@ -25,7 +25,7 @@ export class SeatLink {
   #retryMs = FIRST_RETRY_MS;
   #attempt = 0; // an older attempt's late answers are not heard
   #retry = 0;
-  #closed = false;
+  #closed = true;
 
   /**
    * `fetchToken()` gives `{ room, arm, token, epoch, role }`. Listeners: `onState()`, `onStatus(message)`,
@@ -35,6 +35,11 @@ export class SeatLink {
     Object.assign(this, { fetchToken, wantsVideo, onState, onStatus, onTrack });
     setInterval(() => this.#watch(performance.now()), WATCH_MS);
     setInterval(() => this.tell({ type: "ping", t_us: nowUs() }), PING_MS);
+  }
+
+  /** Connects, anew where it is connected already, and from then on whenever the connection is lost. */
+  connect() {
+    this.#closed = false;
     this.#connect();
   }
 
@@ -46,14 +51,10 @@ export class SeatLink {
     this.#peer?.sendFrame(buffer);
   }
 
-  /** Starts over at once, for example because the seat has changed hands. */
-  reconnect() {
-    this.#connect();
-  }
-
   close() {
     this.#closed = true;
     this.#drop();
+    this.#setState(LinkState.CONNECTING);
   }
 
   async #connect() {

@@ -1,0 +1,34 @@
+"""The web service alone, for what needs no world behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser
+
+from tests.support.processes import free_port, running_router, running_service
+
+Run = Callable[..., Any]
+
+
+@pytest.fixture(scope="module")
+def run(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
+    """`run("drive/frame.js", "({ encodeFrame }, frame) => …", frame)`: a function of a module's exports, in a page."""
+    port = free_port()
+    with (
+        running_router() as endpoint,
+        running_service(
+            ["web", "--port", str(port)], endpoint, tmp_path_factory.mktemp("web"), kind="web", id="web"
+        ),
+        browser.new_context(ignore_https_errors=True) as context,
+    ):
+        page = context.new_page()
+        page.goto(f"https://localhost:{port}/")
+
+        def evaluate(module: str, function: str, argument: Any = None) -> Any:
+            script = f"async (argument) => ({function})(await import('/static/js/{module}'), argument)"
+            return page.evaluate(script, argument)
+
+        yield evaluate

@@ -1,0 +1,173 @@
+"""The pages' own modules, run in a real Chromium: bytes, codes and state machines that need no world."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import mart.web
+from mart.protocol.tasks import get_task
+from tests.browser.pages.conftest import Run
+
+GOLDEN = json.loads(Path("tests/teleop_gateway/golden/phone_frame.json").read_text())["cases"]
+STATIC = Path(mart.web.__file__).parent / "static"
+
+
+@pytest.mark.parametrize("case", GOLDEN, ids=lambda case: case["name"])
+def test_phone_frames_have_the_golden_bytes(run: Run, case: dict[str, Any]) -> None:
+    frame = case["frame"]
+    fields = {
+        "seatEpoch": frame["seat_epoch"],
+        "sequence": frame["sequence"],
+        "seenTick": frame["seen_tick"],
+        "sentUs": frame["sent_us"],
+        "position": frame["position"],
+        "quaternionWxyz": frame["quaternion_wxyz"],
+        "gripper": frame["gripper"],
+        "flags": frame["flags"],
+    }
+    encoded = run(
+        "drive/frame.js", "({ encodeFrame }, frame) => Array.from(new Uint8Array(encodeFrame(frame)))", fields
+    )
+    assert bytes(encoded).hex() == case["hex"]
+
+
+def tick_luma(tick: int) -> list[int]:
+    """The 40 squares of docs/protocol.md, "Tick code in the picture"."""
+    code = tick.to_bytes(4, "big")
+    check = code[0] ^ code[1] ^ code[2] ^ code[3] ^ 0xA5
+    bits = f"{tick:032b}{check:08b}"
+    return [235 if bit == "1" else 16 for bit in bits]
+
+
+DECODE = "({ decodeTick }, luma) => decodeTick(luma)"
+
+
+@pytest.mark.parametrize("tick", [0, 1, 255, 98765, 2**31, 2**32 - 1])
+def test_a_tick_is_read_out_of_its_squares(run: Run, tick: int) -> None:
+    assert run("link/tickcode.js", DECODE, tick_luma(tick)) == tick
+
+
+@pytest.mark.parametrize("square", [0, 17, 31, 32, 39])
+def test_a_torn_tick_code_is_not_read(run: Run, square: int) -> None:
+    luma = tick_luma(4711)
+    luma[square] = 255 - luma[square]
+    assert run("link/tickcode.js", DECODE, luma) is None
+
+
+MOVE = """({ VirtualHand }, { engaged, move, drag, seconds }) => {
+  const hand = new VirtualHand();
+  const steps = [];
+  hand.drag(drag);
+  for (let at = 0; at < seconds; at += 0.016) {
+    const before = hand.position;
+    hand.step({ engaged, move, turn: [0, 1, 0] }, 0.016);
+    steps.push(Math.hypot(...hand.position.map((value, index) => value - before[index])));
+  }
+  return { position: hand.position, quaternion: hand.quaternionWxyz, longest: Math.max(...steps) };
+}"""
+
+
+def moved(
+    run: Run, engaged: bool, move: list[float], drag: list[float], seconds: float = 1.0
+) -> dict[str, Any]:
+    argument = {"engaged": engaged, "move": move, "drag": drag, "seconds": seconds}
+    hand: dict[str, Any] = run("drive/virtual-hand.js", MOVE, argument)
+    return hand
+
+
+def test_keys_move_the_hand_at_a_steady_pace(run: Run) -> None:
+    hand = moved(run, True, [0, 0, -1], [0, 0, 0])
+    assert hand["position"][:2] == pytest.approx([0, 0])
+    assert hand["position"][2] == pytest.approx(-0.25, rel=0.1)
+    assert sum(value**2 for value in hand["quaternion"]) == pytest.approx(1)
+
+
+def test_two_keys_are_not_faster_than_one(run: Run) -> None:
+    assert moved(run, True, [1, 1, 0], [0, 0, 0])["longest"] <= 0.25 * 0.016 * 1.001
+
+
+def test_a_drag_is_followed_whole_but_never_in_a_jump(run: Run) -> None:
+    hand = moved(run, True, [0, 0, 0], [0.4, -0.2, 0])
+    assert hand["position"] == pytest.approx([0.4, -0.2, 0])
+    assert hand["longest"] <= 0.8 * 0.016 * 1.001
+
+
+def test_an_open_clutch_moves_nothing(run: Run) -> None:
+    hand = moved(run, False, [1, 1, 1], [0.4, 0, 0])
+    assert (hand["position"], hand["quaternion"]) == ([0, 0, 0], [1, 0, 0, 0])
+
+
+def test_held_keys_add_up_to_a_direction(run: Run) -> None:
+    ask = "({ directionOf }, held) => directionOf(new Set(held))"
+    assert run("drive/keys.js", ask, ["KeyW", "KeyA", "KeyQ"]) == {"move": [-1, 1, -1], "turn": [0, 0, 0]}
+    assert run("drive/keys.js", ask, ["KeyW", "KeyS", "Space"]) == {"move": [0, 0, 0], "turn": [0, 0, 0]}
+
+
+@pytest.mark.parametrize(
+    ("angles", "up"),
+    [([0, 90, 0], [0, 1, 0]), ([123, 90, 0], [0, 1, 0]), ([0, 0, 0], [0, 0, -1])],
+    ids=["upright", "upright, turned", "flat on the table"],
+)
+def test_the_orientation_sensor_is_read_into_the_session_frame(
+    run: Run, angles: list[float], up: list[float]
+) -> None:
+    """Where the phone's upper edge points."""
+    script = """async ({ fromDeviceAngles }, angles) => {
+      const { rotate } = await import("/static/js/drive/quaternion.js");
+      return rotate(fromDeviceAngles(...angles), [0, 1, 0]);
+    }"""
+    assert run("phone/orientation.js", script, angles) == pytest.approx(up, abs=1e-9)
+
+
+def test_the_fastest_ping_tells_the_clock(run: Run) -> None:
+    script = """({ ClockOffset }) => {
+      const clock = new ClockOffset();
+      const pings = [[1000, 400], [2000, 10], [3000, 200]]; // sent, round trip; the gateway is 7 s ahead
+      return pings.map(([sent, trip]) =>
+        clock.pong({ t_us: sent, gateway_ns: 7e9 + (sent + trip * 0.9) * 1000 }, sent + trip));
+    }"""
+    offsets = run("link/clock-offset.js", script)
+    assert offsets == pytest.approx([7e9 + 160_000, 7e9 + 4_000, 7e9 + 4_000])
+
+
+def test_h264_without_reencoding_is_preferred_then_vp8(run: Run) -> None:
+    codecs = [
+        {"mimeType": "video/rtx"},
+        {"mimeType": "video/VP8"},
+        {"mimeType": "video/H264", "sdpFmtpLine": "packetization-mode=0;profile-level-id=42e01f"},
+        {"mimeType": "video/H264", "sdpFmtpLine": "packetization-mode=1;profile-level-id=42001f"},
+        {"mimeType": "video/H264", "sdpFmtpLine": "packetization-mode=1;profile-level-id=42e01f"},
+        {"mimeType": "video/H264", "sdpFmtpLine": "packetization-mode=1;profile-level-id=640034"},
+    ]
+    ordered = run("link/peer.js", "({ h264First }, codecs) => h264First(codecs)", codecs)
+    assert ordered == [codecs[4], codecs[3], codecs[1], codecs[0], codecs[2], codecs[5]]
+
+
+def test_the_coach_moves_on_when_a_step_was_done(run: Run) -> None:
+    script = """({ Coach }) => {
+      const coach = new Coach("xr");
+      const still = { held: false, position: [0, 1, 0], quaternionWxyz: [1, 0, 0, 0], gripper: 0 };
+      const held = { ...still, held: true };
+      const tips = [coach.tip];
+      const see = (hand, atMs) => coach.see(hand, atMs) && tips.push(coach.tip);
+      see(still, 0); see(held, 100); see(held, 400); see(still, 450); see(held, 500); see(held, 1000);
+      see(held, 1100); see({ ...held, position: [0, 1.06, 0] }, 1200);
+      see(held, 1300); see({ ...held, quaternionWxyz: [Math.cos(0.2), 0, Math.sin(0.2), 0] }, 1400);
+      see({ ...still, gripper: 0.9 }, 1500);
+      return { tips, finished: coach.finished };
+    }"""
+    coached = run("phone/coach.js", script)
+    assert [tip[:1] for tip in coached["tips"]] == ["1", "2", "3", "4", ""]
+    assert coached["finished"]
+
+
+def test_arm_colours_are_those_of_the_task_catalogue() -> None:
+    tokens = (STATIC / "css" / "tokens.css").read_text()
+    pages = dict(re.findall(r"--(arm\d): (#[0-9a-f]{6});", tokens))
+    catalogue = {arm.name: arm.color.lower() for arm in get_task("two_arm_multi_cube_lifting", 4).arms}
+    assert pages == catalogue
