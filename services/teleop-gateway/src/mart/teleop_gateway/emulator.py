@@ -14,13 +14,13 @@ from aiortc import RTCConfiguration, RTCDataChannel, RTCPeerConnection, RTCSessi
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus.aio import AsyncBus
-from mart.protocol.bus.base import Sample
 from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import Command, Model, State, pose_from_message
 from mart.teleop_gateway import channel
 from mart.teleop_gateway.emulated_hand import EmulatedHand, Held, Intent, resting_pose
 from mart.teleop_gateway.frame import Flag, PhoneFrame
 from mart.teleop_gateway.link import Link, LinkProfile
+from mart.teleop_gateway.reading import Reader
 from mart.teleop_gateway.renderer import camera_azimuth_rad, load_model
 
 _log = logging.getLogger(__name__)
@@ -70,11 +70,9 @@ class EmulatedPhone:
         azimuth_rad = await self._camera_azimuth_rad()
         self._hand = EmulatedHand(azimuth_rad, resting_pose(_HEADING_RAD), self._scale)
         with contextlib.ExitStack() as stack:
-            for key, handler in (
-                (keys.intent(self.room, self.arm).key, self._on_intent),
-                (keys.state(self.room).key, self._on_state),
-            ):
-                stack.callback(self._bus.subscribe(key, handler).close)
+            intents, states = Reader(Command, self._on_intent), Reader(State, self._on_state)
+            stack.callback(self._bus.subscribe(keys.intent(self.room, self.arm).key, intents).close)
+            stack.callback(self._bus.subscribe(keys.state(self.room).key, states).close)
             while True:
                 try:
                     await self._drive_once(self._hand)
@@ -161,14 +159,12 @@ class EmulatedPhone:
 
     # The bus
 
-    def _on_intent(self, sample: Sample) -> None:
-        command = codec.decode(Command, sample.payload)
+    def _on_intent(self, command: Command) -> None:
         self._intent = Intent(
             pose_from_message(command.target_tool_in_base), command.gripper, command.engaged
         )
 
-    def _on_state(self, sample: Sample) -> None:
-        state = codec.decode(State, sample.payload)
+    def _on_state(self, state: State) -> None:
         assert self._hand is not None
         now_s = clock.monotonic_s()
         if state.sim_time_s < self._sim_time_s:

@@ -9,11 +9,11 @@ import logging
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus.aio import AsyncBus
-from mart.protocol.bus.base import Sample
 from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import OPERATOR_HUMAN, Event, OpenSeat, OpenSeatReply, RoomStatus, error_message
 from mart.teleop_gateway.assignment import SEAT_KIND, Assignment
 from mart.teleop_gateway.child import Child, Spares
+from mart.teleop_gateway.reading import Reader
 
 _log = logging.getLogger(__name__)
 
@@ -51,7 +51,7 @@ class Gateway:
             for opened in (
                 bus.watch(keys.alive_of(SEAT_KIND), self._on_seat_token),
                 bus.watch(keys.alive_of(KIND), self._on_gateway_token),
-                bus.subscribe(keys.EVERY_STATUS, self._on_status),
+                bus.subscribe(keys.EVERY_STATUS, Reader(RoomStatus, self._on_status)),
                 bus.serve(keys.open_seat(self.name), self._open_seat),
             ):
                 stack.callback(opened.close)
@@ -63,12 +63,9 @@ class Gateway:
 
     # What the rooms say
 
-    def _on_status(self, sample: Sample) -> None:
-        room = keys.room_of(sample.key)
-        status = codec.decode(RoomStatus, sample.payload)
-        self._human[room] = frozenset(
-            Assignment(room, s.arm) for s in status.seats if s.operator == OPERATOR_HUMAN
-        )
+    def _on_status(self, status: RoomStatus) -> None:
+        human = (seat.arm for seat in status.seats if seat.operator == OPERATOR_HUMAN)
+        self._human[status.room] = frozenset(Assignment(status.room, arm) for arm in human)
         self._reconcile()
 
     def _on_gateway_token(self, key: str, alive: bool) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import ssl
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -27,21 +29,28 @@ class Pairing:
 class LobbyClient:
     """`insecure`: take any certificate, for the one that a platform makes for itself at first start."""
 
-    def __init__(self, url: str, insecure: bool = False) -> None:
+    def __init__(
+        self, url: str, insecure: bool = False, transport: httpx.AsyncBaseTransport | None = None
+    ) -> None:
         self._url = url.rstrip("/")
         verify: ssl.SSLContext | bool = False if insecure else ssl.create_default_context()
-        self._http = httpx.AsyncClient(verify=verify, timeout=_TIMEOUT_S, headers={"Origin": self._url})
+        origin = {"Origin": self._url}
+        self._http = httpx.AsyncClient(verify=verify, timeout=_TIMEOUT_S, headers=origin, transport=transport)
 
     async def pair(self, code: str) -> Pairing:
         """Uses up a pairing code; raises what the lobby answers, Unavailable where nobody does."""
         answer = await self._post("/api/pair", {"code": code}, {})
-        return Pairing(answer["token"], answer["room"], answer["arm"], int(answer["epoch"]), answer["name"])
+        with self._complete():
+            return Pairing(
+                answer["token"], answer["room"], answer["arm"], int(answer["epoch"]), answer["name"]
+            )
 
     async def offer(self, pairing: Pairing, sdp: str) -> str:
         """The answer's SDP."""
         path = f"/api/rooms/{pairing.room}/seats/{pairing.arm}/offer"
         answer = await self._post(path, {"sdp": sdp}, {"Authorization": f"Bearer {pairing.token}"})
-        return str(answer["sdp"])
+        with self._complete():
+            return str(answer["sdp"])
 
     async def __aenter__(self) -> Self:
         return self
@@ -50,13 +59,19 @@ class LobbyClient:
         await self._http.aclose()
 
     async def _post(self, path: str, body: dict[str, Any], headers: dict[str, str]) -> dict[str, Any]:
-        try:
+        with self._complete():
             response = await self._http.post(self._url + path, json=body, headers=headers)
             answer = response.json()
-        except (httpx.HTTPError, ValueError) as error:
+            if "error" in answer:
+                raise from_wire(answer["error"]["code"], answer["error"]["message"])
+            return dict(answer)
+
+    @contextlib.contextmanager
+    def _complete(self) -> Iterator[None]:
+        """Whatever else than a lobby's answer is no lobby."""
+        try:
+            yield
+        except (httpx.HTTPError, ValueError, TypeError, KeyError) as error:
             raise Unavailable(
-                f"{self._url} does not answer as a lobby: {error}. Is `mart web` running?"
+                f"{self._url} does not answer as a lobby: {error!r}. Is `mart web` running?"
             ) from error
-        if "error" in answer:
-            raise from_wire(answer["error"]["code"], answer["error"]["message"])
-        return dict(answer)

@@ -11,7 +11,7 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus.aio import AsyncBus
-from mart.protocol.bus.base import Bus, Closable, Sample
+from mart.protocol.bus.base import Bus, Closable
 from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import (
     OPERATOR_HUMAN,
@@ -33,6 +33,7 @@ from mart.teleop_gateway.latency import MotionToPhoton
 from mart.teleop_gateway.peer import MAX_SDP_CHARACTERS, Peer
 from mart.teleop_gateway.peers import Peers
 from mart.teleop_gateway.rate import RateLimit
+from mart.teleop_gateway.reading import Reader
 from mart.teleop_gateway.retarget import Retarget
 from mart.teleop_gateway.scenery import Scenery
 from mart.teleop_gateway.settings import GatewaySettings
@@ -89,9 +90,9 @@ class Seat:
     def _open(self) -> list[Closable]:
         room, arm, bus = self.room, self.arm, self._bus
         served = [bus.serve(keys.signal(room, arm, role), self._answering(role)) for role in Role]
-        status = bus.subscribe(keys.status(room).key, self._on_room_status)
+        status = bus.subscribe(keys.status(room).key, Reader(RoomStatus, self._on_room_status))
         # Not over the event loop: the view's thread must have the state before the loop finds time for it.
-        state = bus.bus.subscribe(keys.state(room).key, self._on_state_sample)
+        state = bus.bus.subscribe(keys.state(room).key, Reader(State, self._on_state_arrival))
         # Last: whoever sees this token may send an offer.
         alive = bus.bus.announce(keys.alive(SEAT_KIND, self.id))
         return [*served, status, state, self._commands, self._events, self._video, alive]
@@ -180,25 +181,26 @@ class Seat:
 
     # What the room does
 
-    def _on_state_sample(self, sample: Sample) -> None:
+    def _on_state_arrival(self, state: State) -> None:
+        """On the bus's thread."""
         received_ns = clock.wall_ns()
-        state = codec.decode(State, sample.payload)
-        self._scenery.offer(state, received_ns)
-        self._loop.call_soon_threadsafe(self._on_state, state)
-
-    def _on_state(self, state: State) -> None:
-        was_reset = state.boot != self._state.boot or state.sim_time_s < self._state.sim_time_s
-        self._state = state
         for arm in state.arms:
             if arm.arm == self.arm:
-                self._measured = pose_from_message(arm.tool_in_base)
+                measured = pose_from_message(arm.tool_in_base)
+                self._scenery.offer(state, received_ns)
+                self._loop.call_soon_threadsafe(self._on_state, state, measured)
+
+    def _on_state(self, state: State, measured_tool_in_base: Pose) -> None:
+        was_reset = state.boot != self._state.boot or state.sim_time_s < self._state.sim_time_s
+        self._state = state
+        self._measured = measured_tool_in_base
         if was_reset and self._driving is not None:
             self._driving.world_was_reset()
         self._scenery.on_boot(state.boot)
         self._latency.on_state(state)
 
-    def _on_room_status(self, sample: Sample) -> None:
-        self._status = codec.decode(RoomStatus, sample.payload)
+    def _on_room_status(self, status: RoomStatus) -> None:
+        self._status = status
         self._renew_driving()
         self._tell_changes()
 

@@ -22,6 +22,7 @@ from mart.protocol.messages import State
 from mart.teleop_gateway.encoder import CLOCK_HZ, ENCODERS, Codec, Encoded, to_i420
 from mart.teleop_gateway.handover import Closed, Fresh, Handover
 from mart.teleop_gateway.latency import PictureStamps
+from mart.teleop_gateway.rate import RateLimit
 from mart.teleop_gateway.renderer import Renderer, blank_picture
 from mart.teleop_gateway.tick_code import Image
 
@@ -54,6 +55,7 @@ class View:
         self._handover = Handover()
         self._encoders = {codec: encoder(frames_per_s) for codec, encoder in ENCODERS.items()}
         self._keyframe_s = dict.fromkeys(Codec, -KEYFRAME_EVERY_S)
+        self._complaints = RateLimit(1)
         self._times_s: deque[float] = deque(maxlen=_RATE_WINDOW)
         self._thread = threading.Thread(target=self._run, name=f"view-{camera}", daemon=True)
 
@@ -108,7 +110,8 @@ class View:
                 try:
                     renderer.draw(fresh.state.integration_state, fresh.state.tick, picture_rgb)
                 except InvalidInput as error:
-                    _log.warning("A state was not drawn: %s", error)
+                    if self._complaints.allows(clock.monotonic_s()):
+                        _log.warning("A state was not drawn: %s", error)
                     continue
                 drawn, rendered_ns = fresh, clock.wall_ns()
                 self._times_s.append(clock.monotonic_s())

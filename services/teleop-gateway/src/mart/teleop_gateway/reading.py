@@ -1,0 +1,36 @@
+"""Messages off the bus: what is garbage is counted, told once a second at most, and otherwise ignored."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+from google.protobuf.message import Message
+
+from mart.protocol import clock, codec
+from mart.protocol.bus.base import Sample
+from mart.protocol.errors import InvalidInput
+from mart.teleop_gateway.rate import RateLimit
+
+_log = logging.getLogger(__name__)
+
+M = TypeVar("M", bound=Message)
+
+
+class Reader(Generic[M]):
+    """A bus handler that passes on messages of one kind; `take` may raise InvalidInput for one that makes no sense."""
+
+    def __init__(self, kind: type[M], take: Callable[[M], None]) -> None:
+        self.garbage = 0
+        self._kind = kind
+        self._take = take
+        self._complaints = RateLimit(1)
+
+    def __call__(self, sample: Sample) -> None:
+        try:
+            self._take(codec.decode(self._kind, sample.payload))
+        except InvalidInput as error:
+            self.garbage += 1
+            if self._complaints.allows(clock.monotonic_s()):
+                _log.warning("%s: %s (%d so far)", sample.key, error, self.garbage)
