@@ -91,19 +91,19 @@ def test_a_countdown_waits_for_whoever_is_missing(course: EpisodeCourse, seats: 
 
 
 @pytest.mark.parametrize(
-    ("success", "failed", "outcome", "reason"),
+    ("success", "failed", "ended"),
     [
-        (True, None, OUTCOME_SUCCESS, "the task is done"),
-        (False, "the cube fell off the table", OUTCOME_FAILURE, "the cube fell off the table"),
+        (True, None, Ended(1, OUTCOME_SUCCESS, 2, "the task is done")),
+        (False, "a cube fell off", Ended(1, OUTCOME_FAILURE, 2, "a cube fell off")),
     ],
 )
 def test_the_task_ends_an_episode(
-    course: EpisodeCourse, seats: SeatTable, success: bool, failed: str | None, outcome: int, reason: str
+    course: EpisodeCourse, seats: SeatTable, success: bool, failed: str | None, ended: Ended
 ) -> None:
     record(course, seats)
     assert course.ticked(success=False, failed=None, now_s=4.0) == ()
-    assert course.ticked(success=success, failed=failed, now_s=5.0) == (Ended(1, outcome, 2, reason),)
-    assert (course.phase, course.outcome, course.world_runs) == (EPISODE_PHASE_ENDED, outcome, False)
+    assert course.ticked(success=success, failed=failed, now_s=5.0) == (ended,)
+    assert (course.phase, course.outcome, course.world_runs) == (EPISODE_PHASE_ENDED, ended.outcome, False)
 
 
 def test_the_horizon_ends_an_episode(course: EpisodeCourse, seats: SeatTable) -> None:

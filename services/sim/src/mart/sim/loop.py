@@ -142,9 +142,9 @@ class Doorway:
     def _on_model_request(self, request: Request) -> None:
         request.reply(self._model)
 
-    def _answer(self, request: Request, kind: type[R], answer: Callable[[R], RoomReply]) -> None:
+    def _answer(self, request: Request, kind: type[R], answer: Callable[[R, float], RoomReply]) -> None:
         try:
-            reply = answer(codec.decode(kind, request.payload, MAX_REQUEST_BYTES))
+            reply = answer(codec.decode(kind, request.payload, MAX_REQUEST_BYTES), clock.monotonic_s())
         except MartError as error:
             self.garbled["request"] += 1
             reply = RoomReply(error=error_message(error))
@@ -155,7 +155,7 @@ def run(room: Room, doorway: Doorway, mailbox: Mailbox, stop: threading.Event) -
     """Until `stop` is set."""
     complaints = Complaints()
     while not stop.is_set():
-        next_s = room.advance()
+        next_s = room.advance(clock.monotonic_s())
         now_s = clock.monotonic_s()
         complaints.say(Counter(room.rejected) + doorway.garbled, now_s)
         mailbox.wait(min(next_s - now_s, _LONGEST_WAIT_S))

@@ -1,6 +1,7 @@
-"""One room: seats, barrier, episode and world, put together. Owned by one thread.
+"""One room: seats, barrier, episode and world, put together. Owned by one thread, which says what time it is
+(`now_s`, monotonic seconds).
 
-What it has to say goes to a `Voice`, what must survive a crash to `keep`; neither is known to be a bus or a file.
+What it has to say goes to a `Voice`, what must survive a crash to `keep`, which may raise OSError.
 """
 
 from __future__ import annotations
@@ -61,9 +62,9 @@ class Room:
         voice: Voice,
         keep: Callable[[RoomRecord], None],
         *,
+        now_s: float,
         pace: float = 1.0,
     ) -> None:
-        now_s = clock.monotonic_s()
         self._name, self._world, self._voice, self._keep, self._record = name, world, voice, keep, record
         self._boot_ns = clock.wall_ns()
         self._seats = SeatTable(world.arms)
@@ -77,6 +78,7 @@ class Room:
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
         self._status_due_s = now_s
         self._repeat_due_s = now_s
+        self._remember(record)
         self._do([ResetWorld(self._course.seed)], now_s)
 
     @property
@@ -94,32 +96,30 @@ class Room:
             if self._barrier.offer(arrival) is None:
                 self._ticker.aim(arrival)
 
-    def answer_seat(self, request: SeatRequest) -> RoomReply:
+    def answer_seat(self, request: SeatRequest, now_s: float) -> RoomReply:
         try:
             before = list(self._seats)
             seat = self._seats.answer(request)
             if seat not in before:
-                self._seat_changed(seat, clock.monotonic_s())
+                self._seat_changed(seat, now_s)
         except MartError as error:
-            return RoomReply(error=error_message(error), status=self.status())
-        return RoomReply(status=self.status(), seat=self._seat_message(seat))
+            return RoomReply(error=error_message(error), status=self.status(now_s))
+        return RoomReply(status=self.status(now_s), seat=self._seat_message(seat))
 
-    def answer_episode(self, request: EpisodeRequest) -> RoomReply:
-        now_s = clock.monotonic_s()
+    def answer_episode(self, request: EpisodeRequest, now_s: float) -> RoomReply:
         try:
             self._do(self._course.answer(request, self._seats, now_s), now_s)
         except MartError as error:
-            return RoomReply(error=error_message(error), status=self.status())
+            return RoomReply(error=error_message(error), status=self.status(now_s))
         self._status_due_s = now_s
-        return RoomReply(status=self.status())
+        return RoomReply(status=self.status(now_s))
 
     def episode_saved(self, saved: Event.EpisodeSaved) -> None:
         good = saved.verified and saved.outcome == OUTCOME_SUCCESS
         self._remember(self._record.with_changes(saved=self._record.saved + 1, good=self._record.good + good))
 
-    def advance(self) -> float:
-        """Does what is due; returns the monotonic time, seconds, at which to call again if nothing arrives before."""
-        now_s = clock.monotonic_s()
+    def advance(self, now_s: float) -> float:
+        """Does what is due; returns the time at which to call again if nothing arrives before."""
         decision = self._barrier.advance(now_s, self._course.world_runs)
         if decision.firing is not None:
             self._fire(decision.firing, now_s)
@@ -134,8 +134,7 @@ class Room:
             return now_s
         return min(decision.next_s, self._course.next_s(now_s), self._status_due_s, self._repeat_due_s)
 
-    def status(self) -> RoomStatus:
-        now_s = clock.monotonic_s()
+    def status(self, now_s: float) -> RoomStatus:
         progress = self._ticker.progress
         return RoomStatus(
             room=self._name,
@@ -247,7 +246,7 @@ class Room:
             self._voice.repeat_state()
             self._repeat_due_s = now_s + REPEAT_S
         if now_s >= self._status_due_s:
-            self._voice.status(self.status())
+            self._voice.status(self.status(now_s))
             self._status_due_s = now_s + REPEAT_S
 
     def _seat_message(self, seat: SeatHolder) -> Seat:
@@ -255,5 +254,9 @@ class Room:
         return publish.seat(seat, self._course.is_ready(seat.arm), newest)
 
     def _remember(self, record: RoomRecord) -> None:
+        """A disk that is full must not stop the world."""
         self._record = record
-        self._keep(record)
+        try:
+            self._keep(record)
+        except OSError as error:
+            self._tell(publish.notice("error", f"A restart would forget this change of the room: {error}."))

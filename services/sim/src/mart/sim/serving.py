@@ -7,6 +7,7 @@ import gc
 import secrets
 from collections.abc import Callable
 
+from mart.protocol import clock
 from mart.protocol.service import announced, connected
 from mart.sim import loop, room_record
 from mart.sim.room import Room
@@ -27,7 +28,15 @@ def serve_world(settings: SimSettings, world: World) -> None:
     with connected(settings, "sim", settings.room) as service, contextlib.ExitStack() as opened:
         mailbox = loop.Mailbox()
         voice = opened.enter_context(contextlib.closing(loop.BusVoice(service.bus, settings.room)))
-        room = Room(settings.room, world, _record(settings), voice, _keeper(settings), pace=settings.pace)
+        room = Room(
+            settings.room,
+            world,
+            _record(settings),
+            voice,
+            _keeper(settings),
+            now_s=clock.monotonic_s(),
+            pace=settings.pace,
+        )
         doorway = opened.enter_context(
             contextlib.closing(loop.Doorway(service.bus, settings.room, room, world, mailbox))
         )
