@@ -19,6 +19,7 @@ FLAGS = [
     *("--param", "max-completely-peel-times=64"),
     *("--param", "max-completely-peeled-insns=2000"),
     "-ffp-contract=off",
+    "-fno-math-errno",
 ]
 
 setup(

@@ -4,7 +4,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from mart.sim.tasks.two_arm_multi_cube_lifting import lowest_point_m
 from mart.sim.world import World
 
 LEVEL = (1.0, 0.0, 0.0, 0.0)
@@ -55,8 +54,10 @@ def test_a_cube_is_up_when_its_underside_is_over_10_cm(world: World, z_m: float,
 
 def test_the_lowest_corner_counts(world: World) -> None:
     world.reset(0)
-    put(world, "cube0", 0.2, ON_EDGE)
-    assert lowest_point_m(world.data, "cube0") == pytest.approx(0.2 - 0.02 * 2**0.5)
+    put(world, "cube0", 0.12 + 0.02 * (2**0.5 - 1) - 0.0001, ON_EDGE)
+    assert not world.progress().subtasks["lift_cube0"]
+    put(world, "cube0", 0.12 + 0.02 * (2**0.5 - 1) + 0.0001, ON_EDGE)
+    assert world.progress().subtasks["lift_cube0"]
 
 
 def test_success_needs_both_for_ten_ticks_in_a_row(world: World) -> None:

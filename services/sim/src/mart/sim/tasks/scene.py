@@ -24,7 +24,10 @@ class Judgement:
 
 
 class Scene(ABC):
-    """Geometry, resets, observations and success of one task; holds no state: that is all in mjData."""
+    """Geometry, resets, observations and success of one task.
+
+    Belongs to one world. Holds no state, which is all in mjData; only, once attached, views of what it needs there.
+    """
 
     def __init__(self, task: Task) -> None:
         self.task = task
@@ -34,15 +37,19 @@ class Scene(ABC):
         """Adds the things on the table."""
 
     @abstractmethod
-    def place_objects(self, model: mujoco.MjModel, data: mujoco.MjData, random: np.random.Generator) -> None:
+    def attach(self, data: mujoco.MjData) -> None:
+        """Looks everything up once, so that ticks need no names. Called when the model is compiled."""
+
+    @abstractmethod
+    def place_objects(self, random: np.random.Generator) -> None:
         """Puts them where an episode begins."""
 
     @abstractmethod
-    def observe(self, model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, NDArray[np.float64]]:
+    def observe(self) -> dict[str, NDArray[np.float64]]:
         """The declared observations that are not the arms' own."""
 
     @abstractmethod
-    def judge(self, model: mujoco.MjModel, data: mujoco.MjData) -> Judgement:
+    def judge(self) -> Judgement:
         """Subtasks, success and failure at this instant."""
 
     def start_pose_in_base(self, arm: Arm, random: np.random.Generator) -> Pose:

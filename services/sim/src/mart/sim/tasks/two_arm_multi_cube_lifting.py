@@ -42,41 +42,44 @@ class MultiCubeLifting(Scene):
                 add_tile(spec, cube, arm.symbol, radius_m=0.009, position=(x, y, z), normal=normal)
             add_shadow(spec, cube_of(arm.name), radius_m=0.05)
 
-    def place_objects(self, model: mujoco.MjModel, data: mujoco.MjData, random: np.random.Generator) -> None:
-        for arm in self.task.arms:
+    def attach(self, data: mujoco.MjData) -> None:
+        bodies = [data.body(cube_of(arm)) for arm in self.task.arm_names]
+        self._positions = [body.xpos for body in bodies]
+        self._quaternions = [body.xquat for body in bodies]
+        self._upward = [body.xmat[6:9] for body in bodies]  # each axis's share of up
+        self._joints = [data.joint(cube_of(arm)).qpos for arm in self.task.arm_names]
+
+    def place_objects(self, random: np.random.Generator) -> None:
+        for arm, joint in zip(self.task.arms, self._joints, strict=True):
             forward = random.uniform(-_SPREAD_FORWARD_M, _SPREAD_FORWARD_M)
             sideways = random.uniform(-_SPREAD_SIDEWAYS_M, _SPREAD_SIDEWAYS_M)
             yaw = random.uniform(-np.pi / 4, np.pi / 4)  # every yaw that a cube can have
-            data.joint(cube_of(arm.name)).qpos = (
-                *_start(arm, forward, sideways), CUBE_HALF_M, np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)
-            )  # fmt: skip
+            position = (*_start(arm, forward, sideways), CUBE_HALF_M)
+            joint[:] = (*position, np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2))
 
-    def observe(self, model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, NDArray[np.float64]]:
+    def observe(self) -> dict[str, NDArray[np.float64]]:
         observations = {}
-        for arm in self.task.arms:
-            cube = cube_of(arm.name)
-            observations[f"{cube}/position_in_world"] = data.body(cube).xpos.copy()
-            observations[f"{cube}/quaternion_in_world"] = data.body(cube).xquat.copy()
+        for index, arm in enumerate(self.task.arm_names):
+            observations[f"{cube_of(arm)}/position_in_world"] = self._positions[index].copy()
+            observations[f"{cube_of(arm)}/quaternion_in_world"] = self._quaternions[index].copy()
         return observations
 
-    def judge(self, model: mujoco.MjModel, data: mujoco.MjData) -> Judgement:
+    def judge(self) -> Judgement:
         lifted, failed = {}, None
-        for arm in self.task.arms:
-            cube = cube_of(arm.name)
-            lifted[f"lift_{cube}"] = lowest_point_m(data, cube) > LIFTED_M
-            if data.body(cube).xpos[2] < FALLEN_Z_M:
-                failed = f"Cube {cube.removeprefix('cube')} fell off the table."
+        for index, subtask in enumerate(self.task.subtasks):
+            lifted[subtask.name] = self._lowest_point_m(index) > LIFTED_M
+            if self._positions[index][2] < FALLEN_Z_M:
+                failed = f"Cube {index} fell off the table."
         return Judgement(lifted, all(lifted.values()), failed)
+
+    def _lowest_point_m(self, index: int) -> float:
+        """Height of the cube's lowest corner over the table."""
+        x, y, z = self._upward[index].tolist()
+        return float(self._positions[index][2]) - CUBE_HALF_M * (abs(x) + abs(y) + abs(z))
 
 
 def cube_of(arm: str) -> str:
     return arm.replace("arm", "cube")
-
-
-def lowest_point_m(data: mujoco.MjData, cube: str) -> float:
-    """Height of the cube's lowest corner over the table."""
-    body = data.body(cube)
-    return float(body.xpos[2] - CUBE_HALF_M * np.abs(body.xmat[6:9]).sum())
 
 
 def _start(arm: Arm, forward_m: float, sideways_m: float) -> tuple[float, float]:

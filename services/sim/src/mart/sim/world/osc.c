@@ -84,24 +84,30 @@ static void rotation_error(num out[3], const num to[9], const num from[9]) {
   for (int i = 0; i < 3; i++) out[i] *= scale;
 }
 
-/* Lower Cholesky factor of a symmetric 6x6; its diagonal holds the roots of the pivots. */
-static void cholesky6(num l[6][6], const num a[6][6]) {
-  for (int i = 0; i < 6; i++)
+/* Lower Cholesky factor of a symmetric matrix, with the reciprocals of its diagonal in the diagonal's place: a division
+ * takes as long as a dozen products. `n` is a constant at every call, so that the loops unroll. */
+static inline __attribute__((always_inline)) void cholesky(int n, num *l, const num *a) {
+  for (int i = 0; i < n; i++)
     for (int j = 0; j <= i; j++) {
-      num sum = a[i][j];
-      for (int k = 0; k < j; k++) sum -= l[i][k] * l[j][k];
-      l[i][j] = i == j ? sqrt(sum > 1e-12 ? sum : 1e-12) : sum / l[j][j];
+      num sum = a[i * n + j];
+      for (int k = 0; k < j; k++) sum -= l[i * n + k] * l[j * n + k];
+      l[i * n + j] = i == j ? 1 / sqrt(sum > 1e-12 ? sum : 1e-12) : sum * l[j * n + j];
     }
 }
 
-static void solve6(num x[6], const num l[6][6]) {
-  for (int i = 0; i < 6; i++) {
-    for (int k = 0; k < i; k++) x[i] -= l[i][k] * x[k];
-    x[i] /= l[i][i];
+/* x := L^-1 x */
+static inline __attribute__((always_inline)) void forward(int n, num *x, const num *l) {
+  for (int i = 0; i < n; i++) {
+    for (int k = 0; k < i; k++) x[i] -= l[i * n + k] * x[k];
+    x[i] *= l[i * n + i];
   }
-  for (int i = 5; i >= 0; i--) {
-    for (int k = i + 1; k < 6; k++) x[i] -= l[k][i] * x[k];
-    x[i] /= l[i][i];
+}
+
+/* x := L^-T x */
+static inline __attribute__((always_inline)) void backward(int n, num *x, const num *l) {
+  for (int i = n - 1; i >= 0; i--) {
+    for (int k = i + 1; k < n; k++) x[i] -= l[k * n + i] * x[k];
+    x[i] *= l[i * n + i];
   }
 }
 
@@ -148,37 +154,30 @@ static void control_arm(const mjModel *m, mjData *d, const num *config, const nu
   num M[JOINTS][JOINTS], L[JOINTS][JOINTS];
   for (int i = 0; i < JOINTS; i++)
     for (int j = 0; j <= i; j++) M[i][j] = M[j][i] = d->M[m->M_rowadr[dof + i] + j];
-  for (int i = 0; i < JOINTS; i++)
-    for (int j = 0; j <= i; j++) {
-      num sum = M[i][j];
-      for (int k = 0; k < j; k++) sum -= L[i][k] * L[j][k];
-      L[i][j] = i == j ? sqrt(sum) : sum / L[j][j];
-    }
+  cholesky(JOINTS, L[0], M[0]);
 
   /* A = J M^-1 J' = W W' with the rows of W = (L^-1 J')'. */
   num W[6][JOINTS], A[6][6], C[6][6];
-  for (int i = 0; i < 6; i++)
-    for (int k = 0; k < JOINTS; k++) {
-      num sum = J[i][k];
-      for (int n = 0; n < k; n++) sum -= L[k][n] * W[i][n];
-      W[i][k] = sum / L[k][k];
-    }
-  for (int i = 0; i < 6; i++)
+  for (int i = 0; i < 6; i++) {
+    for (int k = 0; k < JOINTS; k++) W[i][k] = J[i][k];
+    forward(JOINTS, W[i], L[0]);
     for (int j = 0; j <= i; j++) {
       num sum = 0;
       for (int k = 0; k < JOINTS; k++) sum += W[i][k] * W[j][k];
       A[i][j] = A[j][i] = sum;
     }
-  cholesky6(C, A);
+  }
+  cholesky(6, C[0], A[0]);
   num lost = 0;  /* 0 in the work space, 1 where a direction is gone */
   for (int i = 0; i < 6; i++) {
-    num share = 1 - C[i][i] * C[i][i] / config[i < 3 ? REGULAR_MOBILITY_ORIENTATION : REGULAR_MOBILITY_POSITION];
+    num regular = config[i < 3 ? REGULAR_MOBILITY_ORIENTATION : REGULAR_MOBILITY_POSITION];
+    num share = 1 - 1 / (C[i][i] * C[i][i] * regular);
     if (share > lost) lost = share;
   }
   if (lost > 0) {
     for (int i = 0; i < 6; i++)
       A[i][i] += lost * lost * config[i < 3 ? REGULAR_MOBILITY_ORIENTATION : REGULAR_MOBILITY_POSITION];
-    cholesky6(C, A);
+    cholesky(6, C[0], A[0]);
   }
 
   /* Task acceleration less what the posture would do to the tool, then to forces. */
@@ -195,7 +194,8 @@ static void control_arm(const mjModel *m, mjData *d, const num *config, const nu
     F[i] = kp * error[i];
     for (int k = 0; k < JOINTS; k++) F[i] -= J[i][k] * (kd * qvel[k] + a0[k]);
   }
-  solve6(F, C);
+  forward(6, F, C[0]);
+  backward(6, F, C[0]);
 
   for (int k = 0; k < JOINTS; k++) {
     num torque = d->qfrc_bias[dof + k] - d->qfrc_passive[dof + k];

@@ -19,6 +19,6 @@ class Progress:
     failed: str | None
 
 
-def next_success_ticks(success_ticks: int, success_now: bool) -> int:
+def next_success_ticks(success_ticks: float, success_now: bool) -> float:
     """The count after one more tick."""
-    return success_ticks + 1 if success_now else 0
+    return success_ticks + 1.0 if success_now else 0.0

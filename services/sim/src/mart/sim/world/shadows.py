@@ -22,23 +22,22 @@ class Shadows:
     """Keeps each spot under its caster."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        casters = [
-            (model.body(i).name.removesuffix("/shadow"), int(model.body_mocapid[i]))
-            for i in range(model.nbody)
-            if model.body_mocapid[i] >= 0
-        ]
-        self._tools = [
-            (mocap, model.site(f"{name}/tool").id) for name, mocap in casters if _is_arm(model, name)
-        ]
-        self._things = [(mocap, model.body(name).id) for name, mocap in casters if not _is_arm(model, name)]
+        spots = [i for i in range(model.nbody) if model.body_mocapid[i] >= 0]
+        casters = {model.body(i).name.removesuffix("/shadow"): int(model.body_mocapid[i]) for i in spots}
+        sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{name}/tool") for name in casters}
+        tools = [name for name in casters if sites[name] >= 0]
+        things = [name for name in casters if sites[name] < 0]
         self._data = data
+        self._sites, self._tool_spots = [sites[name] for name in tools], [casters[name] for name in tools]
+        self._bodies, self._thing_spots = (
+            [model.body(name).id for name in things],
+            [casters[name] for name in things],
+        )
 
     def follow(self) -> None:
         data = self._data
-        for mocap, site in self._tools:
-            data.mocap_pos[mocap, :2] = data.site_xpos[site, :2]
-        for mocap, body in self._things:
-            data.mocap_pos[mocap, :2] = data.xpos[body, :2]
+        data.mocap_pos[self._tool_spots, :2] = data.site_xpos[self._sites, :2]
+        data.mocap_pos[self._thing_spots, :2] = data.xpos[self._bodies, :2]
 
 
 def add_shadow_material(spec: mujoco.MjSpec) -> None:
@@ -74,7 +73,3 @@ def _spot() -> NDArray[np.uint8]:
     image = np.ones((_PIXELS, _PIXELS, 4))
     image[..., 3] = _DARKNESS * fade * fade * (3 - 2 * fade)
     return (255 * image).round().astype(np.uint8)
-
-
-def _is_arm(model: mujoco.MjModel, name: str) -> bool:
-    return mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{name}/tool") >= 0

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.pose import Pose, quaternion_conjugate, quaternion_log, quaternion_multiply
 from mart.protocol.tasks import Task, get_task
-from mart.sim.tasks import Judgement, Scene, scene_of
+from mart.sim.tasks import Scene, scene_of
 from mart.sim.world import kinematics, model, osc, panda
 from mart.sim.world.arm import MeasuredArm
 from mart.sim.world.gripper import STROKE_M, finger_target_m
@@ -29,11 +29,7 @@ Array = NDArray[np.float64]
 
 ACTION_SIZE = 7  # 6 of motion, 1 of gripper
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
-_FATAL = (
-    mujoco.mjtWarning.mjWARN_BADQPOS,
-    mujoco.mjtWarning.mjWARN_BADQVEL,
-    mujoco.mjtWarning.mjWARN_BADQACC,
-)
+_FATAL = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 
 
 class Diverged(Corrupt):
@@ -58,10 +54,14 @@ class World:
         self.control_period_s = 1.0 / control_hz
         self.model = model.build(scene, timestep_s, detail)
         self.data = mujoco.MjData(self.model)
+        scene.attach(self.data)
+        self._action_shape = (len(self.arms), ACTION_SIZE)
         limits = scene.task.limits
         self._action_scale = np.array([limits.step_m] * 3 + [limits.step_rad] * 3 + [-STROKE_M])
         self._arms = {arm.name: MeasuredArm(self.model, self.data, arm.name) for arm in scene.task.arms}
         self._shadows = Shadows(self.model, self.data)
+        self._success_ticks = self.data.userdata[-1:]  # here, so that it is saved and replayed with the state
+        self._fatal_warnings = self.data.warning.number[_FATAL]
         blocks = self.data.userdata[: osc.BLOCK_SIZE * len(self.arms)].reshape(len(self.arms), osc.BLOCK_SIZE)
         self._modes, self._commands, self._postures = (
             blocks[:, osc.MODE],
@@ -106,7 +106,7 @@ class World:
         """Begins an episode: things and arms where this seed puts them, arms at rest and holding."""
         random = np.random.default_rng(seed)
         mujoco.mj_resetData(self.model, self.data)
-        self._scene.place_objects(self.model, self.data, random)
+        self._scene.place_objects(random)
         for index, arm in enumerate(self.task.arms):
             tool_in_world = arm.pose_base_in_world @ self._scene.start_pose_in_base(arm, random)
             joints = kinematics.solve(self.model, arm.name, tool_in_world, np.array(panda.HOME_RAD))
@@ -114,7 +114,6 @@ class World:
             self._postures[index] = joints
         self._commands[:] = (*(0.0,) * 6, finger_target_m(0.0))
         self._modes[:] = osc.NEW_DELTA
-        self._measure()
         mujoco.mj_forward(self.model, self.data)
 
     def tool_pose_in_base(self, arm: str) -> Pose:
@@ -150,23 +149,25 @@ class World:
         its bounds.
         """
         actions = np.asarray(actions, dtype=np.float64)
-        if actions.shape != (len(self.arms), ACTION_SIZE):
+        if actions.shape != self._action_shape:
             raise InvalidInput(
-                f"Actions of shape {actions.shape} were given; ({len(self.arms)}, {ACTION_SIZE}) is needed."
+                f"Actions of shape {actions.shape} were given; {self._action_shape} is needed."
             )
         if not np.isfinite(actions).all():
             raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
-        self._commands[:] = np.clip(actions, -1.0, 1.0) * self._action_scale
+        np.multiply(np.minimum(np.maximum(actions, -1.0), 1.0), self._action_scale, out=self._commands)
         self._modes[:] = osc.NEW_DELTA
         begun_s = self.sim_time_s
         mujoco.mj_step(self.model, self.data, self._substeps)
-        self._measure()  # of the new state: mj_step leaves the poses of its last substep's beginning
-        if any(self.data.warning[warning].number for warning in _FATAL):
+        # Poses of the new state: mj_step leaves those of its last substep's beginning.
+        mujoco.mj_kinematics(self.model, self.data)
+        if self._fatal_warnings.any():
             raise Diverged(begun_s)
-        self.data.userdata[-1] = next_success_ticks(int(self.data.userdata[-1]), self._judge().success_now)
+        self._success_ticks[0] = next_success_ticks(self._success_ticks[0], self._scene.judge().success_now)
 
     def integration_state(self) -> bytes:
-        """MuJoCo's full integration state, float64 little-endian: all that decides the future."""
+        """MuJoCo's full integration state, float64 little-endian: all that decides the future, and the shadows."""
+        self._shadows.follow()
         state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
         mujoco.mj_getState(self.model, self.data, state, _STATE)
         return state.astype("<f8").tobytes()
@@ -181,11 +182,11 @@ class World:
             raise InvalidInput("A state with NaN or infinity was given; every number must be finite.")
         mujoco.mj_resetData(self.model, self.data)
         mujoco.mj_setState(self.model, self.data, numbers, _STATE)
-        self._measure()
+        mujoco.mj_kinematics(self.model, self.data)
 
     def observations(self) -> dict[str, Array]:
         """All that any operator sees, in the catalogue's order."""
-        seen = self._scene.observe(self.model, self.data)
+        seen = self._scene.observe()
         for name, arm in self._arms.items():
             pose = arm.tool_pose_in_base()
             seen[f"{name}/tool_position_in_base"] = pose.position
@@ -200,8 +201,8 @@ class World:
         return {observation.name: seen[observation.name] for observation in self.task.observations_of(arm)}
 
     def progress(self) -> Progress:
-        judgement = self._judge()
-        ticks = int(self.data.userdata[-1])
+        judgement = self._scene.judge()
+        ticks = int(self._success_ticks[0])
         return Progress(
             subtasks=judgement.subtasks,
             success_now=judgement.success_now,
@@ -209,14 +210,6 @@ class World:
             success=ticks >= self.task.success_hold_ticks,
             failed=judgement.failed,
         )
-
-    def _measure(self) -> None:
-        """Brings poses up to date with the positions."""
-        mujoco.mj_kinematics(self.model, self.data)
-        self._shadows.follow()
-
-    def _judge(self) -> Judgement:
-        return self._scene.judge(self.model, self.data)
 
     def _arm(self, name: str) -> MeasuredArm:
         return self._arms[self.task.arm(name).name]
