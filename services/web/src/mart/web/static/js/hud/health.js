@@ -30,7 +30,7 @@ function showBreakdown(status, room) {
 
 function breakdown(status) {
   if (!status) return [["No figures yet", ""]];
-  const { latency, fps, rejected, tick } = status;
+  const { latency, fps, rejected } = status;
   const stages = Object.entries(latency?.stages ?? {}).map(([name, ms]) => [sentence(name), milliseconds(ms)]);
   return [
     ["Hand to picture, half of the time under", milliseconds(latency?.p50_ms)],
@@ -38,7 +38,6 @@ function breakdown(status) {
     ...stages,
     ["Pictures a second", fps?.toFixed(0) ?? "–"],
     ["Frames refused", String(totalOf(rejected))],
-    ["Tick", String(tick)],
   ];
 }
 

@@ -1,0 +1,204 @@
+"""Every page in a real Chromium, narrow and wide, dark and light: legible, whole, quiet, and usable by keyboard."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, expect
+
+from mart.platform.supervise import Platform
+
+HERE = Path(__file__).parent
+FOCUSED = """() => {
+  const at = document.activeElement;
+  return at.matches("body") ? "" : at.id || at.innerText;
+}"""
+INSPECT = (HERE / "inspect_page.js").read_text()
+SCREENSHOTS = Path("test-output/browser/pages")
+SIZES = {"narrow": (360, 740), "wide": (1440, 900), "wall": (3840, 2160)}
+LOOKS = [("narrow", "dark"), ("narrow", "light"), ("wide", "dark"), ("wide", "light"), ("wall", "light")]
+WAIT_MS = 30_000
+
+looks = pytest.mark.parametrize(("size", "scheme"), LOOKS)
+
+
+@dataclass
+class Visit:
+    """A browser window. `noise`: what the page complained about."""
+
+    platform: Platform
+    context: BrowserContext
+    page: Page
+    noise: list[str] = field(default_factory=list)
+
+    def join(self, name: str, button: str) -> None:
+        self.page.goto(f"{self.platform.url}#code={self.platform.join_code}")
+        self.page.get_by_label("Your name").fill(name)
+        self.page.get_by_role("button", name=button).click()
+
+    def try_it(self, name: str) -> None:
+        """Drives arm0 and sees the picture."""
+        self.join(name, "Try it")
+        expect(self.page.locator("#picture.live")).to_be_visible(timeout=WAIT_MS)
+
+    def is_fine(self, what: str) -> None:
+        SCREENSHOTS.mkdir(parents=True, exist_ok=True)
+        self.page.screenshot(path=SCREENSHOTS / f"{what}.png", full_page=True)
+        assert self.page.evaluate(INSPECT) == []
+        assert self.noise == []
+
+
+@contextlib.contextmanager
+def visit(browser: Browser, platform: Platform, size: str = "wide", scheme: str = "light") -> Iterator[Visit]:
+    width, height = SIZES[size]
+    with browser.new_context(
+        ignore_https_errors=True,
+        viewport={"width": width, "height": height},
+        color_scheme=scheme,  # type: ignore[arg-type]
+        reduced_motion="reduce",
+    ) as context:
+        visit = Visit(platform, context, context.new_page())
+        listen(visit.page, visit.noise)
+        yield visit
+
+
+def listen(page: Page, noise: list[str]) -> None:
+    page.on(
+        "console",
+        lambda message: noise.append(message.text) if message.type in ("error", "warning") else None,
+    )
+    page.on("pageerror", lambda error: noise.append(str(error)))
+
+
+@contextlib.contextmanager
+def driving(visit: Visit, name: str = "Ana") -> Iterator[Page]:
+    """Tries it, and leaves the seat whatever happens."""
+    visit.try_it(name)
+    try:
+        yield visit.page
+    finally:
+        visit.page.evaluate("() => fetch('/api/rooms/room-1/seats/arm0', { method: 'DELETE' })")
+
+
+def tab_through(page: Page) -> list[str]:
+    """What the Tab key reaches, in order, until it comes round."""
+    reached: list[str] = []
+    while True:
+        page.keyboard.press("Tab")
+        at = page.evaluate(FOCUSED)
+        if at in reached or not at:
+            return reached
+        outline = page.evaluate("() => getComputedStyle(document.activeElement).outlineStyle")
+        assert outline != "none", f"the focus on {at!r} cannot be seen"
+        reached.append(at)
+
+
+@looks
+def test_the_lobby(browser: Browser, platform: Platform, size: str, scheme: str) -> None:
+    with visit(browser, platform, size, scheme) as ana:
+        ana.page.goto(f"{platform.url}#code={platform.join_code}")
+        expect(ana.page.get_by_role("button", name="Try it")).to_be_visible()
+        ana.is_fine(f"join-{size}-{scheme}")
+        ana.join("Ana", "Join and choose a seat")
+        expect(ana.page.locator(".seat").first).to_be_visible()
+        ana.is_fine(f"lobby-{size}-{scheme}")
+
+
+@looks
+def test_the_operators_page(browser: Browser, platform: Platform, size: str, scheme: str) -> None:
+    with visit(browser, platform, size, scheme) as ana, driving(ana) as page:
+        expect(page.get_by_role("button", name="Ready")).to_be_visible()
+        expect(page.locator("#delay")).not_to_contain_text("–", timeout=WAIT_MS)
+        ana.is_fine(f"operator-{size}-{scheme}")
+        page.locator("#health summary").click()
+        page.get_by_role("button", name="Pair a phone").click()
+        expect(page.locator("#qr")).to_be_visible()
+        ana.is_fine(f"operator-pairing-{size}-{scheme}")
+
+
+def test_everything_is_reached_by_keyboard(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana:
+        ana.page.goto(platform.url)
+        expect(ana.page.locator("#name")).to_be_focused()
+        ana.page.keyboard.type("Ana")
+        ana.page.keyboard.press("Tab")
+        ana.page.keyboard.type(platform.join_code)
+        ana.page.keyboard.press("Tab")
+        ana.page.keyboard.press("Tab")
+        ana.page.keyboard.press("Enter")
+        expect(ana.page.locator(".seat").first).to_be_visible()
+        assert "Take seat" in tab_through(ana.page)
+    with visit(browser, platform) as ben, driving(ben, "Ben") as page:
+        reached = tab_through(page)
+        assert {"leave", "gripper", "pair", "toggle", "stop", "help"} <= set(reached)
+        assert any(one.startswith("Ready") for one in reached)
+
+
+def test_an_outcome_takes_two_presses_and_a_moving_hand_none(browser: Browser, platform: Platform) -> None:
+    """S is also the key that moves the arm back."""
+    with visit(browser, platform) as ana, driving(ana) as page:
+        label = page.locator("#state-label")
+        page.keyboard.press("n")
+        expect(label).to_have_text("Recording", timeout=WAIT_MS)
+        page.keyboard.down("Space")
+        page.keyboard.down("KeyS")
+        expect(page.locator("#clutch")).to_have_text("Moving", timeout=WAIT_MS)
+        page.keyboard.up("KeyS")
+        page.keyboard.up("Space")
+        page.keyboard.press("s")
+        page.keyboard.press("s")  # right after letting go: still meant to move
+        expect(page.locator("#clutch")).to_contain_text("Hold space", timeout=WAIT_MS)
+        expect(label).to_have_text("Recording")
+        page.locator("#state-label").click()
+        page.wait_for_timeout(600)  # the time after which letters command again is what is tested
+        page.keyboard.press("r")
+        expect(page.get_by_role("button", name="Press again: Discard")).to_be_visible()
+        expect(label).to_have_text("Recording")
+        page.keyboard.press("r")
+        expect(label).to_have_text("Discarded", timeout=WAIT_MS)
+        expect(page.locator("#state-detail")).to_contain_text("labelled discarded", timeout=WAIT_MS)
+
+
+def test_help_and_gripper_have_keys(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        page.keyboard.press("?")
+        expect(page.locator("#keys")).to_be_visible()
+        ana.is_fine("operator-keys")
+        page.keyboard.press("?")
+        expect(page.locator("#keys")).to_be_hidden()
+        page.keyboard.press("g")
+        expect(page.locator("#gripper")).to_have_text("Open gripper")
+        page.keyboard.press("k")
+        expect(page.locator("#gripper")).to_have_text("Close gripper")
+
+
+def test_whoever_stops_everything_lets_it_go_on(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        page.keyboard.press("p")
+        expect(page.locator("#state-label")).to_have_text("Stopped", timeout=WAIT_MS)
+        ana.is_fine("operator-stopped")
+        page.get_by_role("button", name="Go on").click()
+        expect(page.locator("#state-label")).to_have_text("Practice", timeout=WAIT_MS)
+
+
+def test_dragging_the_picture_moves_the_arm(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        page.mouse.move(720, 400)
+        page.mouse.down()
+        page.mouse.move(760, 380, steps=5)
+        expect(page.locator("#clutch")).to_have_text("Moving", timeout=WAIT_MS)
+        page.mouse.up()
+        expect(page.locator("#clutch")).to_contain_text("Hold space", timeout=WAIT_MS)
+
+
+def test_a_page_that_does_not_exist_leads_home(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform, "narrow", "dark") as ana:
+        ana.join("Ana", "Join and choose a seat")
+        expect(ana.page.locator(".seat").first).to_be_visible()
+        ana.page.goto(f"{platform.url}rooms/room-9/arms/arm0")
+        expect(ana.page.get_by_role("button", name="Go to the lobby")).to_be_visible()
+        ana.is_fine("operator-unknown")

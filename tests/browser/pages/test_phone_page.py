@@ -1,0 +1,146 @@
+"""The phone's page: with WebXR (a stand-in runtime) and without, held, dropped, stopped and paired twice."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from mart.platform.supervise import Platform
+from tests.browser.pages.test_pages import HERE, INSPECT, SCREENSHOTS, WAIT_MS, driving, listen, visit
+
+
+@dataclass(frozen=True)
+class Phone:
+    page: Page
+    operator: Page
+    url: str
+    noise: list[str]
+
+    def start(self) -> None:
+        self.page.get_by_role("button", name="Start").click()
+        expect(self.page.locator("#begin")).to_be_hidden()
+        expect(self.page.locator("#link")).to_contain_text("tracking good", timeout=WAIT_MS)
+
+    def press(self, control: str) -> None:
+        box = self.page.locator(control).bounding_box()
+        assert box is not None
+        self.page.mouse.move(box["x"] + box["width"] / 3, box["y"] + box["height"] / 2)
+        self.page.mouse.down()
+
+    def is_fine(self, what: str) -> None:
+        SCREENSHOTS.mkdir(parents=True, exist_ok=True)
+        self.page.screenshot(path=SCREENSHOTS / f"{what}.png")
+        assert self.page.evaluate(INSPECT) == []
+        assert self.noise == []
+
+
+@contextlib.contextmanager
+def paired(
+    browser: Browser, platform: Platform, xr: bool, width: int = 360, height: int = 740
+) -> Iterator[Phone]:
+    with visit(browser, platform) as ana, driving(ana) as operator:
+        operator.get_by_role("button", name="Pair a phone").click()
+        expect(operator.locator("#qr")).to_be_visible()
+        fragment = str(operator.locator("#qr").get_attribute("title")).partition("#")[2]
+        with browser.new_context(
+            ignore_https_errors=True,
+            viewport={"width": width, "height": height},
+            has_touch=True,
+            is_mobile=True,
+            reduced_motion="reduce",
+        ) as context:
+            if xr:
+                context.add_init_script(path=HERE / "xr_stand_in.js")
+            page, noise = context.new_page(), list[str]()
+            listen(page, noise)
+            url = f"{platform.url}phone#{fragment}"
+            page.goto(url)
+            yield Phone(page, operator, url, noise)
+
+
+@pytest.mark.parametrize(
+    ("xr", "width", "height"), [(True, 360, 740), (False, 360, 640), (True, 740, 360), (False, 740, 360)]
+)
+def test_it_fits_every_phone(browser: Browser, platform: Platform, xr: bool, width: int, height: int) -> None:
+    name = f"phone-{'xr' if xr else 'touch'}-{width}x{height}"
+    with paired(browser, platform, xr, width, height) as phone:
+        expect(phone.page.get_by_role("button", name="Start")).to_be_visible()
+        phone.is_fine(f"{name}-start")
+        phone.start()
+        phone.is_fine(name)
+        phone.press("#hold")
+        expect(phone.page.locator("#hold-text")).to_contain_text("2 of 4", timeout=WAIT_MS)
+        phone.is_fine(f"{name}-held")
+
+
+def test_the_arm_follows_only_while_held_and_tracked(browser: Browser, platform: Platform) -> None:
+    with paired(browser, platform, xr=True) as phone:
+        phone.start()
+        expect(phone.operator.locator("#input")).to_have_text("Phone, tracking good", timeout=WAIT_MS)
+        expect(phone.operator.locator("#qr")).to_be_hidden()
+        clutch = phone.operator.locator("#clutch")
+        phone.press("#hold")
+        expect(clutch).to_have_text("Moving", timeout=WAIT_MS)
+        phone.page.evaluate("() => { xrDevice.tracked = false }")
+        expect(clutch).not_to_have_text("Moving", timeout=WAIT_MS)
+        expect(phone.page.locator("#hold")).to_have_attribute("aria-pressed", "false")
+        phone.page.evaluate("() => { xrDevice.tracked = true }")
+        expect(phone.page.locator("#link")).to_contain_text("tracking good", timeout=WAIT_MS)
+        expect(clutch).not_to_have_text("Moving")  # the finger is still down: it has to be put down anew
+        phone.page.mouse.up()
+        phone.press("#hold")
+        expect(clutch).to_have_text("Moving", timeout=WAIT_MS)
+
+
+def test_the_end_of_tracking_is_said_and_can_be_mended(browser: Browser, platform: Platform) -> None:
+    with paired(browser, platform, xr=True) as phone:
+        phone.start()
+        phone.page.evaluate("() => xrDevice.session.end()")
+        expect(phone.page.get_by_role("heading", name="Paused")).to_be_visible()
+        phone.is_fine("phone-paused")
+        phone.start()
+
+
+def test_stop_takes_half_a_second_of_holding(browser: Browser, platform: Platform) -> None:
+    with paired(browser, platform, xr=True) as phone:
+        phone.start()
+        stop = phone.page.locator("#stop")
+        stop.click()
+        expect(stop).to_have_attribute("aria-pressed", "false")
+        phone.press("#stop")
+        expect(stop).to_have_attribute("aria-pressed", "true")
+        phone.page.mouse.up()
+        expect(phone.operator.locator("#state-label")).to_have_text("Stopped", timeout=WAIT_MS)
+        phone.is_fine("phone-stopped")
+        phone.press("#stop")
+        expect(stop).to_have_attribute("aria-pressed", "false")
+        phone.page.mouse.up()
+        expect(phone.operator.locator("#state-label")).to_have_text("Practice", timeout=WAIT_MS)
+
+
+def test_the_gripper_bar_slides_and_taps(browser: Browser, platform: Platform) -> None:
+    with paired(browser, platform, xr=True) as phone:
+        phone.start()
+        bar = phone.page.locator("#gripper")
+        bar.click()
+        expect(bar).to_have_attribute("aria-valuenow", "100")
+        bar.click()
+        expect(bar).to_have_attribute("aria-valuenow", "0")
+        bar.press("ArrowRight")
+        expect(bar).to_have_attribute("aria-valuenow", "10")
+
+
+def test_a_reload_carries_on_and_a_used_code_is_explained(browser: Browser, platform: Platform) -> None:
+    with paired(browser, platform, xr=True) as phone:
+        phone.start()
+        assert "#" not in phone.page.url
+        phone.page.reload()
+        phone.start()
+        with visit(browser, platform, "narrow", "dark") as thief:
+            thief.page.goto(phone.url)
+            expect(thief.page.get_by_text("used already")).to_be_visible()
+            assert thief.page.evaluate(INSPECT) == []
