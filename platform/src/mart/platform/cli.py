@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import logging
-import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -38,21 +37,19 @@ def run(
     """Run the whole platform with one room, until Ctrl-C."""
     from mart.platform.plan import Options
     from mart.platform.supervise import running_platform
+    from mart.protocol.service import stop_requested
     from mart.protocol.settings import Settings
     from mart.protocol.tasks import get_task
 
     get_task(task)
     settings = Settings()
-    stop_signals = {signal.SIGINT, signal.SIGTERM}
     options = Options(settings.data_dir, settings.router, host, port, public_host, room, task, control_hz)
     click.echo("Starting MART …", err=True)
-    with running_platform(options) as platform:
+    with stop_requested() as stop, running_platform(options) as platform:
         result = {"url": platform.url, "join_code": platform.join_code, "room": room, "task": task}
         text = f"\n  Lobby      {platform.url}\n  Join code  {platform.join_code}\n\nCtrl-C stops everything."
         print_result(result, text, as_json)
-        signal.pthread_sigmask(signal.SIG_BLOCK, stop_signals)
-        signal.sigwait(stop_signals)
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, stop_signals)
+        stop.wait()
         click.echo("Stopping MART …", err=True)
 
 

@@ -6,6 +6,7 @@ A failure is one line on standard error and an exit code that is not 0.
 from __future__ import annotations
 
 import json
+import signal
 import sys
 from collections.abc import Mapping
 from importlib.metadata import entry_points
@@ -48,6 +49,8 @@ def print_result(result: Mapping[str, Any], text: str, as_json: bool) -> None:
 
 
 def main() -> None:
+    # Asked to end by a supervisor, a command unwinds as it does on Ctrl-C: what it started is stopped.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         code = cli(standalone_mode=False)
     except MartError as error:

@@ -52,6 +52,13 @@ def running(settings: Settings, kind: str, id: str) -> Iterator[Service]:
 def connected(settings: Settings, kind: str, id: str) -> Iterator[Service]:
     """A service that has something to set up before it is `announced`: the token says that it answers."""
     configure_logging(settings.log_level, kind)
+    with stop_requested() as stop, ZenohBus.connect(settings.router) as bus:
+        yield Service(kind, id, bus, stop)
+
+
+@contextlib.contextmanager
+def stop_requested() -> Iterator[threading.Event]:
+    """An event that is set when the process is asked to end; for the main thread."""
     stop = threading.Event()
 
     def request_stop(_number: int, _frame: FrameType | None) -> None:
@@ -59,8 +66,7 @@ def connected(settings: Settings, kind: str, id: str) -> Iterator[Service]:
 
     before = {number: signal.signal(number, request_stop) for number in _STOP_SIGNALS}
     try:
-        with ZenohBus.connect(settings.router) as bus:
-            yield Service(kind, id, bus, stop)
+        yield stop
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

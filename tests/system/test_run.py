@@ -1,0 +1,55 @@
+"""`mart run`: the whole platform comes up, says where it is, and leaves nothing behind."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support.processes import free_port
+
+_MART = str(Path(sys.executable).with_name("mart"))
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_it_serves_until_it_is_asked_to_stop_and_leaves_nothing_behind(
+    tmp_path: Path, number: signal.Signals
+) -> None:
+    port = free_port()
+    environment = {
+        **os.environ,
+        "MART_ROUTER": f"tcp/127.0.0.1:{free_port()}",
+        "MART_DATA_DIR": str(tmp_path),
+    }
+    process = subprocess.Popen(
+        [_MART, "run", "--json", "--port", str(port)], env=environment, stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    with process.stdout:
+        told = json.loads(process.stdout.readline())
+        assert told["url"] == f"https://localhost:{port}/"
+        assert told["join_code"]
+        doctor = subprocess.run(
+            [_MART, "doctor", "--json"], env=environment, capture_output=True, check=False
+        )
+        assert json.loads(doctor.stdout)["ok"], doctor.stdout
+        second = subprocess.run(
+            [_MART, "run", "--port", str(port)], env=environment, capture_output=True, text=True, check=False
+        )
+        assert second.returncode != 0
+        assert "is MART running already?" in second.stderr
+        children = _supervised(tmp_path)
+        assert len(children) == 7
+        process.send_signal(number)
+        assert process.wait(60) == 0
+    assert not [pid for pid in children if Path(f"/proc/{pid}").exists()]
+
+
+def _supervised(data_dir: Path) -> list[int]:
+    supervisor = int((data_dir / "run" / "supervisord.pid").read_text())
+    return [int(word) for word in Path(f"/proc/{supervisor}/task/{supervisor}/children").read_text().split()]
