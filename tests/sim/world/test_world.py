@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from pathlib import Path
+
 import mujoco
 import numpy as np
 import pytest
@@ -124,13 +126,18 @@ def test_actions_that_are_not_finite_are_refused_and_nothing_moves(world: World,
     assert world.integration_state() == before
 
 
-def test_divergence_is_noticed_until_the_next_reset(world: World) -> None:
+def test_divergence_is_noticed_until_the_next_reset(
+    world: World, caplog: pytest.LogCaptureFixture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
     world.reset(0)
     world.step(np.zeros((2, 7)))
     world.data.qvel[3] = np.nan
     for _ in range(2):
         with pytest.raises(Diverged, match="reset it"):
             world.step(np.zeros((2, 7)))
+    assert "Nan, Inf or huge value in QVEL" in caplog.text
+    assert not list(tmp_path.iterdir())  # MuJoCo would leave a log file
     world.reset(0)
     world.step(np.zeros((2, 7)))
 

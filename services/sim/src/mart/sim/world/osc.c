@@ -128,36 +128,31 @@ static void set_goal(num *block, const num base[9], const num origin[3], const n
   block[MODE] = HOLD_GOAL;
 }
 
-static void control_arm(const mjModel *m, mjData *d, const num *config, const num *row) {
-  num *block = d->userdata + (int)row[USERDATA];
-  if (block[MODE] == OFF) return;
-  const int dof = (int)row[DOF], base = (int)row[BASE_BODY];
-  const num *p = d->site_xpos + 3 * (int)row[SITE], *r = d->site_xmat + 9 * (int)row[SITE];
-  if (block[MODE] == NEW_DELTA) set_goal(block, d->xmat + 9 * base, d->xpos + 3 * base, p, r);
-
-  /* Rotation first, then translation: the last pivots of A are then the mobility that is left for translation with
-     the orientation kept, which is what vanishes when an arm is stretched. */
-  num J[6][JOINTS], lever[3];
-  const num *com = d->subtree_com + 3 * m->body_rootid[base], *qvel = d->qvel + dof;
-  for (int i = 0; i < 3; i++) lever[i] = p[i] - com[i];
+/* Rotation first, then translation: the last pivots of A are then the mobility that is left for translation with the
+ * orientation kept, which is what vanishes when an arm is stretched. */
+static void tool_jacobian(num J[6][JOINTS], const num *cdof, const num *center_of_mass, const num *tool) {
+  num lever[3], arc[3];
+  for (int i = 0; i < 3; i++) lever[i] = tool[i] - center_of_mass[i];
   for (int k = 0; k < JOINTS; k++) {
-    const num *motion = d->cdof + 6 * (dof + k);
-    num arc[3];
+    const num *motion = cdof + 6 * k;
     cross(arc, motion, lever);
     for (int i = 0; i < 3; i++) {
       J[i][k] = motion[i];
       J[3 + i][k] = motion[3 + i] + arc[i];
     }
   }
+}
 
-  /* M = L L', from the packed rows of a chain (row k holds k + 1 numbers). */
-  num M[JOINTS][JOINTS], L[JOINTS][JOINTS];
+/* From the packed rows of a chain: row k holds k + 1 numbers. */
+static void mass_matrix(num M[JOINTS][JOINTS], const num *packed, const int *row_starts) {
   for (int i = 0; i < JOINTS; i++)
-    for (int j = 0; j <= i; j++) M[i][j] = M[j][i] = d->M[m->M_rowadr[dof + i] + j];
-  cholesky(JOINTS, L[0], M[0]);
+    for (int j = 0; j <= i; j++) M[i][j] = M[j][i] = packed[row_starts[i] + j];
+}
 
-  /* A = J M^-1 J' = W W' with the rows of W = (L^-1 J')'. */
-  num W[6][JOINTS], A[6][6], C[6][6];
+/* A = J M^-1 J' = W W' with the rows of W = (L^-1 J')', where M = L L'. */
+static void task_mobility(num A[6][6], num J[6][JOINTS], num M[JOINTS][JOINTS]) {
+  num L[JOINTS][JOINTS], W[6][JOINTS];
+  cholesky(JOINTS, L[0], M[0]);
   for (int i = 0; i < 6; i++) {
     for (int k = 0; k < JOINTS; k++) W[i][k] = J[i][k];
     forward(JOINTS, W[i], L[0]);
@@ -167,31 +162,50 @@ static void control_arm(const mjModel *m, mjData *d, const num *config, const nu
       A[i][j] = A[j][i] = sum;
     }
   }
+}
+
+/* Cholesky factor of A + D. D is 0 in the work space and grows to the regular mobilities where a direction is lost. */
+static void factor_damped(num C[6][6], num A[6][6], const num *config) {
+  num regular[6], lost = 0;
   cholesky(6, C[0], A[0]);
-  num lost = 0;  /* 0 in the work space, 1 where a direction is gone */
   for (int i = 0; i < 6; i++) {
-    num regular = config[i < 3 ? REGULAR_MOBILITY_ORIENTATION : REGULAR_MOBILITY_POSITION];
-    num share = 1 - 1 / (C[i][i] * C[i][i] * regular);
+    regular[i] = config[i < 3 ? REGULAR_MOBILITY_ORIENTATION : REGULAR_MOBILITY_POSITION];
+    num share = 1 - 1 / (C[i][i] * C[i][i] * regular[i]);
     if (share > lost) lost = share;
   }
-  if (lost > 0) {
-    for (int i = 0; i < 6; i++)
-      A[i][i] += lost * lost * config[i < 3 ? REGULAR_MOBILITY_ORIENTATION : REGULAR_MOBILITY_POSITION];
-    cholesky(6, C[0], A[0]);
-  }
+  if (lost == 0) return;
+  for (int i = 0; i < 6; i++) A[i][i] += lost * lost * regular[i];
+  cholesky(6, C[0], A[0]);
+}
 
-  /* Task acceleration less what the posture would do to the tool, then to forces. */
-  num error[6], a0[JOINTS], F[6];
-  rotation_error(error, block + GOAL_ROTATION, r);
-  for (int i = 0; i < 3; i++) error[3 + i] = block[GOAL_POSITION + i] - p[i];
+static void pose_error(num error[6], const num *block, const num *position, const num *rotation, const num *config) {
+  rotation_error(error, block + GOAL_ROTATION, rotation);
+  for (int i = 0; i < 3; i++) error[3 + i] = block[GOAL_POSITION + i] - position[i];
   limit(error, config[MAX_ORIENTATION_ERROR]);
   limit(error + 3, config[MAX_POSITION_ERROR]);
-  for (int k = 0; k < JOINTS; k++)
-    a0[k] = config[KP_POSTURE] * (block[POSTURE + k] - d->qpos[(int)row[QPOS] + k])
-            - 2 * sqrt(config[KP_POSTURE]) * qvel[k];
+}
+
+static void control_arm(const mjModel *m, mjData *d, const num *config, const num *row) {
+  num *block = d->userdata + (int)row[USERDATA];
+  if (block[MODE] == OFF) return;
+  const int dof = (int)row[DOF], base = (int)row[BASE_BODY], actuator = (int)row[ACTUATOR];
+  const num *position = d->site_xpos + 3 * (int)row[SITE], *rotation = d->site_xmat + 9 * (int)row[SITE];
+  const num *qpos = d->qpos + (int)row[QPOS], *qvel = d->qvel + dof;
+  if (block[MODE] == NEW_DELTA) set_goal(block, d->xmat + 9 * base, d->xpos + 3 * base, position, rotation);
+
+  num J[6][JOINTS], M[JOINTS][JOINTS], A[6][6], C[6][6], F[6], a0[JOINTS];
+  tool_jacobian(J, d->cdof + 6 * dof, d->subtree_com + 3 * m->body_rootid[base], position);
+  mass_matrix(M, d->M, m->M_rowadr + dof);
+  task_mobility(A, J, M);
+  factor_damped(C, A, config);
+
+  /* Task acceleration, less what the pull towards the posture would do to the tool, then to forces. */
+  const num kp_posture = config[KP_POSTURE], kd_posture = 2 * sqrt(kp_posture);
+  for (int k = 0; k < JOINTS; k++) a0[k] = kp_posture * (block[POSTURE + k] - qpos[k]) - kd_posture * qvel[k];
+  pose_error(F, block, position, rotation, config);
   for (int i = 0; i < 6; i++) {
-    num kp = config[i < 3 ? KP_ORIENTATION : KP_POSITION], kd = 2 * sqrt(kp);
-    F[i] = kp * error[i];
+    const num kp = config[i < 3 ? KP_ORIENTATION : KP_POSITION], kd = 2 * sqrt(kp);
+    F[i] *= kp;
     for (int k = 0; k < JOINTS; k++) F[i] -= J[i][k] * (kd * qvel[k] + a0[k]);
   }
   forward(6, F, C[0]);
@@ -201,9 +215,8 @@ static void control_arm(const mjModel *m, mjData *d, const num *config, const nu
     num torque = d->qfrc_bias[dof + k] - d->qfrc_passive[dof + k];
     for (int i = 0; i < 6; i++) torque += J[i][k] * F[i];
     for (int n = 0; n < JOINTS; n++) torque += M[k][n] * a0[n];
-    const int actuator = (int)row[ACTUATOR] + k;
-    const num *range = m->actuator_ctrlrange + 2 * actuator;
-    d->ctrl[actuator] = torque < range[0] ? range[0] : torque > range[1] ? range[1] : torque;
+    const num *range = m->actuator_ctrlrange + 2 * (actuator + k);
+    d->ctrl[actuator + k] = torque < range[0] ? range[0] : torque > range[1] ? range[1] : torque;
   }
   for (int finger = 0; finger < 2; finger++) d->ctrl[(int)row[FINGER_ACTUATOR] + finger] = block[FINGER];
 }

@@ -8,6 +8,7 @@ setting a state and stepping the same actions gives the same bits as the first t
 from __future__ import annotations
 
 import hashlib
+import logging
 from functools import cached_property
 
 import mujoco
@@ -32,6 +33,11 @@ _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 _FATAL = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 
 
+def _log_warning(message: str) -> None:
+    """In place of MuJoCo's own habit: writing MUJOCO_LOG.TXT to wherever the process happens to run."""
+    logging.getLogger(__name__).warning("MuJoCo: %s", message)
+
+
 class Diverged(Corrupt):
     """The simulation went out of numerical bounds; only a reset helps."""
 
@@ -49,6 +55,7 @@ class World:
 
     def __init__(self, scene: Scene, control_hz: float, detail: Detail = "hull") -> None:
         osc.install()
+        mujoco.set_mju_user_warning(_log_warning)
         self._scene = scene
         self._substeps, timestep_s = model.substeps(control_hz)
         self.control_period_s = 1.0 / control_hz
