@@ -25,8 +25,8 @@ router = APIRouter(prefix="/api")
 _BROWSER_TOKEN_S = 300.0  # a page asks for a new one whenever it connects
 _PHONE_TOKEN_S = 12 * 3600.0  # a phone cannot ask again; the seat's epoch ends it earlier
 _UNREACHABLE = (
-    "This service listens on this computer alone, so a phone cannot reach it. Start it with "
-    "`--host 0.0.0.0`, or give `--public-host` the name that phones should use."
+    "This service listens on this computer alone, so a phone cannot reach it. Start it with --host 0.0.0.0, or tell "
+    "it with --public-host the name that phones should use."
 )
 
 

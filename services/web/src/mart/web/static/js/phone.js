@@ -151,7 +151,7 @@ function showLink() {
 function linkText() {
   if (link?.state === LinkState.SILENT) return "Connection lost";
   if (link?.state !== LinkState.LIVE || !status) return link?.problem || "Connecting…";
-  if (status.barrier === "stopped") return "Everything is stopped";
+  if (status.barrier === "stopped") return stop.stopped ? "Everything is stopped; hold Go on" : "Everything is stopped";
   if (status.input !== "phone") return "The keyboard drives";
   const others = status.waiting.filter(({ arm }) => arm !== document.body.dataset.arm);
   if (others.length) return `Waiting for the ${armName(others[0].arm).toLowerCase()}`;

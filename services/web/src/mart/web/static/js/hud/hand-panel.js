@@ -63,6 +63,7 @@ export class HandPanel {
       byId("qr").title = url;
       setText(byId("pairing-hint"), hint);
       setShown(byId("pairing"), true);
+      byId("health").open = false; // it would cover the code
       clearInterval(this.#expiry);
       this.#count(performance.now() + 1000 * expiresS);
     } catch (error) {

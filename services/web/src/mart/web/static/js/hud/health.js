@@ -33,8 +33,8 @@ function breakdown(status) {
   const { latency, fps, rejected } = status;
   const stages = Object.entries(latency?.stages ?? {}).map(([name, ms]) => [sentence(name), milliseconds(ms)]);
   return [
-    ["Hand to picture, half of the time under", milliseconds(latency?.p50_ms)],
-    ["Nearly always under", milliseconds(latency?.p95_ms)],
+    ["Hand to picture, typical", milliseconds(latency?.p50_ms)],
+    ["Hand to picture, 95 % under", milliseconds(latency?.p95_ms)],
     ...stages,
     ["Pictures a second", fps?.toFixed(0) ?? "–"],
     ["Frames refused", String(totalOf(rejected))],

@@ -136,7 +136,7 @@ export class StopButton {
     this.#letGo();
     this.stopped = !this.stopped;
     this.node.setAttribute("aria-pressed", String(this.stopped));
-    setText(this.text, this.stopped ? "Hold to go on" : "Stop");
+    setText(this.text, this.stopped ? "Go on" : "Stop");
     this.onChange(this.stopped);
   }
 }
