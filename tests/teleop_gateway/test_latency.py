@@ -6,25 +6,34 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mart.protocol.messages import ArmState, CommandStamps, State, TickStamps
+from mart.protocol.messages import ArmState, Command, CommandStamps, State, TickStamps
 from mart.teleop_gateway.latency import STAGES, MotionToPhoton, PictureStamps
 
 MS = 1_000_000
 START_NS = 1_800_000_000_000_000_000
 
 
-def state(tick: int, at_ns: int, waits_ms: list[int], *, fresh: bool = True, stamped: bool = True) -> State:
-    sent, received, arrived, fired, stepped = (at_ns + MS * sum(waits_ms[:i]) for i in range(5))
-    arm = ArmState(arm="arm0", fresh=fresh, arrived_ns=arrived)
-    if stamped:
-        arm.stamps.CopyFrom(CommandStamps(input_sent_ns=sent, gateway_received_ns=received))
+def command(sequence: int, at_ns: int, waits_ms: list[int]) -> Command:
+    stamps = CommandStamps(input_sent_ns=at_ns, gateway_received_ns=at_ns + MS * waits_ms[0])
+    return Command(arm="arm0", sequence=sequence, stamps=stamps)
+
+
+def state(tick: int, at_ns: int, waits_ms: list[int], *, fresh: bool = True) -> State:
+    """The tick uses the command whose sequence is the tick's number."""
+    arrived, fired, stepped = (at_ns + MS * sum(waits_ms[:i]) for i in range(2, 5))
+    arm = ArmState(arm="arm0", fresh=fresh, arrived_ns=arrived, sequence=tick)
     return State(
         tick=tick, arms=[ArmState(arm="arm1"), arm], stamps=TickStamps(fired_ns=fired, stepped_ns=stepped)
     )
 
 
-def pass_through(latency: MotionToPhoton, tick: int, at_ns: int, waits_ms: list[int]) -> bool:
+def command_and_state(latency: MotionToPhoton, tick: int, at_ns: int, waits_ms: list[int]) -> None:
+    latency.on_command(command(tick, at_ns, waits_ms))
     latency.on_state(state(tick, at_ns, waits_ms))
+
+
+def pass_through(latency: MotionToPhoton, tick: int, at_ns: int, waits_ms: list[int]) -> bool:
+    command_and_state(latency, tick, at_ns, waits_ms)
     came, drawn, encoded, displayed = (at_ns + MS * sum(waits_ms[:i]) for i in range(5, 9))
     latency.on_picture(tick, PictureStamps(came, drawn, encoded))
     return latency.on_seen(tick, displayed)
@@ -45,6 +54,23 @@ def test_the_stages_of_each_report_add_up(reports: list[list[int]]) -> None:
         assert summary.p50_ms == pytest.approx(sum(reports[0]))
 
 
+def test_frames_that_were_overtaken_before_the_tick_count_too() -> None:
+    latency = MotionToPhoton("arm0")
+    waits_ms = [1, 2, 3, 4, 5, 6, 7, 8]
+    for number, earlier_ms in ((1, 32), (2, 16)):
+        latency.on_command(command(number, START_NS - earlier_ms * MS, waits_ms))
+    assert pass_through(latency, 3, START_NS, waits_ms)
+    summary = latency.summary()
+    assert summary is not None
+    assert summary.frames == 1
+    assert summary.p50_ms == pytest.approx(sum(waits_ms) + 16)
+    assert summary.stages == pytest.approx([1, 2, 3 + 16, 4, 5, 6, 7, 8])  # they wait for the tick
+    assert pass_through(latency, 4, START_NS + 50 * MS, waits_ms)
+    again = latency.summary()
+    assert again is not None
+    assert again.p50_ms == pytest.approx(sum(waits_ms) + 8)  # of 36, 36, 52 and 68 ms: each frame counts once
+
+
 def test_only_the_newest_reports_count() -> None:
     latency = MotionToPhoton("arm0", window=10)
     for tick in range(1, 31):
@@ -63,7 +89,7 @@ def test_a_tick_is_reported_once() -> None:
 
 def test_a_picture_that_was_sent_again_is_not_counted() -> None:
     latency = MotionToPhoton("arm0")
-    latency.on_state(state(1, START_NS, [5] * 5))
+    command_and_state(latency, 1, START_NS, [5] * 5)
     stamps = PictureStamps(START_NS + 30 * MS, START_NS + 35 * MS, START_NS + 40 * MS)
     latency.on_picture(1, stamps)
     latency.on_picture(1, stamps)
@@ -77,7 +103,7 @@ def test_a_picture_that_was_sent_again_is_not_counted() -> None:
 )
 def test_what_cannot_be_true_is_not_counted(lie: int) -> None:
     latency = MotionToPhoton("arm0")
-    latency.on_state(state(1, START_NS, [5] * 5))
+    command_and_state(latency, 1, START_NS, [5] * 5)
     latency.on_picture(1, PictureStamps(START_NS + 30 * MS, START_NS + 35 * MS, START_NS + 40 * MS))
     assert not latency.on_seen(1, lie)
     assert latency.summary() is None
@@ -86,11 +112,10 @@ def test_what_cannot_be_true_is_not_counted(lie: int) -> None:
 def test_unknown_ticks_held_arms_and_unstamped_commands_have_no_account() -> None:
     latency = MotionToPhoton("arm0")
     assert not latency.on_seen(99, START_NS)
-    for tick, of in (
-        (1, state(1, START_NS, [5] * 5, fresh=False)),
-        (2, state(2, START_NS, [5] * 5, stamped=False)),
-    ):
-        latency.on_state(of)
+    latency.on_command(command(1, START_NS, [5] * 5))
+    latency.on_command(Command(arm="arm0", sequence=2))
+    for tick, fresh in ((1, False), (2, True)):
+        latency.on_state(state(tick, START_NS, [5] * 5, fresh=fresh))
         latency.on_picture(tick, PictureStamps(START_NS, START_NS, START_NS))
         assert not latency.on_seen(tick, START_NS + 50 * MS)
 
@@ -98,7 +123,7 @@ def test_unknown_ticks_held_arms_and_unstamped_commands_have_no_account() -> Non
 def test_it_forgets_old_ticks() -> None:
     latency = MotionToPhoton("arm0", ticks=16)
     for tick in range(1, 100):
-        latency.on_state(state(tick, START_NS, [5] * 5))
+        command_and_state(latency, tick, START_NS, [5] * 5)
         latency.on_picture(tick, PictureStamps(START_NS, START_NS, START_NS))
     assert not latency.on_seen(1, START_NS + 50 * MS)
     assert latency.on_seen(99, START_NS + 50 * MS)

@@ -1,5 +1,8 @@
 """Motion to photon: from the moment a hand's frame was sent to the moment its effect was on the screen.
 
+Every frame counts, also those that a newer one overtook before the tick: a hand moves all the time, and what it did
+right after a tick waits longest. (Counting used commands alone would leave two thirds of a tick out of the account.)
+
 Pure. Every stamp is Unix time in nanoseconds on this machine's clock; the peers' own stamps have been mapped by their
 clock offsets. A tick's stamps are collected on the way; a page's report of the displayed tick closes the account.
 """
@@ -12,7 +15,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from mart.protocol.messages import Event, State
+from mart.protocol.messages import Command, Event, State
 
 STAGES = (
     "input → gateway",
@@ -41,7 +44,7 @@ class PictureStamps:
 
 @dataclass(frozen=True)
 class Summary:
-    """Of the newest reports; `stages`: median milliseconds of each of STAGES, in order."""
+    """Of the newest reports; `frames`: pictures reported; `stages`: median milliseconds of each of STAGES, in order."""
 
     p50_ms: float
     p95_ms: float
@@ -62,26 +65,33 @@ class Summary:
 class MotionToPhoton:
     """Keeps the last `window` reports of one arm."""
 
-    def __init__(self, arm: str, window: int = 300, ticks: int = 256) -> None:
+    def __init__(self, arm: str, window: int = 300, ticks: int = 256, commands: int = 256) -> None:
         self.reports = 0  # in all
         self._arm = arm
-        self._ticks = ticks
-        self._until_state: dict[int, tuple[int, ...]] = {}
+        self._ticks, self._commands = ticks, commands
+        self._sent: dict[int, tuple[int, int]] = {}  # by sequence: input sent, gateway received
+        self._until_state: dict[int, list[tuple[int, ...]]] = {}  # a row for each command of the tick
         self._pictures: dict[int, PictureStamps] = {}
-        self._reports: deque[tuple[int, ...]] = deque(maxlen=window)
+        self._reports: deque[list[tuple[int, ...]]] = deque(maxlen=window)
+
+    def on_command(self, command: Command) -> None:
+        """A frame became a command. One without a stamp (its sender's clock is not mapped yet) has no account."""
+        stamps = command.stamps
+        if stamps.input_sent_ns:
+            sent = (stamps.input_sent_ns, stamps.gateway_received_ns)
+            _keep(self._sent, command.sequence, sent, self._commands)
 
     def on_state(self, state: State) -> None:
-        """Keeps the way of the command that this tick used; a held arm or an unstamped command has none."""
+        """Keeps the way of the command that this tick used, and of those that it overtook; a held arm has none."""
         for arm in state.arms:
-            if arm.arm == self._arm and arm.fresh and arm.stamps.input_sent_ns:
-                stamps = (
-                    arm.stamps.input_sent_ns,
-                    arm.stamps.gateway_received_ns,
-                    arm.arrived_ns,
-                    state.stamps.fired_ns,
-                    state.stamps.stepped_ns,
-                )
-                _keep(self._until_state, state.tick, stamps, self._ticks)
+            if arm.arm == self._arm and arm.fresh and arm.sequence in self._sent:
+                # The overtaken are taken to have reached the sim as fast as the one whose arrival is known.
+                transit_ns = arm.arrived_ns - self._sent[arm.sequence][1]
+                rows: list[tuple[int, ...]] = [
+                    (sent, received, received + transit_ns, state.stamps.fired_ns, state.stamps.stepped_ns)
+                    for sent, received in self._take_until(arm.sequence)
+                ]
+                _keep(self._until_state, state.tick, rows, self._ticks)
 
     def on_picture(self, tick: int, stamps: PictureStamps) -> None:
         """A picture sent a second time closes the account: a report from now on may mean either."""
@@ -94,27 +104,29 @@ class MotionToPhoton:
         until_state, picture = self._until_state.get(tick), self._pictures.get(tick)
         if until_state is None or picture is None:
             return False
-        if not picture.encoded_ns <= displayed_ns < until_state[0] + _LONGEST_NS:
+        if not picture.encoded_ns <= displayed_ns < until_state[-1][0] + _LONGEST_NS:
             return False
         del self._until_state[tick]  # one report for each tick
         self.reports += 1
-        self._reports.append(
-            (*until_state, picture.state_received_ns, picture.rendered_ns, picture.encoded_ns, displayed_ns)
-        )
+        after = (picture.state_received_ns, picture.rendered_ns, picture.encoded_ns, displayed_ns)
+        self._reports.append([(*row, *after) for row in until_state])
         return True
 
     def summary(self) -> Summary | None:
         """None before the first report."""
         if not self._reports:
             return None
-        stamps = np.array(self._reports, dtype=np.int64)
+        stamps = np.array([row for rows in self._reports for row in rows], dtype=np.int64)
         total_ms = (stamps[:, -1] - stamps[:, 0]) * _MS_PER_NS
         stages_ms = np.median(np.diff(stamps, axis=1), axis=0) * _MS_PER_NS
         p50_ms, p95_ms = np.percentile(total_ms, (50, 95))
-        return Summary(float(p50_ms), float(p95_ms), len(stamps), tuple(stages_ms.tolist()))
+        return Summary(float(p50_ms), float(p95_ms), len(self._reports), tuple(stages_ms.tolist()))
+
+    def _take_until(self, sequence: int) -> list[tuple[int, int]]:
+        return [self._sent.pop(number) for number in list(self._sent) if number <= sequence]
 
 
-def _keep(kept: dict[int, T], tick: int, value: T, at_most: int) -> None:
-    kept[tick] = value
+def _keep(kept: dict[int, T], number: int, value: T, at_most: int) -> None:
+    kept[number] = value
     while len(kept) > at_most:
         del kept[next(iter(kept))]

@@ -152,6 +152,7 @@ class Seat:
         if command is not None:
             command.stamps.sent_ns = clock.wall_ns()
             self._commands.put(codec.encode(command))
+            self._latency.on_command(command)
             self._tell_changes()
 
     def on_status(self, peer: Peer, text: str) -> None:
