@@ -124,8 +124,8 @@ class Operators:
         while len(sim) < WARM_UP + ROUNDS:
             # Under load the bus drops a command now and then, which is its right: such a round is begun again.
             with contextlib.suppress(queue.Empty):
-                echo_ms = self._round_trip(state.arms[0], size=state.ByteSize())
                 tick_ms, state = self._tick(state)
+                echo_ms = self._round_trip(state.arms[0], size=state.ByteSize())
                 bare.append(echo_ms)
                 sim.append(tick_ms)
         return Times(np.array(sim[WARM_UP:]), np.array(bare[WARM_UP:]))
@@ -169,6 +169,7 @@ class Operators:
         """Milliseconds to the echo and back, a command one way, `size` bytes the other."""
         while not self._echoes.empty():
             self._echoes.get()
+        clock.sleep_s(1.5 / CONTROL_HZ)  # both trips begin on a machine that has rested as long
         payload = codec.encode(self._command(arm)) + size.to_bytes(4, "little")
         sent_ns = clock.monotonic_ns()
         self._echo.put(payload)

@@ -8,6 +8,7 @@ Exp and log: Solà et al., "A micro Lie theory for state estimation in robotics"
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +36,7 @@ class Pose:
     def __post_init__(self) -> None:
         position = _vector("position", self.position, 3)
         quaternion = _vector("quaternion_wxyz", self.quaternion_wxyz, 4)
-        norm = float(np.linalg.norm(quaternion))
+        norm = math.sqrt(quaternion @ quaternion)
         if abs(norm - 1.0) > _NORM_TOLERANCE:
             raise InvalidInput(f"A quaternion of norm {norm:.4f} was given; it must be within 1 % of 1.")
         quaternion /= norm
@@ -94,8 +95,8 @@ class Pose:
 
 def quaternion_multiply(a: Array, b: Array) -> Array:
     """Hamilton product of two wxyz quaternions, shape (4,)."""
-    aw, ax, ay, az = a
-    bw, bx, by, bz = b
+    aw, ax, ay, az = a.tolist()  # Python's floats: arithmetic on numpy's scalars is several times slower
+    bw, bx, by, bz = b.tolist()
     return np.array(
         [
             aw * bw - ax * bx - ay * by - az * bz,
@@ -135,29 +136,23 @@ def rotate(quaternion_wxyz: Array, vector: Array) -> Array:
 
 def quaternion_from_matrix(rotation: Array) -> Array:
     """rotation: shape (3, 3). Shepperd's method: divides by the largest of the four components."""
-    m = rotation
-    squares = np.array(
-        [
-            m[0, 0] + m[1, 1] + m[2, 2],
-            m[0, 0] - m[1, 1] - m[2, 2],
-            m[1, 1] - m[0, 0] - m[2, 2],
-            m[2, 2] - m[0, 0] - m[1, 1],
-        ]
-    )
-    i = int(np.argmax(squares))
-    s = 2.0 * np.sqrt(1.0 + squares[i])
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation.tolist()
+    squares = (xx + yy + zz, xx - yy - zz, yy - xx - zz, zz - xx - yy)
+    largest = squares.index(max(squares))
+    s = 2.0 * math.sqrt(1.0 + squares[largest])
     candidates = (
-        (s / 4, (m[2, 1] - m[1, 2]) / s, (m[0, 2] - m[2, 0]) / s, (m[1, 0] - m[0, 1]) / s),
-        ((m[2, 1] - m[1, 2]) / s, s / 4, (m[0, 1] + m[1, 0]) / s, (m[0, 2] + m[2, 0]) / s),
-        ((m[0, 2] - m[2, 0]) / s, (m[0, 1] + m[1, 0]) / s, s / 4, (m[1, 2] + m[2, 1]) / s),
-        ((m[1, 0] - m[0, 1]) / s, (m[0, 2] + m[2, 0]) / s, (m[1, 2] + m[2, 1]) / s, s / 4),
+        (s / 4, (zy - yz) / s, (xz - zx) / s, (yx - xy) / s),
+        ((zy - yz) / s, s / 4, (xy + yx) / s, (xz + zx) / s),
+        ((xz - zx) / s, (xy + yx) / s, s / 4, (yz + zy) / s),
+        ((yx - xy) / s, (xz + zx) / s, (yz + zy) / s, s / 4),
     )
-    return np.array(candidates[i])
+    return np.array(candidates[largest])
 
 
 def _cross(a: Array, b: Array) -> Array:
     # np.cross costs 20 us a call on three numbers; this is on every tick's path.
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def _left_jacobian(omega: Array) -> Array:
@@ -175,6 +170,6 @@ def _vector(name: str, value: ArrayLike, size: int) -> Array:
     array = np.array(value, dtype=np.float64)
     if array.shape != (size,):
         raise InvalidInput(f"{name} of shape {array.shape} was given; it must have shape ({size},).")
-    if not np.isfinite(array).all():
+    if not all(map(math.isfinite, array.tolist())):
         raise InvalidInput(f"{name} {array.tolist()} was given; every number must be finite.")
     return array

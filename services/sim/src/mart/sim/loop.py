@@ -5,8 +5,10 @@ Handlers of the bus run on other threads: they put what came into a mailbox and 
 
 from __future__ import annotations
 
+import contextlib
+import queue
 import threading
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Callable
 from functools import partial
 from typing import TypeVar
@@ -34,40 +36,26 @@ R = TypeVar("R", SeatRequest, EpisodeRequest)
 
 MAX_REQUEST_BYTES = 4096
 _MAX_EVENT_BYTES = 64 * 1024
-_COMMANDS_KEPT = 1024  # a flood pushes out the oldest: the newest command wins anyway
-_REQUESTS_KEPT = 256
+_KEPT = 1024
 _LONGEST_WAIT_S = 1.0  # so that a stop is noticed
 
 
 class Mailbox:
-    """Work for the room's thread, commands first."""
+    """Work for the room's thread, in the order in which it came. A flood beyond its bound is lost, not kept."""
 
     def __init__(self) -> None:
-        self._commands: deque[Callable[[], None]] = deque(maxlen=_COMMANDS_KEPT)
-        self._requests: deque[Callable[[], None]] = deque(maxlen=_REQUESTS_KEPT)
-        self._arrived = threading.Condition()
+        self._queue: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
 
-    def command(self, work: Callable[[], None]) -> None:
-        with self._arrived:
-            self._commands.append(work)
-            self._arrived.notify()
+    def put(self, work: Callable[[], None]) -> None:
+        if self._queue.qsize() < _KEPT:
+            self._queue.put(work)
 
-    def request(self, work: Callable[[], None]) -> None:
-        with self._arrived:
-            self._requests.append(work)
-            self._arrived.notify()
-
-    def wait(self, timeout_s: float) -> None:
-        """Until something is there, at most `timeout_s`."""
-        with self._arrived:
-            if timeout_s > 0 and not self._commands and not self._requests:
-                self._arrived.wait(timeout_s)
-
-    def work(self) -> None:
-        """Does all that came before this call."""
-        for queue in (self._commands, self._requests):
-            for _ in range(len(queue)):
-                queue.popleft()()
+    def work(self, timeout_s: float) -> None:
+        """Waits until something is there, at most `timeout_s`, and does all that came until then."""
+        with contextlib.suppress(queue.Empty):
+            self._queue.get(timeout=max(timeout_s, 0.0))()
+            for _ in range(self._queue.qsize()):
+                self._queue.get_nowait()()
 
 
 class BusVoice:
@@ -122,7 +110,7 @@ class Doorway:
         hear = partial(
             self._room.hear, sample.payload, keys.arm_of(sample.key), clock.monotonic_s(), clock.wall_ns()
         )
-        self._mailbox.command(hear)
+        self._mailbox.put(hear)
 
     def _on_event(self, sample: Sample) -> None:
         try:
@@ -131,13 +119,13 @@ class Doorway:
             self.garbled["event"] += 1
             return
         if event.WhichOneof("what") == "episode_saved":
-            self._mailbox.request(partial(self._room.episode_saved, event.episode_saved))
+            self._mailbox.put(partial(self._room.episode_saved, event.episode_saved))
 
     def _on_seat_request(self, request: Request) -> None:
-        self._mailbox.request(partial(self._answer, request, SeatRequest, self._room.answer_seat))
+        self._mailbox.put(partial(self._answer, request, SeatRequest, self._room.answer_seat))
 
     def _on_episode_request(self, request: Request) -> None:
-        self._mailbox.request(partial(self._answer, request, EpisodeRequest, self._room.answer_episode))
+        self._mailbox.put(partial(self._answer, request, EpisodeRequest, self._room.answer_episode))
 
     def _on_model_request(self, request: Request) -> None:
         request.reply(self._model)
@@ -158,5 +146,4 @@ def run(room: Room, doorway: Doorway, mailbox: Mailbox, stop: threading.Event) -
         next_s = room.advance(clock.monotonic_s())
         now_s = clock.monotonic_s()
         complaints.say(Counter(room.rejected) + doorway.garbled, now_s)
-        mailbox.wait(min(next_s - now_s, _LONGEST_WAIT_S))
-        mailbox.work()
+        mailbox.work(min(next_s - now_s, _LONGEST_WAIT_S))

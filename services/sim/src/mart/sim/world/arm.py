@@ -33,7 +33,8 @@ class MeasuredArm:
 
     def gripper(self) -> float:
         """0 open … 1 closed."""
-        return float(np.clip(1.0 - self._fingers.sum() / (2 * STROKE_M), 0.0, 1.0))
+        left_m, right_m = self._fingers.tolist()
+        return min(max(1.0 - (left_m + right_m) / (2 * STROKE_M), 0.0), 1.0)
 
     def joint_positions(self) -> NDArray[np.float64]:
         """Shape (7,), radians."""
