@@ -23,6 +23,7 @@ import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -197,7 +198,7 @@ def echo() -> None:
 
 
 class PairOfWorlds:
-    """Two worlds of four arms, told apart by numbering the second one's arms on. Real physics, twice."""
+    """Two worlds of four arms, told apart by numbering the second one's arms on. A World by what it does."""
 
     def __init__(self) -> None:
         self._worlds = [World.build(DEFAULT_TASK, CONTROL_HZ, 4) for _ in range(2)]
@@ -250,7 +251,7 @@ def _renumbered(name: str) -> str:
 
 
 def serve_pair(room: str) -> None:
-    serve_world(SimSettings(room=room, seed=1), PairOfWorlds())
+    serve_world(SimSettings(room=room, seed=1), cast("World", PairOfWorlds()))
 
 
 @contextlib.contextmanager

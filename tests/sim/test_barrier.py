@@ -13,6 +13,8 @@ from mart.protocol.messages import (
     OPERATOR_HUMAN,
     OPERATOR_POLICY,
     OPERATOR_SCRIPT,
+    BarrierPhase,
+    Operator,
 )
 from mart.sim.admission import Rejection
 from mart.sim.barrier import Barrier, Firing
@@ -91,7 +93,7 @@ def test_a_closed_gate_keeps_the_newest_command(barrier: Barrier) -> None:
         (3.0, BARRIER_PHASE_PAUSED),
     ],
 )
-def test_silence_stalls_and_then_pauses(barrier: Barrier, silence_s: float, phase: int) -> None:
+def test_silence_stalls_and_then_pauses(barrier: Barrier, silence_s: float, phase: BarrierPhase) -> None:
     give(barrier, "arm1", sequence=1, at_s=silence_s)
     decision = barrier.advance(silence_s, gate_open=True)
     assert decision.phase == phase
@@ -107,7 +109,7 @@ def test_a_paused_room_does_not_tick_on_an_old_command(barrier: Barrier) -> None
 
 
 @pytest.mark.parametrize("operator", [OPERATOR_HUMAN, OPERATOR_POLICY])
-def test_a_silent_seat_is_to_be_given_up_after_half_a_minute(barrier: Barrier, operator: int) -> None:
+def test_a_silent_seat_is_to_be_given_up_after_half_a_minute(barrier: Barrier, operator: Operator) -> None:
     barrier.seat("arm0", operator, 1, 0.0)
     give(barrier, "arm1", sequence=1, at_s=29.0)
     assert barrier.advance(29.99, gate_open=True).silent == ()

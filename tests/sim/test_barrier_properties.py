@@ -17,6 +17,7 @@ from mart.protocol.messages import (
     OPERATOR_HUMAN,
     OPERATOR_POLICY,
     OPERATOR_SCRIPT,
+    Operator,
 )
 from mart.sim.barrier import FREED_AFTER_S, PAUSED_AFTER_S, STALLED_AFTER_S, Barrier
 from mart.sim.pacing import CATCH_UP_TICKS
@@ -33,7 +34,7 @@ arms = st.sampled_from(ARMS)
 class Said:
     """What one seat's holder has said so far."""
 
-    operator: int = OPERATOR_HOLD
+    operator: Operator = OPERATOR_HOLD
     epoch: int = 0
     heard_s: float = 0.0
     accepted: dict[int, bool] = field(default_factory=dict)  # sequence → emergency stop
@@ -63,7 +64,7 @@ class BarrierMachine(RuleBasedStateMachine):
     @rule(
         arm=arms, operator=st.sampled_from([OPERATOR_HOLD, OPERATOR_HUMAN, OPERATOR_POLICY, OPERATOR_SCRIPT])
     )
-    def change_seat(self, arm: str, operator: int) -> None:
+    def change_seat(self, arm: str, operator: Operator) -> None:
         epoch = self.said[arm].epoch + 1
         self.said[arm] = Said(operator, epoch, self.now_s)
         self.barrier.seat(arm, operator, epoch, self.now_s)

@@ -20,6 +20,7 @@ from mart.protocol.messages import (
     OUTCOME_SUCCESS,
     OUTCOME_UNSPECIFIED,
     EpisodeRequest,
+    Outcome,
 )
 from mart.sim.episode import COUNTDOWN_S, ENDED_S, Ended, EpisodeCourse, ResetWorld, Started, Step, seed_of
 from mart.sim.seats import SeatTable
@@ -45,7 +46,7 @@ def ready(arm: str, holder_id: str, value: bool = True) -> EpisodeRequest:
     return EpisodeRequest(ready=EpisodeRequest.Ready(arm=arm, holder_id=holder_id, ready=value))
 
 
-def finish(holder_id: str, outcome: int) -> EpisodeRequest:
+def finish(holder_id: str, outcome: Outcome) -> EpisodeRequest:
     return EpisodeRequest(finish=EpisodeRequest.Finish(holder_id=holder_id, outcome=outcome))
 
 
@@ -129,7 +130,7 @@ def test_practice_returns_with_another_world_two_seconds_later(
 
 
 @pytest.mark.parametrize("outcome", [OUTCOME_SUCCESS, OUTCOME_FAILURE, OUTCOME_DISCARDED])
-def test_an_operator_ends_an_episode(course: EpisodeCourse, seats: SeatTable, outcome: int) -> None:
+def test_an_operator_ends_an_episode(course: EpisodeCourse, seats: SeatTable, outcome: Outcome) -> None:
     record(course, seats)
     assert course.answer(finish("ben", outcome), seats, 4.0) == (Ended(1, outcome, 0, "said by an operator"),)
 

@@ -87,13 +87,14 @@ class Stage:
         claim = SeatRequest.Claim(arm=arm, holder_id=holder_id or arm, name="Ana", operator=OPERATOR_HUMAN)
         assert not self.room.answer_seat(SeatRequest(claim=claim), self.now_s).error.code
 
-    def ask(self, **request: object) -> str:
+    def ask(self, request: EpisodeRequest) -> str:
         """The error's code, empty where there is none."""
-        return self.room.answer_episode(EpisodeRequest(**request), self.now_s).error.code
+        return self.room.answer_episode(request, self.now_s).error.code
 
     def ready(self) -> None:
         for arm in ARMS:
-            assert self.ask(ready=EpisodeRequest.Ready(arm=arm, holder_id=arm, ready=True)) == ""
+            ready = EpisodeRequest.Ready(arm=arm, holder_id=arm, ready=True)
+            assert self.ask(EpisodeRequest(ready=ready)) == ""
 
     def command(self, arm: str, x_m: float = 0.0, gripper: float = 0.0, stop: bool = False) -> None:
         """The tool is to go `x_m` from where it is."""
@@ -304,7 +305,7 @@ def test_an_episode_from_ready_to_practice(stage: Stage) -> None:
     (started,) = stage.voice.of("episode_started")
     assert started.episode_started.seed == stage.status().episode.seed
     finish = EpisodeRequest.Finish(holder_id="arm1", outcome=OUTCOME_SUCCESS)
-    assert stage.ask(finish=finish) == ""
+    assert stage.ask(EpisodeRequest(finish=finish)) == ""
     (ended,) = stage.voice.of("episode_ended")
     assert ended.episode_ended.last_tick == stage.newest.tick
     assert ended.episode_ended.ticks == stage.newest.episode_tick

@@ -13,6 +13,7 @@ from mart.protocol.messages import (
     OPERATOR_POLICY,
     OPERATOR_SCRIPT,
     OPERATOR_UNSPECIFIED,
+    Operator,
     SeatRequest,
 )
 from mart.sim.seats import SeatTable, SeatTaken
@@ -88,13 +89,13 @@ def test_setting_the_same_operator_again_changes_nothing(seats: SeatTable) -> No
 
 
 @pytest.mark.parametrize("operator", [OPERATOR_HUMAN, OPERATOR_POLICY, OPERATOR_UNSPECIFIED])
-def test_people_and_policies_are_not_assigned(seats: SeatTable, operator: int) -> None:
+def test_people_and_policies_are_not_assigned(seats: SeatTable, operator: Operator) -> None:
     with pytest.raises(InvalidInput):
         seats.assign("arm0", operator)
 
 
 @pytest.mark.parametrize("operator", [OPERATOR_HOLD, OPERATOR_SCRIPT, OPERATOR_UNSPECIFIED])
-def test_only_people_and_policies_claim(seats: SeatTable, operator: int) -> None:
+def test_only_people_and_policies_claim(seats: SeatTable, operator: Operator) -> None:
     with pytest.raises(InvalidInput):
         seats.claim("arm0", "h1", "Ana", operator)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Generic, TypeVar
 
 from google.protobuf.message import Message
@@ -12,6 +12,14 @@ from mart.protocol import clock, codec
 from mart.protocol.bus.base import Bus, Sample
 
 M = TypeVar("M", bound=Message)
+
+
+class NothingCame(AssertionError):
+    """The message that a test waited for did not come in time."""
+
+    def __init__(self, timeout_s: float, messages: Sequence[Message]) -> None:
+        last = str(messages[-1])[:500] if messages else "none"
+        super().__init__(f"No such message within {timeout_s:g} s; of {len(messages)} the last began: {last}")
 
 
 class Mailbox(Generic[M]):
@@ -28,7 +36,7 @@ class Mailbox(Generic[M]):
         self._subscription = bus.subscribe(key_expression, self._keep)
 
     def wait_for(self, holds: Callable[[M], bool], timeout_s: float = 10.0, since: int = 0) -> M:
-        """The first message, from number `since` on, for which `holds`; raises AssertionError after `timeout_s`."""
+        """The first message, from number `since` on, for which `holds`; raises NothingCame after `timeout_s`."""
         deadline_s = clock.monotonic_s() + timeout_s
         with self._arrived:
             seen = since
@@ -38,10 +46,7 @@ class Mailbox(Generic[M]):
                         return message
                 seen = max(seen, len(self._messages))
                 if not self._arrived.wait(deadline_s - clock.monotonic_s()):
-                    last = self._messages[-1] if self._messages else "none"
-                    raise AssertionError(
-                        f"No such message within {timeout_s:g} s of {seen}; the last was: {last}"
-                    )
+                    raise NothingCame(timeout_s, self._messages)
 
     def wait_next(self, timeout_s: float = 10.0) -> M:
         """The first message that arrives from now on."""

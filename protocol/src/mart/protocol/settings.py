@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
-from pydantic import Field
+from pydantic import Field, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from mart.protocol.errors import InvalidInput
 
 
 class Settings(BaseSettings):
@@ -17,6 +20,13 @@ class Settings(BaseSettings):
     data_dir: Path = Field(Path("data"), description="Where episodes, secrets and certificates are kept.")
     log_level: str = Field("INFO", description="DEBUG, INFO, WARNING or ERROR.")
 
+    def __init__(self, **options: Any) -> None:
+        """Options go before the environment. Raises InvalidInput for a value that is not allowed."""
+        try:
+            super().__init__(**options)
+        except ValidationError as error:
+            raise InvalidInput(_sentence(error)) from error
+
     @property
     def episodes_dir(self) -> Path:
         return self.data_dir / "episodes"
@@ -24,3 +34,10 @@ class Settings(BaseSettings):
     @property
     def secret_path(self) -> Path:
         return self.data_dir / "secrets" / "seat-token"
+
+
+def _sentence(error: ValidationError) -> str:
+    fault = error.errors()[0]
+    name = "_".join(map(str, fault["loc"]))
+    allowed = fault["msg"][:1].lower() + fault["msg"][1:]
+    return f"{name} = {fault['input']!r} was given: {allowed}; see --help, or unset MART_{name.upper()}."
