@@ -183,8 +183,9 @@ def _open(settings: dict[str, Any], endpoint: str) -> zenoh.Session:
         return zenoh.open(config)
     except zenoh.ZError as error:
         word = "listen at" if settings["mode"] == "router" else "reach a router at"
+        reason = str(error).partition(" at /")[0]  # what follows is the place in Zenoh's own sources
         raise Unavailable(
-            f"Could not {word} {endpoint}: {error}. Set MART_ROUTER or see `mart doctor`."
+            f"Could not {word} {endpoint}: {reason}. Set MART_ROUTER or see `mart doctor`."
         ) from error
 
 
