@@ -14,100 +14,110 @@ from mart.protocol import messages as m
 _STAMP = 1_700_000_000_000_000_000
 
 
+_POSE = m.PoseMessage(x=0.45, y=-0.1, z=0.2, qw=0.5, qx=-0.5, qy=0.5, qz=0.5)
+_STAMPS = m.CommandStamps(input_sent_ns=_STAMP, gateway_received_ns=_STAMP + 1, sent_ns=_STAMP + 2)
+_SEAT = m.Seat(arm="arm0", operator=m.OPERATOR_HUMAN, epoch=7, holder_id="h1", name="Ana", ready=True)
+_PROGRESS = m.Progress(subtasks=[m.Subtask(name="cube0_lifted", done=True)], success_ticks=3)
+
+
 def examples() -> dict[str, Message]:
     """By message name; the golden bytes are made from these."""
-    pose = m.PoseMessage(x=0.45, y=-0.1, z=0.2, qw=0.5, qx=-0.5, qy=0.5, qz=0.5)
-    stamps = m.CommandStamps(input_sent_ns=_STAMP, gateway_received_ns=_STAMP + 1, sent_ns=_STAMP + 2)
-    seat = m.Seat(arm="arm0", operator=m.OPERATOR_HUMAN, epoch=7, holder_id="h1", name="Ana", ready=True)
-    progress = m.Progress(subtasks=[m.Subtask(name="cube0_lifted", done=True)], success_ticks=3)
-    return {
-        "Command": m.Command(
-            arm="arm0",
-            seat_epoch=7,
-            sequence=42,
-            target_tool_in_base=pose,
-            gripper=0.25,
-            engaged=True,
-            source=m.OPERATOR_HUMAN,
-            stamps=stamps,
-            seen_tick=1234,
-        ),
-        "State": m.State(
-            room="room-1",
-            tick=1235,
-            sim_time_s=61.75,
-            stamps=m.TickStamps(
-                due_ns=_STAMP, fired_ns=_STAMP + 5, stepped_ns=_STAMP + 9, sent_ns=_STAMP + 10
-            ),
-            real_time_factor=0.99,
-            integration_state=bytes(range(16)),
-            arms=[
-                m.ArmState(
-                    arm="arm0",
-                    tool_in_base=pose,
-                    gripper=0.2,
-                    action=[0.1, -1.0, 1.0, 0.0, 0.5, -0.5, 1.0],
-                    sequence=42,
-                    arrived_ns=_STAMP + 4,
-                    stamps=stamps,
-                    source=m.OPERATOR_HUMAN,
-                    seat_epoch=7,
-                    engaged=True,
-                    fresh=True,
-                )
-            ],
-            straggler="arm0",
-            straggler_late_s=0.012,
-            observations=[m.Observation(name="cube0/position", value=[0.1, 0.2, 0.02])],
-            progress=progress,
-            episode=3,
-            episode_tick=17,
-            boot=_STAMP,
-        ),
-        "RoomStatus": m.RoomStatus(
-            room="room-1",
-            task="two_arm_multi_cube_lifting",
-            control_hz=20.0,
-            tick=1235,
-            real_time_factor=0.98,
-            barrier=m.BARRIER_PHASE_STALLED,
-            waiting_for=[m.Waiting(arm="arm1", since_s=0.8)],
-            seats=[seat],
-            episode=m.Episode(number=3, phase=m.EPISODE_PHASE_RECORDING, ticks=17, elapsed_s=0.85, seed=9),
-            progress=progress,
-            episodes_saved=2,
-            episodes_good=1,
-            wall_ns=_STAMP,
-            boot=_STAMP,
-        ),
-        "SeatRequest": m.SeatRequest(
-            claim=m.SeatRequest.Claim(arm="arm0", holder_id="h1", name="Ana", operator=m.OPERATOR_HUMAN)
-        ),
-        "EpisodeRequest": m.EpisodeRequest(
-            finish=m.EpisodeRequest.Finish(holder_id="h1", outcome=m.OUTCOME_SUCCESS)
-        ),
-        "RoomReply": m.RoomReply(error=m.Error(code="Conflict", message="arm0 is held by Ana."), seat=seat),
-        "Event": m.Event(
-            wall_ns=_STAMP,
-            room="room-1",
-            tick=1235,
-            episode_saved=m.Event.EpisodeSaved(
-                number=3, path="episodes/x.mcap", verified=True, size_bytes=10, outcome=m.OUTCOME_SUCCESS
-            ),
-        ),
-        "Offer": m.Offer(token="t", sdp="v=0"),
-        "Answer": m.Answer(sdp="v=0"),
-        "OpenSeat": m.OpenSeat(room="room-1", arm="arm0", seat_epoch=7),
-        "Model": m.Model(
-            sha256="ab", mjb=b"\x00\x01", task="t", control_hz=20.0, arms=["arm0"], mujoco_version="4.0.0"
-        ),
-        "RolloutRequest": m.RolloutRequest(
-            resimulate=m.RolloutRequest.Resimulate(
-                model_sha256="ab", task="t", control_hz=20.0, first_state=b"\x01", actions=b"\x02" * 8
-            )
-        ),
-        "RolloutReply": m.RolloutReply(state_digests=b"\x03" * 16),
-    }
+    filled = (*_driving(), *_room(), *_signalling(), *_rollouts())
+    return {message.DESCRIPTOR.name: message for message in filled}
+
+
+def _driving() -> tuple[Message, ...]:
+    arm = m.ArmState(
+        arm="arm0",
+        tool_in_base=_POSE,
+        gripper=0.2,
+        action=[0.1, -1.0, 1.0, 0.0, 0.5, -0.5, 1.0],
+        sequence=42,
+        arrived_ns=_STAMP + 4,
+        stamps=_STAMPS,
+        source=m.OPERATOR_HUMAN,
+        seat_epoch=7,
+        engaged=True,
+        fresh=True,
+    )
+    command = m.Command(
+        arm="arm0",
+        seat_epoch=7,
+        sequence=42,
+        target_tool_in_base=_POSE,
+        gripper=0.25,
+        engaged=True,
+        source=m.OPERATOR_HUMAN,
+        stamps=_STAMPS,
+        seen_tick=1234,
+    )
+    state = m.State(
+        room="room-1",
+        tick=1235,
+        sim_time_s=61.75,
+        stamps=m.TickStamps(due_ns=_STAMP, fired_ns=_STAMP + 5, stepped_ns=_STAMP + 9, sent_ns=_STAMP + 10),
+        real_time_factor=0.99,
+        integration_state=bytes(range(16)),
+        arms=[arm],
+        straggler="arm0",
+        straggler_late_s=0.012,
+        observations=[m.Observation(name="cube0/position", value=[0.1, 0.2, 0.02])],
+        progress=_PROGRESS,
+        episode=3,
+        episode_tick=17,
+        boot=_STAMP,
+    )
+    return command, state
+
+
+def _room() -> tuple[Message, ...]:
+    status = m.RoomStatus(
+        room="room-1",
+        task="two_arm_multi_cube_lifting",
+        control_hz=20.0,
+        tick=1235,
+        real_time_factor=0.98,
+        barrier=m.BARRIER_PHASE_STALLED,
+        waiting_for=[m.Waiting(arm="arm1", since_s=0.8)],
+        seats=[_SEAT],
+        episode=m.Episode(number=3, phase=m.EPISODE_PHASE_RECORDING, ticks=17, elapsed_s=0.85, seed=9),
+        progress=_PROGRESS,
+        episodes_saved=2,
+        episodes_good=1,
+        wall_ns=_STAMP,
+        boot=_STAMP,
+    )
+    claim = m.SeatRequest.Claim(arm="arm0", holder_id="h1", name="Ana", operator=m.OPERATOR_HUMAN)
+    finish = m.EpisodeRequest.Finish(holder_id="h1", outcome=m.OUTCOME_SUCCESS)
+    saved = m.Event.EpisodeSaved(
+        number=3, path="episodes/x.mcap", verified=True, size_bytes=10, outcome=m.OUTCOME_SUCCESS
+    )
+    return (
+        status,
+        m.SeatRequest(claim=claim),
+        m.EpisodeRequest(finish=finish),
+        m.RoomReply(error=m.Error(code="Conflict", message="arm0 is held by Ana."), seat=_SEAT),
+        m.Event(wall_ns=_STAMP, room="room-1", tick=1235, episode_saved=saved),
+    )
+
+
+def _signalling() -> tuple[Message, ...]:
+    return (
+        m.Offer(token="t", sdp="v=0"),
+        m.Answer(sdp="v=0"),
+        m.OpenSeat(room="room-1", arm="arm0", seat_epoch=7),
+    )
+
+
+def _rollouts() -> tuple[Message, ...]:
+    model = m.Model(
+        sha256="ab", mjb=b"\x00\x01", task="t", control_hz=20.0, arms=["arm0"], mujoco_version="4.0.0"
+    )
+    resimulate = m.RolloutRequest.Resimulate(
+        model_sha256="ab", task="t", control_hz=20.0, first_state=b"\x01", actions=b"\x02" * 8
+    )
+    reply = m.RolloutReply(state_digests=b"\x03" * 16)
+    return model, m.RolloutRequest(resimulate=resimulate), reply
 
 
 _SCALARS = {

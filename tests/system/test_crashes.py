@@ -123,7 +123,9 @@ def recorded_ticks(path: Path) -> list[int]:
 
 
 def newest_file(platform: Platform) -> Path:
-    return max((platform.options.data_dir / "episodes").rglob("*.mcap*"), key=lambda path: path.stat().st_mtime)
+    return max(
+        (platform.options.data_dir / "episodes").rglob("*.mcap*"), key=lambda path: path.stat().st_mtime
+    )
 
 
 @pytest.mark.timeout(180)
