@@ -77,6 +77,7 @@ def test_people_are_named_when_they_wait_for_each_other(run: Run) -> None:
     ("outcome", "label", "words"),
     [
         ("success", "Success", "Saved and verified: episodes/x.mcap (2.3 MB)"),
+        ("unspecified", "Interrupted", "Saved and verified: episodes/x.mcap (2.3 MB)"),
         ("discarded", "Discarded", "Kept, and labelled discarded: episodes/x.mcap (2.3 MB)"),
     ],
 )
@@ -90,6 +91,11 @@ def test_a_lost_connection_is_said(run: Run) -> None:
     assert lost["label"] == "Connection lost"
     refused = view(run, room(MINE), link=LIVE | {"state": "connecting", "problem": "No gateway is running."})
     assert refused["detail"] == "No gateway is running."
+
+
+def test_a_replaced_page_waits_to_be_asked(run: Run) -> None:
+    shown = view(run, room(MINE), link=LIVE | {"state": "replaced"})
+    assert (shown["label"], shown["actions"]) == ("Driven elsewhere", ["here"])
 
 
 def test_a_newcomer_is_told_the_first_moves(run: Run) -> None:

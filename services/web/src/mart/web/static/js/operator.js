@@ -68,7 +68,8 @@ const ownSeat = () => room?.seats.find((seat) => seat.arm === armId);
 const drives = () => link.role === "browser" && status !== null;
 
 function onRooms(rooms) {
-  room = rooms.find((one) => one.room === roomName) ?? null;
+  // A room that was there and is gone is being restarted, or will be missed: the page stays.
+  room = rooms.find((one) => one.room === roomName) ?? (room && { ...room, stale: true });
   follow(ownSeat());
   render();
 }
@@ -134,6 +135,7 @@ const DEEDS = {
   stop: () => driver.switchStop(),
   help: () => panel.toggleHelp(),
   lobby: () => location.assign("/"),
+  here: () => link.connect(),
   take: () => api.takeSeat(roomName, armId),
   leave: async () => {
     if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);

@@ -73,17 +73,26 @@ function connect(pairing) {
   link = new SeatLink({
     fetchToken: async () => pairing,
     wantsVideo: false,
-    onState: showLink,
+    onState: onLinkState,
     onStatus: heard,
   });
   link.connect();
   everyFrame(sendFrame);
 }
 
+function onLinkState() {
+  if (link?.state === LinkState.REPLACED) {
+    hold.release();
+    say("Another phone drives", "Press Start to drive with this one again.");
+  }
+  showLink();
+}
+
 async function start(tracks) {
   stayAwake();
+  if (link.state === LinkState.REPLACED) link.connect();
   try {
-    tracker = tracks ? await XrTracker.start(byId("app"), onSessionEnd) : await TouchTracker.start(hold);
+    tracker ??= tracks ? await XrTracker.start(byId("app"), onSessionEnd) : await TouchTracker.start(hold);
   } catch (error) {
     say("This phone could not start", `${error.message} Press Start to try again.`);
     return;

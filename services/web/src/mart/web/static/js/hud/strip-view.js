@@ -12,6 +12,7 @@ const ACTIONS = {
   failure: { command: "failure", text: "Failed", key: "F" },
   discard: { command: "discard", text: "Discard", key: "R" },
   take: { command: "take", text: "Take this seat", key: "N", primary: true },
+  here: { command: "here", text: "Drive here", key: "N", primary: true },
   lobby: { command: "lobby", text: "Go to the lobby", key: "N", primary: true },
 };
 
@@ -26,6 +27,9 @@ export function stripView({ room, seat, link, saved, isNew = false }) {
   }
   if (room.stale) return view("The room is silent", "It comes back by itself when its simulation runs again.");
   if (!seat.mine) return watching(room, seat);
+  if (link.state === LinkState.REPLACED) {
+    return view("Driven elsewhere", "Another window of yours drives this arm.", [ACTIONS.here]);
+  }
   if (link.state !== LinkState.LIVE) return offline(link);
   if (room.barrier === "stopped") return view("Stopped", "An emergency stop is on; whoever pressed it lets go.");
   return PHASES[room.episode.phase](room, seat, saved, isNew);
@@ -44,7 +48,7 @@ const PHASES = {
     if (eager.length) {
       return view("Practice", `${eager.join(" and ")} ${eager.length > 1 ? "are" : "is"} ready to record`, [ACTIONS.ready]);
     }
-    if (saved) return view(`${outcomeText(saved.outcome)}`, savedText(saved), [ACTIONS.again]);
+    if (saved) return view(outcomeText(saved.outcome) || "Interrupted", savedText(saved), [ACTIONS.again]);
     return view("Practice", isNew ? FIRST_MOVES : "Nothing is recorded until everybody is ready.", [ACTIONS.ready]);
   },
   countdown(room) {

@@ -12,7 +12,12 @@ const CONNECT_MS = 15000;
 const FIRST_RETRY_MS = 250;
 const LONGEST_RETRY_MS = 4000;
 
-export const LinkState = Object.freeze({ CONNECTING: "connecting", LIVE: "live", SILENT: "silent" });
+export const LinkState = Object.freeze({
+  CONNECTING: "connecting",
+  LIVE: "live",
+  SILENT: "silent",
+  REPLACED: "replaced", // another peer of the same role has come: two that take turns would help nobody
+});
 
 export class SeatLink {
   state = LinkState.CONNECTING;
@@ -51,10 +56,10 @@ export class SeatLink {
     this.#peer?.sendFrame(buffer);
   }
 
-  close() {
+  close(state = LinkState.CONNECTING) {
     this.#closed = true;
     this.#drop();
-    this.#setState(LinkState.CONNECTING);
+    this.#setState(state);
   }
 
   async #connect() {
@@ -88,6 +93,10 @@ export class SeatLink {
   }
 
   #onMessage(message) {
+    if (message.type === "replaced") {
+      this.close(LinkState.REPLACED);
+      return;
+    }
     this.#heardMs = performance.now();
     this.#retryMs = FIRST_RETRY_MS;
     this.#setState(LinkState.LIVE);
