@@ -20,7 +20,7 @@ from aiortc import (
 from aiortc.codecs import HEADER_EXTENSIONS
 
 from mart.teleop_gateway import aiortc_hooks
-from mart.teleop_gateway.encoder import Codec, Encoded, H264Encoder, to_i420
+from mart.teleop_gateway.encoder import Codec, Encoded, Encoder, to_i420
 from mart.teleop_gateway.tick_code import HEIGHT_PX, WIDTH_PX
 from mart.teleop_gateway.track import EncodedTrack
 from tests.teleop_gateway.browser import Browser
@@ -38,7 +38,7 @@ class Sender:
         self.sender = self.connection.addTrack(self.track)
         aiortc_hooks.show_at_once(self.sender)
         aiortc_hooks.on_keyframe_request(self.sender, self.keyframe_wanted.set)
-        self._encoder = H264Encoder(20)
+        self._encoder = Encoder(Codec.H264, 20)
 
     def picture(self, number: int) -> Encoded:
         """Noise: too large for one packet."""

@@ -9,7 +9,7 @@ from av.video.codeccontext import VideoCodecContext
 from av.video.frame import PictureType
 
 from mart.teleop_gateway import tick_code
-from mart.teleop_gateway.encoder import CLOCK_HZ, ENCODERS, Codec, Encoded, to_i420
+from mart.teleop_gateway.encoder import CLOCK_HZ, Codec, Encoded, Encoder, to_i420
 
 DECODERS = {Codec.H264: "h264", Codec.VP8: "vp8"}
 FRAMES_PER_S = 20.0
@@ -31,7 +31,7 @@ def picture(tick: int) -> tick_code.Image:
 
 
 def encode(codec: Codec, ticks: range, keyframes: frozenset[int] = frozenset()) -> list[Encoded]:
-    encoder = ENCODERS[codec](FRAMES_PER_S)
+    encoder = Encoder(codec, FRAMES_PER_S)
     step = int(CLOCK_HZ / FRAMES_PER_S)
     return [encoder.encode(to_i420(picture(t)), t * step, keyframe=t in keyframes) for t in ticks]
 
@@ -102,7 +102,7 @@ def test_h264_is_constrained_baseline_without_reordering() -> None:
 
 
 @both
-def test_the_rate_stays_near_what_was_asked_for(codec: Codec) -> None:
+def test_the_rate_stays_what_a_wireless_network_carries(codec: Codec) -> None:
     encoded = encode(codec, range(100))
     bits_per_s = 8 * sum(len(picture.data) for picture in encoded) / (100 / FRAMES_PER_S)
-    assert bits_per_s < 3_000_000
+    assert bits_per_s < 3_000_000  # everything moves: far more than a room ever does

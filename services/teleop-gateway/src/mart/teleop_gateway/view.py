@@ -19,7 +19,7 @@ import mujoco
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import State
-from mart.teleop_gateway.encoder import CLOCK_HZ, ENCODERS, Codec, Encoded, to_i420
+from mart.teleop_gateway.encoder import CLOCK_HZ, Codec, Encoded, Encoder, to_i420
 from mart.teleop_gateway.handover import Closed, Fresh, Handover
 from mart.teleop_gateway.latency import PictureStamps
 from mart.teleop_gateway.rate import RateLimit
@@ -53,7 +53,7 @@ class View:
     def __init__(self, model: mujoco.MjModel, camera: str, frames_per_s: float, sink: Sink) -> None:
         self._model, self._camera, self._sink = model, camera, sink
         self._handover = Handover()
-        self._encoders = {codec: encoder(frames_per_s) for codec, encoder in ENCODERS.items()}
+        self._encoders = {codec: Encoder(codec, frames_per_s) for codec in Codec}
         self._keyframe_s = dict.fromkeys(Codec, -KEYFRAME_EVERY_S)
         self._complaints = RateLimit(1)
         self._times_s: deque[float] = deque(maxlen=_RATE_WINDOW)
