@@ -55,8 +55,9 @@ def add_room(spec: mujoco.MjSpec, task: Task) -> None:
     add_shadow_material(spec)
     _add_light(spec)
     world, looks = spec.worldbody, {"contype": 0, "conaffinity": 0}
-    world.add_geom(type=_PLANE, size=(4, 4, 0.1), pos=(0, 0, FLOOR_Z_M), material="floor", **looks)
     half_x, half_y = TABLE_HALF_M
+    # Front to back: what is drawn first spares what it hides, which software rendering feels.
+    world.add_geom(type=_PLANE, size=(half_x, half_y, 0.1), pos=(0, 0, 0.0003), material="table", **looks)
     world.add_geom(
         name="table",
         type=_BOX,
@@ -64,7 +65,6 @@ def add_room(spec: mujoco.MjSpec, task: Task) -> None:
         pos=(0, 0, -_TABLE_THICKNESS_M / 2),
         material="edge",
     )
-    world.add_geom(type=_PLANE, size=(half_x, half_y, 0.1), pos=(0, 0, 0.0003), material="table", **looks)
     for x in (-1, 1):
         for y in (-1, 1):
             leg = (x * (half_x - 0.06), y * (half_y - 0.06), (FLOOR_Z_M - _TABLE_THICKNESS_M) / 2)
@@ -88,6 +88,7 @@ def add_room(spec: mujoco.MjSpec, task: Task) -> None:
             **looks,
         )
         add_shadow(spec, arm.name, radius_m=0.065, tint=arm.color)
+    world.add_geom(type=_PLANE, size=(4, 4, 0.1), pos=(0, 0, FLOOR_Z_M), material="floor", **looks)
 
 
 def _add_light(spec: mujoco.MjSpec) -> None:
