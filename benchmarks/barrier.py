@@ -119,7 +119,7 @@ class Operators:
         self._sequence = 0
 
     def measure(self) -> Times:
-        state = self._next_state(after_tick=0)[1]
+        state = self._next_state()[1]
         sim: list[float] = []
         bare: list[float] = []
         while len(sim) < WARM_UP + ROUNDS:
@@ -140,7 +140,7 @@ class Operators:
         clock.sleep_s(1.5 / CONTROL_HZ)
         sent_ns = clock.monotonic_ns()
         self._send(last)
-        arrived_ns, after = self._next_state(state.tick)
+        arrived_ns, after = self._next_state()
         physics_ns = after.stamps.stepped_ns - after.stamps.fired_ns
         return (arrived_ns - sent_ns - physics_ns) / 1e6, after
 
@@ -157,13 +157,13 @@ class Operators:
             engaged=True,
         )
 
-    def _next_state(self, after_tick: int) -> tuple[int, State]:
-        """When the first state after `after_tick` came, and the state. Raises queue.Empty where none comes."""
+    def _next_state(self) -> tuple[int, State]:
+        """When the state came that used the newest commands, and the state. Raises queue.Empty where none comes."""
         deadline_s = clock.monotonic_s() + LOST_AFTER_S
         while True:
             at_ns, payload = self._states.get(timeout=max(0.0, deadline_s - clock.monotonic_s()))
             state = codec.decode(State, payload)
-            if state.tick > after_tick:
+            if all(arm.sequence == self._sequence for arm in state.arms):
                 return at_ns, state
 
     def _round_trip(self, arm: ArmState, size: int) -> float:

@@ -17,19 +17,25 @@ class MeasuredArm:
         base, tool = model.body(f"{name}/base").id, model.site(f"{name}/tool").id
         joints = int(model.joint(f"{name}/joint1").qposadr[0])
         fingers = [int(model.joint(f"{name}/{side}_finger").qposadr[0]) for side in ("left", "right")]
-        rotation_base_in_world = np.zeros(9)
-        mujoco.mju_quat2Mat(rotation_base_in_world, model.body_quat[base])
-        self._rotation_base_in_world = rotation_base_in_world.reshape(3, 3)
+        self._turn_world_to_base = np.empty(4)
+        mujoco.mju_negQuat(self._turn_world_to_base, model.body_quat[base])
         self._position_base_in_world = model.body_pos[base].copy()
-        self._tool_position, self._tool_rotation = data.site_xpos[tool], data.site_xmat[tool].reshape(3, 3)
+        self._tool_position, self._tool_rotation = data.site_xpos[tool], data.site_xmat[tool]
         self._joints = data.qpos[joints : joints + 7]
         self._fingers = data.qpos[fingers[0] : fingers[1] + 1]
 
     def tool_pose_in_base(self) -> Pose:
-        turn = self._rotation_base_in_world.T
-        return Pose.from_matrix(
-            turn @ self._tool_rotation, turn @ (self._tool_position - self._position_base_in_world)
+        return Pose(*self.tool_in_base())
+
+    def tool_in_base(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The same as bare arrays, on every tick's path: position, shape (3,); quaternion wxyz, shape (4,), w >= 0."""
+        position, in_world, quaternion = np.empty(3), np.empty(4), np.empty(4)
+        mujoco.mju_rotVecQuat(
+            position, self._tool_position - self._position_base_in_world, self._turn_world_to_base
         )
+        mujoco.mju_mat2Quat(in_world, self._tool_rotation)
+        mujoco.mju_mulQuat(quaternion, self._turn_world_to_base, in_world)
+        return position, -quaternion if quaternion[0] < 0 else quaternion
 
     def gripper(self) -> float:
         """0 open … 1 closed."""

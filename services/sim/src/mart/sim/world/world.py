@@ -137,10 +137,10 @@ class World:
         gripper: 0 open … 1 closed. To hold an arm, keep asking with one fixed target: taking the measured pose as the
         target every tick lets a loaded arm sink.
         """
-        measured = self.tool_pose_in_base(arm)
+        position, quaternion = self._arm(arm).tool_in_base()
         target = self.task.workspace.clamp(target_tool_in_base)
-        shift = target.position - measured.position
-        turn = quaternion_multiply(target.quaternion_wxyz, quaternion_conjugate(measured.quaternion_wxyz))
+        shift = target.position - position
+        turn = quaternion_multiply(target.quaternion_wxyz, quaternion_conjugate(quaternion))
         return np.concatenate(
             [
                 _within_unit(shift / self.task.limits.step_m),
@@ -195,9 +195,9 @@ class World:
         """All that any operator sees, in the catalogue's order."""
         seen = self._scene.observe()
         for name, arm in self._arms.items():
-            pose = arm.tool_pose_in_base()
-            seen[f"{name}/tool_position_in_base"] = pose.position
-            seen[f"{name}/tool_quaternion_in_base"] = pose.quaternion_wxyz
+            seen[f"{name}/tool_position_in_base"], seen[f"{name}/tool_quaternion_in_base"] = (
+                arm.tool_in_base()
+            )
             seen[f"{name}/joint_positions"] = arm.joint_positions()
             seen[f"{name}/gripper"] = np.array([arm.gripper()])
         return {observation.name: seen[observation.name] for observation in self.task.observations}
