@@ -1,0 +1,70 @@
+"""The mailbox between the bus's threads and the room's, and the log that cannot be flooded."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import Counter
+
+import pytest
+
+from mart.sim.complaints import Complaints
+from mart.sim.loop import Mailbox
+
+
+def test_work_is_done_in_the_order_in_which_it_came() -> None:
+    mailbox, done = Mailbox(), list[int]()
+    for number in range(5):
+        mailbox.put(lambda number=number: done.append(number))  # type: ignore[misc]  # a lambda's default
+    mailbox.work(timeout_s=0.0)
+    assert done == [0, 1, 2, 3, 4]
+
+
+def test_work_wakes_the_one_who_waits() -> None:
+    mailbox, done = Mailbox(), threading.Event()
+    worker = threading.Thread(target=mailbox.work, args=(30.0,))
+    worker.start()
+    mailbox.put(done.set)
+    worker.join(10.0)
+    assert done.is_set()
+
+
+def test_nothing_to_do_is_no_failure() -> None:
+    Mailbox().work(timeout_s=-1.0)
+
+
+def test_work_that_makes_work_does_not_hold_up_the_room() -> None:
+    mailbox, rounds = Mailbox(), list[int]()
+
+    def again() -> None:
+        rounds.append(1)
+        mailbox.put(again)
+
+    mailbox.put(again)
+    mailbox.work(timeout_s=0.0)
+    assert len(rounds) <= 2
+
+
+def test_a_flood_is_bounded() -> None:
+    mailbox, done = Mailbox(), list[int]()
+    for _ in range(100_000):
+        mailbox.put(lambda: done.append(1))
+    mailbox.work(timeout_s=0.0)
+    assert 0 < len(done) <= 2000
+
+
+def test_a_flood_makes_one_line_a_second(caplog: pytest.LogCaptureFixture) -> None:
+    complaints, counted = Complaints(), Counter[str]()
+    with caplog.at_level(logging.WARNING):
+        for tenth in range(21):
+            counted["old sequence"] += 5
+            complaints.say(Counter(counted), now_s=100.0 + 0.1 * tenth)
+    assert len(caplog.messages) == 3
+    assert caplog.messages[1] == "Not used: 50 x old sequence"
+
+
+def test_silence_is_not_reported(caplog: pytest.LogCaptureFixture) -> None:
+    complaints = Complaints()
+    with caplog.at_level(logging.WARNING):
+        complaints.say(Counter(), now_s=100.0)
+    assert caplog.messages == []
