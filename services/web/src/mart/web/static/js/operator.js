@@ -110,7 +110,7 @@ function render() {
   showPicture(seat);
   document.body.classList.toggle("engaged", Boolean(status?.engaged));
   document.body.classList.toggle("can-drive", Boolean(seat?.mine));
-  setShown(document.querySelector(".hand"), Boolean(seat?.mine));
+  setShown(document.querySelector(".hand"), Boolean(seat?.mine) && link.state !== LinkState.REPLACED);
   setText(byId("leave"), confirm.pending === "leave" ? "Press Q again" : seat?.mine ? "Leave" : "Lobby");
 }
 

@@ -2,7 +2,7 @@
 
 import { byId, element, setText } from "../dom.js";
 
-const GOOD_MS = 100; // below, delay is hardly felt; above 200 ms people slow down (docs/protocol.md, latency)
+const GOOD_MS = 100; // people begin to notice delay at 100 to 200 ms and lose speed above (arXiv 2508.18074)
 const FAIR_MS = 200;
 
 export function gradeOf(delayMs) {
