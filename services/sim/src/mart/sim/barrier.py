@@ -91,10 +91,12 @@ class Barrier:
         self.pace = Pace(period_s, now_s)
         self.rejected: Counter[Rejection] = Counter()
         self._lanes = {arm: _Lane(OPERATOR_HOLD, 0, now_s) for arm in arms}
+        self._driven: dict[str, _Lane] = {}  # those of them that are not on hold
 
     def seat(self, arm: str, operator: Operator, epoch: int, now_s: float) -> None:
         """The seat has a new holder: what the old one said no longer counts."""
         self._lanes[arm] = _Lane(operator, epoch, now_s)
+        self._driven = {arm: lane for arm, lane in self._lanes.items() if lane.driven}
 
     def offer(self, arrival: Arrival) -> Rejection | None:
         """Takes a command, or says why not. Rejections are counted."""
@@ -133,17 +135,14 @@ class Barrier:
         )
         silent = tuple(
             arm
-            for arm, lane in self._driven().items()
+            for arm, lane in self._driven.items()
             if lane.operator != OPERATOR_SCRIPT and now_s - lane.heard_s >= FREED_AFTER_S
         )
         return Decision(phase, waiting_for, silent, firing, self._next_s(now_s, world_may_run))
 
-    def _driven(self) -> dict[str, _Lane]:
-        return {arm: lane for arm, lane in self._lanes.items() if lane.driven}
-
     def _complete(self) -> bool:
         """Everyone who drives has given a new command."""
-        return all(lane.unused for lane in self._driven().values())
+        return all(lane.unused for lane in self._driven.values())
 
     def _objection(self, arrival: Arrival) -> Rejection | None:
         lane = self._lanes.get(arrival.arm)
@@ -158,7 +157,7 @@ class Barrier:
         return None
 
     def _phase(self, now_s: float) -> tuple[BarrierPhase, tuple[tuple[str, float], ...]]:
-        driven = self._driven().items()
+        driven = self._driven.items()
         stops = tuple(
             (arm, now_s - lane.stopped_since_s) for arm, lane in driven if lane.stopped_since_s is not None
         )
@@ -173,7 +172,7 @@ class Barrier:
         return BARRIER_PHASE_PAUSED if longest_s >= PAUSED_AFTER_S else BARRIER_PHASE_STALLED, missing
 
     def _fire(self, now_s: float) -> Firing:
-        driven = self._driven()
+        driven = self._driven
         arrivals = {}
         for arm, lane in driven.items():
             assert lane.newest is not None  # it is unused, so it is there
@@ -189,7 +188,7 @@ class Barrier:
         """When the answer may change without a new command; `now_s` where it has changed already."""
         moments = [
             moment
-            for lane in self._driven().values()
+            for lane in self._driven.values()
             for after_s in (STALLED_AFTER_S, PAUSED_AFTER_S, FREED_AFTER_S)
             if (moment := lane.heard_s + after_s) > now_s
         ]

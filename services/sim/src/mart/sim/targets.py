@@ -42,7 +42,7 @@ class Targets:
 
         arrivals: the commands of the arms that are driven; the others hold, gripper included.
         """
-        actions = np.stack([self._action(arm, arrivals.get(arm)) for arm in self._world.arms])
+        actions = np.array([self._action(arm, arrivals.get(arm)) for arm in self._world.arms])
         self._aimed.clear()
         self._world.step(actions)
         return actions
