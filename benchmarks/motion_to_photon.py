@@ -26,8 +26,7 @@ from mart.protocol.bus.base import Sample
 from mart.protocol.codec import decode
 from mart.protocol.messages import Event
 
-WARM_UP_REPORTS = 5  # one a second
-REPORTS = 25
+REPORTS = 35  # one a second; the newest is of the last 100 pictures, 20 s, so that the start is left out
 SCREEN_HZ = 60.0
 
 
@@ -54,7 +53,7 @@ CASES = (
 
 
 def measure(case: Case) -> list[Event.Latency]:
-    """The newest report of each person, after `REPORTS` of them; each is of the last 300 pictures."""
+    """The newest report of each person, after `REPORTS` of them."""
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
         options = Options(
             data_dir=Path(folder),
@@ -78,7 +77,7 @@ def _newest_reports(platform: Platform, people: Sequence[str]) -> list[Event.Lat
     newest: dict[str, Event.Latency] = {}
     counts = dict.fromkeys(people, 0)
     with contextlib.closing(platform.bus.subscribe(keys.event(platform.options.room).key, on_event)):
-        while min(counts.values()) < WARM_UP_REPORTS + REPORTS:
+        while min(counts.values()) < REPORTS:
             event = heard.get(timeout=30.0)
             if event.HasField("latency"):
                 newest[event.latency.arm] = event.latency

@@ -261,6 +261,7 @@ def test_a_second_browser_replaces_the_first(on_seat: OnSeat) -> None:
             with seat.commands() as commands:
                 await asyncio.gather(first.drive(1, 0.3), second.drive(1, 0.3, gripper=0.5))
                 assert {command.gripper for command in commands.all()} == {0.5}
+            assert first.told[-1] == {"type": "replaced"}
 
     on_seat(body)
 

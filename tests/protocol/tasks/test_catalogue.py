@@ -22,6 +22,7 @@ def test_a_row_is_sound(task: Task) -> None:
     assert len({arm.color for arm in task.arms}) == len({arm.symbol for arm in task.arms}) == len(task.arms)
     assert task.viewpoints == (*task.arm_names, "front")
     assert task.horizon_ticks > task.success_hold_ticks > 0
+    assert task.horizon_at(60.0) == 3 * task.horizon_at(20.0) == 3 * task.horizon_ticks
     for names in ([s.name for s in task.subtasks], [o.name for o in task.observations]):
         assert names
         assert len(set(names)) == len(names)

@@ -127,9 +127,12 @@ def _clip(value: float, low: float, high: float) -> float:
     return min(max(value, low), high)
 
 
+_HORIZON_HZ = 20.0
+
+
 @dataclass(frozen=True)
 class Task:
-    """One task. Ticks count at the default 20 Hz."""
+    """One task. `horizon_ticks` counts ticks of a room at 20 Hz; `horizon_at` tells it for other rates."""
 
     name: str
     title: str
@@ -141,6 +144,15 @@ class Task:
     success_hold_ticks: int = 10
     limits: Limits = Limits()
     workspace: Workspace = Workspace()
+
+    @property
+    def time_limit_s(self) -> float:
+        """How long an episode may last."""
+        return self.horizon_ticks / _HORIZON_HZ
+
+    def horizon_at(self, control_hz: float) -> int:
+        """How many ticks an episode may last in a room of this rate."""
+        return round(self.time_limit_s * control_hz)
 
     @property
     def arm_names(self) -> tuple[str, ...]:

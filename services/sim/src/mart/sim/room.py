@@ -72,7 +72,9 @@ class Room:
         self._barrier = Barrier(world.arms, world.control_period_s / pace, now_s)
         for seat in self._seats:
             self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
-        self._course = EpisodeCourse(record.seed, world.task.horizon_ticks, record.episodes)
+        self._course = EpisodeCourse(
+            record.seed, world.task.horizon_at(publish.control_hz(world)), record.episodes
+        )
         self._ticker = Ticker(name, world, self._boot_ns, now_s)
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)

@@ -62,6 +62,11 @@ def pong(ping: Ping, gateway_ns: int) -> str:
     return _text({"type": "pong", "t_us": ping.t_us, "gateway_ns": gateway_ns})
 
 
+def replaced() -> str:
+    """To a driving peer whose place a newer one of the same role takes: it need not try again by itself."""
+    return _text({"type": "replaced"})
+
+
 def ping(t_us: float) -> str:
     return _text({"type": "ping", "t_us": t_us})
 

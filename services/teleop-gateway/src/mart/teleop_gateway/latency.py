@@ -65,7 +65,7 @@ class Summary:
 class MotionToPhoton:
     """Keeps the last `window` reports of one arm."""
 
-    def __init__(self, arm: str, window: int = 300, ticks: int = 256, commands: int = 256) -> None:
+    def __init__(self, arm: str, window: int = 100, ticks: int = 256, commands: int = 256) -> None:
         self.reports = 0  # in all
         self._arm = arm
         self._ticks, self._commands = ticks, commands

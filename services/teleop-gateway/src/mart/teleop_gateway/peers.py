@@ -9,6 +9,7 @@ from typing import Protocol
 from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.errors import Conflict
 from mart.protocol.tokens import Role
+from mart.teleop_gateway import channel
 from mart.teleop_gateway.encoder import Codec, Encoded
 from mart.teleop_gateway.peer import Peer
 
@@ -53,6 +54,7 @@ class Peers:
         peer = Peer(role, self, self._ice_servers)
         sdp = await peer.answer(offer_sdp)
         if role in self._driving:
+            self._driving[role].send_status(channel.replaced())
             self._drop(self._driving[role])
         if role is Role.VIEWER:
             self._viewers.append(peer)

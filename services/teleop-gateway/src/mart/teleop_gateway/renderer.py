@@ -7,6 +7,7 @@ import hashlib
 import mujoco
 import numpy as np
 from mujoco.egl import GLContext
+from OpenGL import GL
 
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import Model
@@ -28,11 +29,14 @@ def load_model(message: Model) -> mujoco.MjModel:
             f"A model of {len(message.mjb)} bytes was given that does not match its SHA-256: ask again."
         )
     try:
-        return mujoco.MjModel.from_binary_path(_FILE, {_FILE: message.mjb})
+        model = mujoco.MjModel.from_binary_path(_FILE, {_FILE: message.mjb})
     except ValueError as error:
         raise Corrupt(
             f"A model of MuJoCo {message.mujoco_version} was given; MuJoCo {mujoco.__version__} cannot load it: {error}"
         ) from error
+    # The model asks for the largest picture that anybody wants; clearing it costs as much as it is large.
+    model.vis.global_.offwidth, model.vis.global_.offheight = WIDTH_PX, VIEW_HEIGHT_PX
+    return model
 
 
 def camera_azimuth_rad(message: Model, model: mujoco.MjModel, arm: str) -> float:
@@ -63,6 +67,7 @@ class Renderer:
         self._gl.make_current()
         self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
+        _filter_textures_cheaply(self._context)
 
     def draw(self, integration_state: bytes, tick: int, picture_rgb: Image) -> None:
         """Fills `picture_rgb`, shape (496, 640, 3): the view, and the strip with the tick below it.
@@ -98,6 +103,15 @@ class Renderer:
 
 def blank_picture() -> Image:
     return np.zeros((HEIGHT_PX, WIDTH_PX, 3), np.uint8)
+
+
+def _filter_textures_cheaply(context: mujoco.MjrContext) -> None:
+    """Takes the nearest mipmap instead of blending two: 2 ms of 10 without a GPU, and at most 6 levels of 255."""
+    for texture, kind in zip(context.texture[: context.ntexture], context.textureType, strict=False):
+        if kind == mujoco.mjtTexture.mjTEXTURE_2D:
+            GL.glBindTexture(GL.GL_TEXTURE_2D, int(texture))
+            GL.glTexParameteri(GL.GL_TEXTURE_2D, GL.GL_TEXTURE_MIN_FILTER, GL.GL_LINEAR_MIPMAP_NEAREST)
+    GL.glBindTexture(GL.GL_TEXTURE_2D, 0)
 
 
 def _camera_id(model: mujoco.MjModel, name: str) -> int:

@@ -18,7 +18,6 @@ from mart.protocol.messages import (
 from mart.protocol.tasks import get_task
 
 STALE_AFTER_S = 1.0  # a sim speaks five times a second
-DEFAULT_CONTROL_HZ = 20.0  # a task's horizon counts ticks at this rate
 GONE_AFTER_S = 3.0  # without its liveliness token; a router's restart takes every token for about 2 s
 
 Json = dict[str, Any]
@@ -151,7 +150,7 @@ def _task_json(status: RoomStatus) -> Json:
         title, instruction, time_limit_s = status.task, "", None
     else:
         title, instruction = task.title, task.instruction
-        time_limit_s = task.horizon_ticks / DEFAULT_CONTROL_HZ
+        time_limit_s = task.time_limit_s
         titles = {subtask.name: subtask.title for subtask in task.subtasks}
     progress = status.progress
     subtasks = [
