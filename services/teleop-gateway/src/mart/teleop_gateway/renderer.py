@@ -7,7 +7,7 @@ import hashlib
 import mujoco
 import numpy as np
 from mujoco.egl import GLContext
-from OpenGL import GL
+from OpenGL import GL  # type: ignore[import-untyped]
 
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import Model
