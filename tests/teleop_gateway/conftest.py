@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Iterator
 
 import mujoco
@@ -11,6 +12,7 @@ from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.messages import Model
 from mart.sim.world.world import World
 from tests.support.processes import free_port
+from tests.teleop_gateway.room import Body, OnSeat, running_seat
 
 CONTROL_HZ = 20.0
 
@@ -41,3 +43,17 @@ def router() -> Iterator[str]:
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     with ZenohBus.route(endpoint):
         yield endpoint
+
+
+@pytest.fixture
+def on_seat(router: str, world: World, model_message: Model) -> OnSeat:
+    """Runs a coroutine function on a fresh seat."""
+
+    def run(body: Body) -> None:
+        async def main() -> None:
+            async with asyncio.timeout(60), running_seat(router, world, model_message) as seat:
+                await body(seat)
+
+        asyncio.run(main())
+
+    return run

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import itertools
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -169,3 +169,7 @@ async def running_seat(router: str, world: World, model: Model) -> AsyncIterator
             await asyncio.sleep(0)  # both have begun
             room.seat(epoch=1)
             yield SeatUnderTest(seat, room, AsyncBus(mine, loop))
+
+
+Body = Callable[[SeatUnderTest], Awaitable[None]]
+OnSeat = Callable[[Body], None]
