@@ -64,21 +64,23 @@ class EmulatedPhone:
         self._sequence = 0
         self._pings: deque[tuple[float, int]] = deque(maxlen=_PINGS)  # round trip in us, offset in ns
         self._heard_s = 0.0
+        self._replaced = False
 
     async def run(self) -> None:
-        """Until cancelled: connects, drives, and connects anew when the connection breaks."""
+        """Until cancelled or replaced by another phone: connects, drives, and connects anew when that breaks."""
         azimuth_rad = await self._camera_azimuth_rad()
         self._hand = EmulatedHand(azimuth_rad, resting_pose(_HEADING_RAD), self._scale)
         with contextlib.ExitStack() as stack:
             intents, states = Reader(Command, self._on_intent), Reader(State, self._on_state)
             stack.callback(self._bus.subscribe(keys.intent(self.room, self.arm).key, intents).close)
             stack.callback(self._bus.subscribe(keys.state(self.room).key, states).close)
-            while True:
+            while not self._replaced:
                 try:
                     await self._drive_once(self._hand)
                 except MartError as error:
                     _log.warning("The phone of %s is not connected: %s", self.arm, error)
                 await asyncio.sleep(_RETRY_S)
+            _log.info("Another phone drives %s now", self.arm)
 
     async def _drive_once(self, hand: EmulatedHand) -> None:
         """One connection, until it breaks."""
@@ -148,6 +150,8 @@ class EmulatedPhone:
             self.told = message
         elif message["type"] == "pong":
             self._on_pong(message, status)
+        elif message["type"] == "replaced":
+            self._replaced = True
 
     def _on_pong(self, message: dict[str, Any], status: RTCDataChannel) -> None:
         """The fastest of the last pings knows the clocks best: half of its way is the least wrong."""
