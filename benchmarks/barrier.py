@@ -1,13 +1,12 @@
 """Last command in → state out, less the physics: what the sim adds to a bare round trip over the bus.
 
-A router, a sim and an echo run as processes of their own. This one plays all operators: when the pace allows the next
-tick it sends the last missing command and waits for the state. Between two ticks it sends a command of the same size to
-the echo, which answers at once with as many bytes as a state has. Physics time is taken from the state's own stamps.
+A router, a sim and an echo run as processes of their own. This one plays all operators. All but one stream 60 commands
+a second, as phones do; when the pace allows the next tick, the last one sends its command and waits for the state.
+Between two ticks it sends a command of the same size to the echo, which answers at once with as many bytes as a state
+has. Physics time is taken from the state's own stamps.
 
 Two and four arms are `mart sim` as it is. No task has eight arms: there, the same loop runs over two rooms' worth of
 world, stepped one after the other.
-
-    python benchmarks/barrier.py            # all of it
 """
 
 from __future__ import annotations
@@ -34,8 +33,8 @@ from mart.protocol.bus import Bus, Publisher
 from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.messages import (
     OPERATOR_SCRIPT,
-    ArmState,
     Command,
+    PoseMessage,
     RoomReply,
     SeatRequest,
     State,
@@ -52,6 +51,7 @@ ROUNDS = 1000
 WARM_UP = 50
 BAR_MS = 1.0
 LOST_AFTER_S = 2.0
+PHONE_HZ = 60.0
 ECHO = "bench-echo"
 ENDPOINT_PORT = 17560
 ARMS = (2, 4, 8)
@@ -99,77 +99,87 @@ def _measure(arms: int, endpoint: str, folder: Path) -> Times:
 
 
 class Operators:
-    """All operators of a room, and the one who waits for its states."""
+    """All operators of a room, and the one who waits for its states. All but the last stream as phones do."""
 
     def __init__(self, bus: Bus, room: str, arms: int) -> None:
-        names = [f"arm{index}" for index in range(arms)]
+        *early, self._last = (f"arm{index}" for index in range(arms))
         self._states: queue.SimpleQueue[tuple[int, bytes]] = queue.SimpleQueue()
         self._echoes: queue.SimpleQueue[tuple[int, bytes]] = queue.SimpleQueue()
         self._subscriptions = (
             bus.subscribe(
-                keys.state(room).key, lambda sample: self._states.put((clock.monotonic_ns(), sample.payload))
+                keys.state(room).key, lambda came: self._states.put((clock.monotonic_ns(), came.payload))
             ),
             bus.subscribe(
-                keys.state(ECHO).key, lambda sample: self._echoes.put((clock.monotonic_ns(), sample.payload))
+                keys.state(ECHO).key, lambda came: self._echoes.put((clock.monotonic_ns(), came.payload))
             ),
         )
         self._echo = bus.publisher(keys.command(ECHO, "arm0"))
-        self._publishers = {name: bus.publisher(keys.command(room, name)) for name in names}
-        self._epochs = {name: _seat(bus, room, name) for name in names}
-        self._sequence = 0
+        self._publishers = {arm: bus.publisher(keys.command(room, arm)) for arm in (*early, self._last)}
+        self._epochs = {arm: _seat(bus, room, arm) for arm in self._publishers}
+        self._sequences = dict.fromkeys(self._publishers, 0)
+        self._stop = threading.Event()
+        self._stream = threading.Thread(target=self._give_again_and_again, args=(early,))
 
     def measure(self) -> Times:
         state = self._next_state()[1]
         sim: list[float] = []
         bare: list[float] = []
+        self._stream.start()
         while len(sim) < WARM_UP + ROUNDS:
             # Under load the bus drops a command now and then, which is its right: such a round is begun again.
             with contextlib.suppress(queue.Empty):
-                tick_ms, state = self._tick(state)
-                echo_ms = self._round_trip(state.arms[0], size=state.ByteSize())
+                tick_ms, state = self._tick()
+                echo_ms = self._round_trip(size=state.ByteSize())
                 bare.append(echo_ms)
                 sim.append(tick_ms)
+        self._stop.set()
+        self._stream.join()
         return Times(np.array(sim[WARM_UP:]), np.array(bare[WARM_UP:]))
 
-    def _tick(self, state: State) -> tuple[float, State]:
+    def _give_again_and_again(self, arms: list[str]) -> None:
+        while not self._stop.is_set():
+            for arm in arms:
+                self._publishers[arm].put(self._command(arm))
+                clock.sleep_s(1.0 / (PHONE_HZ * len(arms)))
+
+    def _tick(self) -> tuple[float, State]:
         """Milliseconds from the last command to the next state, less the physics; that state."""
-        *early, last = state.arms
-        self._sequence += 1
-        for arm in early:
-            self._publishers[arm.arm].put(codec.encode(self._command(arm)))
         clock.sleep_s(1.5 / CONTROL_HZ)
-        payload = codec.encode(self._command(last))
+        payload = self._command(self._last)
         sent_ns = clock.monotonic_ns()
-        self._publishers[last.arm].put(payload)
+        self._publishers[self._last].put(payload)
         arrived_ns, after = self._next_state()
         physics_ns = after.stamps.stepped_ns - after.stamps.fired_ns
         return (arrived_ns - sent_ns - physics_ns) / 1e6, after
 
-    def _command(self, arm: ArmState) -> Command:
-        return Command(
-            arm=arm.arm,
-            seat_epoch=self._epochs[arm.arm],
-            sequence=self._sequence,
-            target_tool_in_base=arm.tool_in_base,
-            gripper=arm.gripper,
-            engaged=True,
+    def _command(self, arm: str) -> bytes:
+        """The next one: the tool half a metre ahead of the base."""
+        self._sequences[arm] += 1
+        return codec.encode(
+            Command(
+                arm=arm,
+                seat_epoch=self._epochs[arm],
+                sequence=self._sequences[arm],
+                target_tool_in_base=PoseMessage(x=0.5, z=0.2, qw=1.0),
+                engaged=True,
+            )
         )
 
     def _next_state(self) -> tuple[int, State]:
-        """When the state came that used the newest commands, and the state. Raises queue.Empty where none comes."""
+        """When the state came that used the last arm's newest command, and the state. Raises queue.Empty if none."""
         deadline_s = clock.monotonic_s() + LOST_AFTER_S
         while True:
             at_ns, payload = self._states.get(timeout=max(0.0, deadline_s - clock.monotonic_s()))
             state = codec.decode(State, payload)
-            if all(arm.sequence == self._sequence for arm in state.arms):
+            if state.arms[-1].sequence == self._sequences[self._last]:
                 return at_ns, state
 
-    def _round_trip(self, arm: ArmState, size: int) -> float:
+    def _round_trip(self, size: int) -> float:
         """Milliseconds to the echo and back, a command one way, `size` bytes the other."""
         while not self._echoes.empty():
             self._echoes.get()
         clock.sleep_s(1.5 / CONTROL_HZ)  # both trips begin on a machine that has rested as long
-        payload = codec.encode(self._command(arm)) + size.to_bytes(4, "little")
+        payload = self._command(self._last) + size.to_bytes(4, "little")
         sent_ns = clock.monotonic_ns()
         self._echo.put(payload)
         return (self._echoes.get(timeout=LOST_AFTER_S)[0] - sent_ns) / 1e6
