@@ -23,7 +23,7 @@ def test_the_keys_are_those_of_the_spec() -> None:
 def test_what_is_small_and_urgent_is_dropped_and_what_must_arrive_blocks() -> None:
     assert keys.command("room-1", "arm0").priority is keys.Priority.REAL_TIME
     assert not keys.command("room-1", "arm0").must_arrive
-    assert not keys.state("room-1").must_arrive
+    assert keys.state("room-1").must_arrive
     assert keys.event("room-1").must_arrive
     assert keys.video("room-1", "arm0").priority is keys.Priority.LOW
 

@@ -1,8 +1,10 @@
 """Every key expression of the wire, with its quality of service. Nobody else writes a key.
 
-QoS is a property of the message type, so it stands beside the key: commands and states are small and replaceable
-(newest wins, dropped under congestion); events and saved facts are rare and must arrive (blocking); video is large
-and goes last.
+QoS is a property of the message type, so it stands beside the key: commands are small and replaceable (newest wins,
+dropped under congestion); states, events and answers must arrive (blocking); video is large and goes last.
+
+States block because a file that lacks one cannot be verified. A subscriber that is slow does not hold up the world: the
+queue takes seconds of states, and one that is frozen for longer than the lease is disconnected before it is full.
 """
 
 from __future__ import annotations
@@ -50,7 +52,7 @@ def commands(room: str) -> str:
 
 
 def state(room: str) -> Topic:
-    return Topic(_key(room, "state"), Priority.HIGH, express=True)
+    return Topic(_key(room, "state"), Priority.HIGH, express=True, must_arrive=True)
 
 
 def status(room: str) -> Topic:
