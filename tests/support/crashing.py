@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 from mart.platform.supervise import Platform
@@ -13,6 +15,17 @@ from mart.platform.supervise import Platform
 def kill_service(platform: Platform, command: str) -> None:
     """kill -9 of `mart {command} …`; the supervisor is left to notice."""
     os.kill(_service_pid(platform, command), signal.SIGKILL)
+
+
+@contextlib.contextmanager
+def frozen_service(platform: Platform, command: str) -> Iterator[None]:
+    """`mart {command} …` does nothing for the length of the block, and its connections stay open."""
+    pid = _service_pid(platform, command)
+    os.kill(pid, signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        os.kill(pid, signal.SIGCONT)
 
 
 def kill_seat_process(platform: Platform, arm: str) -> None:

@@ -22,7 +22,7 @@ from mart.protocol import clock, keys
 from mart.protocol.bus.base import Sample
 from mart.protocol.codec import decode
 from mart.protocol.messages import OPERATOR_HUMAN, Event, State
-from tests.support.crashing import kill_seat_process, kill_service
+from tests.support.crashing import frozen_service, kill_seat_process, kill_service
 from tests.support.processes import free_port
 
 ARMS = ("arm0", "arm1")
@@ -141,6 +141,16 @@ def test_kill_9_of_the_recorder(platform: Platform, people: list[Person], witnes
     assert driven_by_both(witness.await_state(lambda state: state.tick > before.tick + 5, BACK_WITHIN_S))
     saved = [event_of(witness, "episode_saved") for _ in range(2)]  # the repaired part, and the rest
     assert all((platform.options.data_dir / event.episode_saved.path).exists() for event in saved)
+
+
+@pytest.mark.timeout(180)
+def test_a_frozen_recorder_does_not_hold_up_the_world(
+    platform: Platform, people: list[Person], witness: Witness
+) -> None:
+    before = witness.await_state(driven_by_both, BACK_WITHIN_S)
+    with frozen_service(platform, "recorder"):
+        for tick in range(before.tick, before.tick + 12 * TICKS_PER_S, TICKS_PER_S):
+            witness.await_state(lambda state, tick=tick: state.tick >= tick, 2.0)  # type: ignore[misc]
 
 
 @pytest.mark.timeout(180)

@@ -3,8 +3,8 @@
 QoS is a property of the message type, so it stands beside the key: commands are small and replaceable (newest wins,
 dropped under congestion); states, events and answers must arrive (blocking); video is large and goes last.
 
-States block because a file that lacks one cannot be verified. A subscriber that is slow does not hold up the world: the
-queue takes seconds of states, and one that is frozen for longer than the lease is disconnected before it is full.
+States block because a file that lacks one cannot be verified. A subscriber that is slow does not hold up the world: one
+that takes nothing for half a second is disconnected, see `bus.zenoh_bus`.
 """
 
 from __future__ import annotations
