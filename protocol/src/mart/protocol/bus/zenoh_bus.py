@@ -1,12 +1,15 @@
 """The bus on Zenoh: the only file that imports it.
 
-Settings and their reasons (measured on Zenoh 1.10.2): a lease of 2 s finds a frozen peer in about 2 s, the default
-takes 10; multicast off, or any peer on the network joins; shared memory off, because a receiver that is descheduled
-for 100 ms silently loses messages over it; `connect/timeout_ms` -1 keeps a client trying until a router is there, at
-first every 0.1 s and at least every second, so that a router's return is noticed (the default waits 1 to 4 s); 16
-batches a queue instead of 2, because a burst of 8 commands on a busy machine lost 18 % with 2 and none with 16; a peer that takes nothing for 0.5 s
-is disconnected, because the router waits for it with everything else (a frozen recorder held up the world for 10 s with
-the default of 5, and not at all with this).
+Settings and their reasons (measured on Zenoh 1.10.2):
+
+- A lease of 2 s finds a frozen peer in about 2 s; the default takes 10.
+- Multicast is off, or any peer on the network joins.
+- Shared memory is off, because a receiver that is descheduled for 100 ms silently loses messages over it.
+- `connect/timeout_ms` -1 keeps a client trying until a router is there, at first every 0.1 s and at least every second,
+  so that a router's return is noticed; the default waits 1 to 4 s.
+- A queue has 16 batches: with the default of 2, a burst of 8 commands on a busy machine lost 18 %, with 16 none.
+- A peer that takes nothing for 0.5 s is disconnected, because the router waits for it with everything else: with the
+  default of 5 s a frozen recorder held up the world for 10 s, with this not at all.
 """
 
 from __future__ import annotations
