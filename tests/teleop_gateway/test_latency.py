@@ -11,6 +11,7 @@ from mart.teleop_gateway.latency import STAGES, MotionToPhoton, PictureStamps
 
 MS = 1_000_000
 START_NS = 1_800_000_000_000_000_000
+HZ = 20.0
 
 
 def command(sequence: int, at_ns: int, waits_ms: list[int]) -> Command:
@@ -23,13 +24,15 @@ def state(tick: int, at_ns: int, waits_ms: list[int], *, fresh: bool = True) -> 
     arrived, fired, stepped = (at_ns + MS * sum(waits_ms[:i]) for i in range(2, 5))
     arm = ArmState(arm="arm0", fresh=fresh, arrived_ns=arrived, sequence=tick)
     return State(
-        tick=tick, arms=[ArmState(arm="arm1"), arm], stamps=TickStamps(fired_ns=fired, stepped_ns=stepped)
+        tick=tick,
+        arms=[ArmState(arm="arm1"), arm],
+        stamps=TickStamps(due_ns=fired, fired_ns=fired, stepped_ns=stepped),
     )
 
 
 def command_and_state(latency: MotionToPhoton, tick: int, at_ns: int, waits_ms: list[int]) -> None:
     latency.on_command(command(tick, at_ns, waits_ms))
-    latency.on_state(state(tick, at_ns, waits_ms))
+    latency.on_state(state(tick, at_ns, waits_ms), HZ)
 
 
 def pass_through(latency: MotionToPhoton, tick: int, at_ns: int, waits_ms: list[int]) -> bool:
@@ -69,6 +72,15 @@ def test_frames_that_were_overtaken_before_the_tick_count_too() -> None:
     again = latency.summary()
     assert again is not None
     assert again.p50_ms == pytest.approx(sum(waits_ms) + 8)  # of 36, 36, 52 and 68 ms: each frame counts once
+
+
+def test_frames_that_waited_while_the_world_stood_still_do_not_count() -> None:
+    latency = MotionToPhoton("arm0")
+    latency.on_command(command(1, START_NS - 2000 * MS, [1] * 8))
+    assert pass_through(latency, 2, START_NS, [1] * 8)
+    summary = latency.summary()
+    assert summary is not None
+    assert summary.p95_ms == 8.0
 
 
 def test_only_the_newest_reports_count() -> None:
@@ -115,7 +127,7 @@ def test_unknown_ticks_held_arms_and_unstamped_commands_have_no_account() -> Non
     latency.on_command(command(1, START_NS, [5] * 5))
     latency.on_command(Command(arm="arm0", sequence=2))
     for tick, fresh in ((1, False), (2, True)):
-        latency.on_state(state(tick, START_NS, [5] * 5, fresh=fresh))
+        latency.on_state(state(tick, START_NS, [5] * 5, fresh=fresh), HZ)
         latency.on_picture(tick, PictureStamps(START_NS, START_NS, START_NS))
         assert not latency.on_seen(tick, START_NS + 50 * MS)
 

@@ -1,7 +1,8 @@
 """Motion to photon: from the moment a hand's frame was sent to the moment its effect was on the screen.
 
 Every frame counts, also those that a newer one overtook before the tick: a hand moves all the time, and what it did
-right after a tick waits longest. (Counting used commands alone would leave two thirds of a tick out of the account.)
+right after a tick waits longest. (Counting used commands alone would leave two thirds of a tick out of the account.) What
+waited while the world stood still on purpose, in a countdown or after an episode, does not.
 
 Pure. Every stamp is Unix time in nanoseconds on this machine's clock; the peers' own stamps have been mapped by their
 clock offsets. A tick's stamps are collected on the way; a page's report of the displayed tick closes the account.
@@ -81,15 +82,19 @@ class MotionToPhoton:
             sent = (stamps.input_sent_ns, stamps.gateway_received_ns)
             _keep(self._sent, command.sequence, sent, self._commands)
 
-    def on_state(self, state: State) -> None:
+    def on_state(self, state: State, control_hz: float) -> None:
         """Keeps the way of the command that this tick used, and of those that it overtook; a held arm has none."""
+        # When the tick before this one could have fired.
+        since_ns = state.stamps.due_ns - round(1e9 / control_hz)
         for arm in state.arms:
             if arm.arm == self._arm and arm.fresh and arm.sequence in self._sent:
                 # The overtaken are taken to have reached the sim as fast as the one whose arrival is known.
-                transit_ns = arm.arrived_ns - self._sent[arm.sequence][1]
+                newest_ns = self._sent[arm.sequence][1]
+                transit_ns = arm.arrived_ns - newest_ns
                 rows: list[tuple[int, ...]] = [
                     (sent, received, received + transit_ns, state.stamps.fired_ns, state.stamps.stepped_ns)
                     for sent, received in self._take_until(arm.sequence)
+                    if received >= since_ns or received == newest_ns
                 ]
                 _keep(self._until_state, state.tick, rows, self._ticks)
 

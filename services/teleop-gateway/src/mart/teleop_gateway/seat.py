@@ -198,7 +198,8 @@ class Seat:
         if was_reset and self._driving is not None:
             self._driving.world_was_reset()
         self._scenery.on_boot(state.boot)
-        self._latency.on_state(state)
+        if self._status.control_hz:
+            self._latency.on_state(state, self._status.control_hz)
 
     def _on_room_status(self, status: RoomStatus) -> None:
         self._status = status
