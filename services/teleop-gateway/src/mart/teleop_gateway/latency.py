@@ -1,8 +1,8 @@
 """Motion to photon: from the moment a hand's frame was sent to the moment its effect was on the screen.
 
 Every frame counts, also those that a newer one overtook before the tick: a hand moves all the time, and what it did
-right after a tick waits longest. (Counting used commands alone would leave two thirds of a tick out of the account.) Frames
-that waited while the world stood still on purpose, in a countdown or after an episode, do not count.
+right after a tick waits longest. (Used commands alone would leave two thirds of a tick out of the account.) Frames that
+waited while the world stood still on purpose, in a countdown or after an episode, do not count.
 
 Pure. Every stamp is Unix time in nanoseconds on this machine's clock; the peers' own stamps have been mapped by their
 clock offsets. A tick's stamps are collected on the way; a page's report of the displayed tick closes the account.
