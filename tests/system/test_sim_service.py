@@ -183,6 +183,9 @@ def test_two_scripts_lift_the_cubes_and_the_episode_replays(
             lambda event: event.HasField("episode_ended"), timeout_s=40
         ).episode_ended
         assert ended.outcome == OUTCOME_SUCCESS
+        client.states.wait_for(
+            lambda state: state.tick == ended.last_tick
+        )  # events come on a way of their own
         states = [state for state in client.states.all() if state.episode == ended.number]
         states = list({state.tick: state for state in states}.values())  # a state may be said twice
         assert len(states) == ended.ticks + 1
