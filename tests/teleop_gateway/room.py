@@ -54,7 +54,7 @@ class Room:
         self.boot = 1
         self._newest: Command | None = None
         self._used = 0
-        self._status = RoomStatus(room=self.name, barrier=BARRIER_PHASE_RUNNING)
+        self._status = RoomStatus(room=self.name, barrier=BARRIER_PHASE_RUNNING, control_hz=model.control_hz)
         self._states = bus.publisher(keys.state(self.name))
         self._statuses = bus.publisher(keys.status(self.name))
         bus.serve(keys.model(self.name), lambda request: request.reply(codec.encode(model)))
