@@ -60,15 +60,20 @@ def test_hostile_frames_are_dropped_counted_and_told(on_seat: OnSeat) -> None:
                 browser.send_frame(good)
                 browser.send_frame(good)  # replayed
                 browser.pose.send("text") if browser.pose else None
-                told = await browser.wait_told(lambda told: sum(told.get("rejected", {}).values()) >= 11)
-                assert told["rejected"] == {
+                expected = {
                     "malformed": 6,
                     "epoch": 1,
                     "not_finite": 1,
                     "norm": 1,
                     "gripper": 1,
                     "position": 1,
-                } | {key: value for key, value in told["rejected"].items() if key == "sequence"}
+                }
+                told = await browser.wait_told(
+                    lambda told: expected.items() <= told.get("rejected", {}).items()
+                )
+                assert told["rejected"].keys() - expected.keys() <= {
+                    "sequence"
+                }  # the replayed one, if it has come
                 assert len(commands) <= 1
 
     on_seat(body)
