@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from mcap.exceptions import McapError
 from mcap.records import Channel, Message, Schema
 from mcap.stream_reader import StreamReader
 
@@ -111,7 +112,7 @@ def recorded_ticks(path: Path) -> list[int]:
     schemas: dict[int, str] = {}
     channels: dict[int, int] = {}
     ticks = []
-    with path.open("rb") as file, contextlib.suppress(Exception):
+    with path.open("rb") as file, contextlib.suppress(McapError):
         for record in StreamReader(file).records:
             if isinstance(record, Schema):
                 schemas[record.id] = record.name
@@ -170,7 +171,7 @@ def test_kill_9_of_the_sim(platform: Platform, people: list[Person], witness: Wi
     killed_s = clock.monotonic_s()
     kill_service(platform, "sim")
     while people[0].visitor.is_room_answering(platform.options.room):
-        assert clock.monotonic_s() - killed_s < 2 * TOLD_WITHIN_S
+        assert clock.monotonic_s() - killed_s < TOLD_WITHIN_S
     saved = event_of(witness, "episode_saved").episode_saved
     ticks = recorded_ticks(platform.options.data_dir / saved.path)
     assert ticks[-1] >= before.tick - TICKS_PER_S
