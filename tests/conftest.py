@@ -5,12 +5,16 @@ from __future__ import annotations
 import os
 
 import pytest
+from hypothesis import settings
 
 # A broken unit explains a broken session, so units run first.
 _LAST = ("system", "browser", "compose")
 
 
 def pytest_configure() -> None:
+    # How long one example takes says more about the machine than about the code.
+    settings.register_profile("mart", deadline=None)
+    settings.load_profile("mart")
     for name in [name for name in os.environ if name.startswith("MART_")]:
         del os.environ[name]
 
