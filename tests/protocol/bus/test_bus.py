@@ -5,6 +5,7 @@ from __future__ import annotations
 import queue
 import socket
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -132,6 +133,24 @@ def test_a_query_is_answered(connect: Connect) -> None:
 def test_a_query_that_nobody_answers_says_so(connect: Connect) -> None:
     with pytest.raises(Unavailable, match="mart/room-9/seat"):
         connect().query(keys.seat("room-9"), b"", 0.3)
+
+
+def test_a_query_waits_for_a_service_that_is_just_starting() -> None:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    topic = keys.seat("room-1")
+    with (
+        ZenohBus.route(endpoint),
+        ZenohBus.connect(endpoint) as asking,
+        ZenohBus.connect(endpoint) as serving,
+        ThreadPoolExecutor() as executor,
+    ):
+        answer = executor.submit(asking.query, topic, b"abc", WAIT_S)
+        with pytest.raises(TimeoutError):
+            answer.result(timeout=0.2)
+        serving.serve(topic, answering(lambda payload: payload[::-1]))
+        assert answer.result(timeout=WAIT_S) == b"cba"
 
 
 def test_liveliness_is_seen_by_early_and_late_watchers_and_ends_with_its_holder(connect: Connect) -> None:

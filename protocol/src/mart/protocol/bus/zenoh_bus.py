@@ -17,11 +17,13 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
+import threading
 from collections.abc import Callable
 from typing import Any
 
 import zenoh
 
+from mart.protocol import clock
 from mart.protocol.bus.base import AliveHandler, Bus, Closable, Handler, Publisher, RequestHandler, Sample
 from mart.protocol.errors import Unavailable
 from mart.protocol.keys import Priority, Topic
@@ -88,6 +90,19 @@ class ZenohBus(Bus):
         return self._keep(self._session.declare_queryable(topic.key, _logged(deliver)))
 
     def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
+        until_s = clock.monotonic_s() + timeout_s
+        answer = self._ask(topic, payload, timeout_s)
+        if answer is None and self._served_by(topic, until_s):
+            answer = self._ask(topic, payload, max(until_s - clock.monotonic_s(), 0.0))
+        if answer is None:
+            raise Unavailable(
+                f"Nobody answered on {topic.key} within {timeout_s:g} s; is that service running? "
+                "`mart doctor` tells."
+            )
+        return answer
+
+    def _ask(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes | None:
+        """None at once where the router knows nobody who serves this."""
         replies = self._session.get(
             topic.key,
             payload=payload,
@@ -95,12 +110,20 @@ class ZenohBus(Bus):
             priority=_PRIORITY[topic.priority],
             express=topic.express,
         )
-        for reply in replies:
-            if reply.ok is not None:
-                return reply.ok.payload.to_bytes()
-        raise Unavailable(
-            f"Nobody answered on {topic.key} within {timeout_s:g} s; is that service running? `mart doctor` tells."
-        )
+        return next((reply.ok.payload.to_bytes() for reply in replies if reply.ok is not None), None)
+
+    def _served_by(self, topic: Topic, until_s: float) -> bool:
+        """Waits for somebody to serve this: what a service declares may reach the router after its liveliness did."""
+        served = threading.Event()
+        with self._session.declare_querier(topic.key) as querier:
+            listener = querier.declare_matching_listener(
+                lambda status: served.set() if status.matching else None
+            )
+            try:
+                already: Any = querier.matching_status  # the stubs say bool, but it is a status
+                return already.matching or served.wait(max(until_s - clock.monotonic_s(), 0.0))
+            finally:
+                listener.undeclare()
 
     def announce(self, alive_key: str) -> Closable:
         return self._keep(self._session.liveliness().declare_token(alive_key))
