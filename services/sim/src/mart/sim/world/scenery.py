@@ -12,7 +12,7 @@ import numpy as np
 
 from mart.protocol.tasks import Task
 from mart.sim.world import tabletop
-from mart.sim.world.palette import rgba
+from mart.sim.world.palette import add_materials, rgba
 from mart.sim.world.shadows import add_shadow, add_shadow_material
 
 TABLE_HALF_M = (0.60, 0.55)
@@ -131,14 +131,5 @@ def _add_materials(spec: mujoco.MjSpec, task: Task) -> None:
         name="table", type=mujoco.mjtTexture.mjTEXTURE_2D, width=art.shape[1], height=art.shape[0], nchannel=3
     )
     texture.data = art.tobytes()
-    for name, color, specular, shininess in (
-        ("floor", "#AEB5BC", 0.0, 0.0),
-        ("table", "#FFFFFF", 0.0, 0.0),
-        ("edge", "#8C8577", 0.0, 0.0),
-        ("metal", "#5B636B", 0.3, 0.3),
-        ("shell", "#F1F2F3", 0.35, 0.5),
-        ("paint", "#FFFFFF", 0.25, 0.4),
-        ("rubber", "#2E3236", 0.1, 0.1),
-    ):
-        spec.add_material(name=name, rgba=rgba(color), specular=specular, shininess=shininess)
+    add_materials(spec)
     spec.material("table").textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "table"
