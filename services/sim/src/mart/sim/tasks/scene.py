@@ -27,7 +27,10 @@ class Scene(ABC):
     """Geometry, resets, observations and success of one task.
 
     Belongs to one world. Holds no state, which is all in mjData; only, once attached, views of what it needs there.
+    What an episode has to remember beyond positions and velocities is there too: `memory_size` numbers, 0 after a reset.
     """
+
+    memory_size = 0
 
     def __init__(self, task: Task) -> None:
         self.task = task
@@ -47,6 +50,13 @@ class Scene(ABC):
     @abstractmethod
     def observe(self) -> dict[str, NDArray[np.float64]]:
         """The declared observations that are not the arms' own."""
+
+    def remember(self) -> None:  # noqa: B027
+        """Notes in `memory` what has happened; called once a tick, before `judge`. Most tasks have nothing to note."""
+
+    def memory(self, data: mujoco.MjData) -> NDArray[np.float64]:
+        """A view of this scene's part of the state, shape (memory_size,)."""
+        return data.userdata[-1 - self.memory_size : -1]
 
     @abstractmethod
     def judge(self) -> Judgement:

@@ -45,6 +45,7 @@ def build(
     scene.add_objects(spec)
     for camera in scene.cameras():
         scenery.add_camera(spec, camera)
-    spec.nuserdata = osc.BLOCK_SIZE * len(scene.task.arms) + 1  # the last one counts ticks of success
+    # The arms' blocks, what the scene remembers, and the count of successful ticks.
+    spec.nuserdata = osc.BLOCK_SIZE * len(scene.task.arms) + scene.memory_size + 1
     osc.describe(spec, scene.task.arm_names, gains or osc.Gains())
     return spec.compile()

@@ -22,7 +22,7 @@ class Shadows:
     """Keeps each spot under its caster."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        spots = [i for i in range(model.nbody) if model.body_mocapid[i] >= 0]
+        spots = [i for i in range(model.nbody) if model.body(i).name.endswith("/shadow")]
         casters = {model.body(i).name.removesuffix("/shadow"): int(model.body_mocapid[i]) for i in spots}
         sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{name}/tool") for name in casters}
         tools = [name for name in casters if sites[name] >= 0]

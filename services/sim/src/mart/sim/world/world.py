@@ -1,8 +1,8 @@
 """One world: a task's scene, its arms and their controller, advanced one control period at a time.
 
 Pure: no wall clock, no threads, no bus; randomness comes from the seed given to `reset`. Everything that decides the
-future is in the integration state (positions, velocities, warm start, commands, the count of successful ticks), so
-setting a state and stepping the same actions gives the same bits as the first time.
+future is in the integration state (positions, velocities, warm start, commands, what the scene remembers, the count of
+successful ticks), so setting a state and stepping the same actions gives the same bits as the first time.
 """
 
 from __future__ import annotations
@@ -170,6 +170,7 @@ class World:
         mujoco.mj_kinematics(self.model, self.data)
         if self._fatal_warnings.any():
             raise Diverged(begun_s)
+        self._scene.remember()
         self._success_ticks[0] = next_success_ticks(self._success_ticks[0], self._scene.judge().success_now)
 
     def integration_state(self) -> bytes:
