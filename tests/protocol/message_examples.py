@@ -22,7 +22,7 @@ _PROGRESS = m.Progress(subtasks=[m.Subtask(name="cube0_lifted", done=True)], suc
 
 def examples() -> dict[str, Message]:
     """By message name; the golden bytes are made from these."""
-    filled = (*_driving(), *_room(), *_signalling(), *_rollouts())
+    filled = (*_driving(), *_room(), *_signalling(), *_rollouts(), *_training())
     return {message.DESCRIPTOR.name: message for message in filled}
 
 
@@ -118,6 +118,18 @@ def _rollouts() -> tuple[Message, ...]:
     )
     reply = m.RolloutReply(state_digests=b"\x03" * 16)
     return model, m.RolloutRequest(resimulate=resimulate), reply
+
+
+def _training() -> tuple[Message, ...]:
+    order = m.Order(model="r-HBC", task="t", data="episodes", preset="fast", seeds=[0, 1, 2])
+    job = m.Job(
+        id="job-0007", sweep="sweep-0002", order=order, state=m.JOB_STATE_RUNNING, submitted_ns=_STAMP
+    )
+    evaluation = m.Evaluation(updates=500, purpose="score", episodes=100, successes=87, low=0.79, high=0.92)
+    curve = m.Curve(name="loss/actor", updates=[1, 2], values=[0.5, 0.25])
+    details = m.TrainerReply.Details(job=job, curves=[curve], evaluations=[evaluation])
+    submit = m.TrainerRequest.Submit(models=["HBC", "r-HBC"], tasks=["t"], order=order, executor="local")
+    return m.TrainerRequest(submit=submit), m.TrainerReply(jobs=[job], details=details)
 
 
 _SCALARS = {

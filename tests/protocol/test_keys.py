@@ -16,6 +16,7 @@ def test_the_keys_are_those_of_the_spec() -> None:
     assert keys.seat("room-1").key == "mart/room-1/seat"
     assert keys.episode("room-1").key == "mart/room-1/episode"
     assert keys.rollout("replica-1").key == "mart/replica-1/rollout"
+    assert keys.training("trainer-1").key == "mart/@trainer/trainer-1/jobs"
     assert keys.signal("room-1", "arm0", "phone").key == "mart/room-1/signal/arm0/phone"
     assert keys.alive("sim", "room-1") == "mart/@live/sim/room-1"
 
@@ -37,6 +38,6 @@ def test_parts_of_keys_are_found_again() -> None:
 
 @pytest.mark.parametrize("name", ["", "a/b", "*", "**", "Room", "@live", "a b", "-a", "a" * 65, "../x", "$*"])
 def test_a_name_that_could_be_read_as_a_key_expression_is_refused(name: str) -> None:
-    for build in (keys.state, keys.commands, keys.videos, keys.alive_of, keys.open_seat):
+    for build in (keys.state, keys.commands, keys.videos, keys.alive_of, keys.open_seat, keys.training):
         with pytest.raises(InvalidInput, match="lower-case"):
             build(name)

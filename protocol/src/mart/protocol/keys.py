@@ -101,6 +101,11 @@ def open_seat(gateway: str) -> Topic:
     return Topic(f"{ROOT}/@gateway/{_segment('gateway', gateway)}/open", Priority.NORMAL, must_arrive=True)
 
 
+def training(trainer: str) -> Topic:
+    """Queryable: TrainerRequest → TrainerReply. `trainer` is the id of a trainer service."""
+    return Topic(f"{ROOT}/@trainer/{_segment('trainer', trainer)}/jobs", Priority.LOW, must_arrive=True)
+
+
 def alive(kind: str, id: str) -> str:
     """Liveliness token of one running service: `kind` is sim, replica, gateway, recorder, web, router, …"""
     return f"{ROOT}/@live/{_segment('kind', kind)}/{_segment('id', id)}"

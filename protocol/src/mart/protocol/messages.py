@@ -48,6 +48,25 @@ from mart.v1.room_pb2 import (
 )
 from mart.v1.signal_pb2 import Answer, Offer, OpenSeat, OpenSeatReply
 from mart.v1.state_pb2 import ArmState, Model, Observation, Progress, State, Subtask, TickStamps
+from mart.v1.trainer_pb2 import (
+    JOB_STATE_CANCELLED,
+    JOB_STATE_DONE,
+    JOB_STATE_FAILED,
+    JOB_STATE_QUEUED,
+    JOB_STATE_RUNNING,
+    Curve,
+    DataSet,
+    Evaluation,
+    Job,
+    JobProgress,
+    JobState,
+    Order,
+    Policy,
+    Rollout,
+    SubtaskCount,
+    TrainerReply,
+    TrainerRequest,
+)
 
 __all__ = [
     "BARRIER_PHASE_PAUSED",
@@ -58,6 +77,11 @@ __all__ = [
     "EPISODE_PHASE_ENDED",
     "EPISODE_PHASE_PRACTICE",
     "EPISODE_PHASE_RECORDING",
+    "JOB_STATE_CANCELLED",
+    "JOB_STATE_DONE",
+    "JOB_STATE_FAILED",
+    "JOB_STATE_QUEUED",
+    "JOB_STATE_RUNNING",
     "OPERATOR_HOLD",
     "OPERATOR_HUMAN",
     "OPERATOR_POLICY",
@@ -72,20 +96,29 @@ __all__ = [
     "BarrierPhase",
     "Command",
     "CommandStamps",
+    "Curve",
+    "DataSet",
     "Episode",
     "EpisodePhase",
     "EpisodeRequest",
     "Error",
+    "Evaluation",
     "Event",
+    "Job",
+    "JobProgress",
+    "JobState",
     "Model",
     "Observation",
     "Offer",
     "OpenSeat",
     "OpenSeatReply",
     "Operator",
+    "Order",
     "Outcome",
+    "Policy",
     "PoseMessage",
     "Progress",
+    "Rollout",
     "RolloutReply",
     "RolloutRequest",
     "RoomReply",
@@ -94,11 +127,15 @@ __all__ = [
     "SeatRequest",
     "State",
     "Subtask",
+    "SubtaskCount",
     "TickStamps",
+    "TrainerReply",
+    "TrainerRequest",
     "Waiting",
     "WorldState",
     "barrier_word",
     "error_message",
+    "job_state_word",
     "operator_from_word",
     "operator_word",
     "outcome_from_word",
@@ -152,6 +189,11 @@ def phase_word(phase: EpisodePhase) -> str:
 def barrier_word(phase: BarrierPhase) -> str:
     """running, stalled, paused or stopped."""
     return _word(BarrierPhase.Name(phase), "BARRIER_PHASE_")
+
+
+def job_state_word(state: JobState) -> str:
+    """queued, running, done, failed or cancelled."""
+    return _word(JobState.Name(state), "JOB_STATE_")
 
 
 def operator_from_word(word: str) -> Operator:
