@@ -11,7 +11,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/pip --disable-pip-version-check -qq
 
 # Every part is a distribution of its own; this is the one list of them.
-DISTRIBUTIONS := protocol services/sim services/teleop-gateway services/recorder services/web platform
+DISTRIBUTIONS := protocol services/sim services/teleop-gateway services/recorder services/trainer services/web platform
 PARTS := $(patsubst %/pyproject.toml,%,$(wildcard $(addsuffix /pyproject.toml,$(DISTRIBUTIONS))))
 PART_SOURCES := $(addsuffix /pyproject.toml,$(PARTS)) $(wildcard services/sim/setup.py services/sim/src/mart/sim/world/*.c)
 

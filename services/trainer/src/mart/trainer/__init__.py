@@ -1,0 +1,1 @@
+"""Fits policies to recorded episodes, judges them and seats them beside people."""

@@ -1,0 +1,1 @@
+"""Episode files as tensors: read, selected, partitioned by arm, normalised, cut into windows."""

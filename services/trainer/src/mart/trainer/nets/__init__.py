@@ -1,0 +1,1 @@
+"""Networks with a leading model axis: many models of one shape, trained in one step."""

@@ -1,0 +1,1 @@
+"""Policies as they act: what a checkpoint becomes when it is loaded."""

@@ -1,0 +1,53 @@
+"""What acts: the one interface of scripted rollouts, seats and evaluation to a trained model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+ACTION_SIZE = 7  # six of the step in [-1, 1] and the gripper, as in docs/protocol.md, section "Commands"
+
+Array = NDArray[np.float64]
+
+
+class Policy(Protocol):
+    """Acts in `worlds` worlds at once, once a tick. What it remembers between ticks starts anew with `begin`."""
+
+    @property
+    def task(self) -> str: ...
+
+    @property
+    def control_hz(self) -> float: ...
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        """Which it drives, in the order of `act`."""
+        ...
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Names of the observations that `act` reads."""
+        ...
+
+    def begin(self, worlds: int, seed: int) -> None:
+        """Before the first tick of an episode. World i draws its samples from (seed, i), however many there are."""
+        ...
+
+    def act(self, observations: Mapping[str, Array]) -> Array:
+        """What to do next, of what is seen now.
+
+        observations: by name, each float64[worlds, *shape]; more than `needs` may be there.
+        Returns float64[worlds, len(arms), 7] within [-1, 1].
+        Raises InvalidInput where one is missing, of another shape or not finite.
+        """
+        ...
+
+    def only(self, arm: str) -> Policy:
+        """The part that drives `arm` alone, with a memory of its own.
+
+        Raises NotFound for an unknown arm and InvalidInput where the arms are driven together, saying which.
+        """
+        ...
