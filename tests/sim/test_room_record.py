@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mart.protocol.errors import Corrupt
-from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_SCRIPT
+from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_POLICY, OPERATOR_SCRIPT
 from mart.sim import room_record
 from mart.sim.room_record import RoomRecord
 from mart.sim.seats import SeatTable
@@ -18,6 +18,8 @@ def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
     seats = SeatTable(["arm0", "arm1", "arm2"])
     seats.claim("arm0", "h1", "Ana", OPERATOR_HUMAN)
     seats.assign("arm1", OPERATOR_SCRIPT)
+    seats.assign("arm2", OPERATOR_POLICY, "lifter")
+    seats.claim("arm2", "h2", "Ben", OPERATOR_HUMAN)
     record = RoomRecord(seed=5, episodes=3, saved=2, good=1).with_seats(seats)
     room_record.save(path, record)
     assert room_record.load(path) == record

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -16,7 +18,7 @@ from mart.protocol.messages import (
     Operator,
     SeatRequest,
 )
-from mart.sim.seats import SeatTable, SeatTaken
+from mart.sim.seats import SeatHolder, SeatTable, SeatTaken
 
 ARMS = ("arm0", "arm1")
 
@@ -88,10 +90,89 @@ def test_setting_the_same_operator_again_changes_nothing(seats: SeatTable) -> No
     assert seats.assign("arm0", OPERATOR_SCRIPT) == seat
 
 
-@pytest.mark.parametrize("operator", [OPERATOR_HUMAN, OPERATOR_POLICY, OPERATOR_UNSPECIFIED])
-def test_people_and_policies_are_not_assigned(seats: SeatTable, operator: Operator) -> None:
+@pytest.mark.parametrize("operator", [OPERATOR_HUMAN, OPERATOR_UNSPECIFIED])
+def test_people_are_not_assigned(seats: SeatTable, operator: Operator) -> None:
     with pytest.raises(InvalidInput):
         seats.assign("arm0", operator)
+
+
+def test_a_promoted_policy_is_assigned_by_name(seats: SeatTable) -> None:
+    seat = seats.assign("arm0", OPERATOR_POLICY, "lifter")
+    assert (seat.operator, seat.holder_id, seat.name, seat.driver.policy) == (
+        OPERATOR_POLICY,
+        "",
+        "lifter",
+        "lifter",
+    )
+    assert seats.assign("arm0", OPERATOR_POLICY, "lifter") == seat
+    assert seats.assign("arm0", OPERATOR_POLICY, "other").epoch == seat.epoch + 1
+    assert seats.assign("arm0", OPERATOR_HOLD).operator == OPERATOR_HOLD
+
+
+@pytest.mark.parametrize(
+    ("operator", "policy"),
+    [(OPERATOR_POLICY, ""), (OPERATOR_SCRIPT, "x"), (OPERATOR_HOLD, "x"), (OPERATOR_POLICY, "x" * 65)],
+)
+def test_only_a_policy_seat_names_a_policy(seats: SeatTable, operator: Operator, policy: str) -> None:
+    with pytest.raises(InvalidInput):
+        seats.assign("arm0", operator, policy)
+
+
+def seat_a_machine(seats: SeatTable, kind: str) -> SeatHolder:
+    match kind:
+        case "script":
+            return seats.assign("arm0", OPERATOR_SCRIPT)
+        case "promoted policy":
+            return seats.assign("arm0", OPERATOR_POLICY, "lifter")
+        case _:
+            return seats.claim("arm0", "operate-1", "d-HBC", OPERATOR_POLICY)
+
+
+machines = pytest.mark.parametrize("kind", ["script", "promoted policy", "policy of one's own"])
+
+
+@machines
+def test_a_person_takes_over_from_a_machine_and_hands_back(seats: SeatTable, kind: str) -> None:
+    machine = seat_a_machine(seats, kind)
+    taken = seats.claim("arm0", "h1", "Ana", OPERATOR_HUMAN)
+    assert (taken.operator, taken.epoch, taken.relieved) == (
+        OPERATOR_HUMAN,
+        machine.epoch + 1,
+        machine.driver,
+    )
+    assert seats.claim("arm0", "h1", "Ana", OPERATOR_HUMAN) == taken
+    back = seats.hand_back("arm0", "h1")
+    assert (back.driver, back.epoch, back.relieved) == (machine.driver, machine.epoch + 2, None)
+
+
+@machines
+def test_whoever_took_over_may_also_leave(seats: SeatTable, kind: str) -> None:
+    seat_a_machine(seats, kind)
+    seats.claim("arm0", "h1", "Ana", OPERATOR_HUMAN)
+    left = seats.release("arm0", "h1")
+    assert (left.operator, left.relieved) == (OPERATOR_HOLD, None)
+
+
+@machines
+def test_only_who_took_over_hands_back(seats: SeatTable, kind: str) -> None:
+    seat_a_machine(seats, kind)
+    taken = seats.claim("arm0", "h1", "Ana", OPERATOR_HUMAN)
+    for other in ("h2", "operate-1", ""):
+        with pytest.raises(Forbidden):
+            seats.hand_back("arm0", other)
+    assert seats["arm0"] == taken
+
+
+def test_a_seat_that_was_free_is_not_handed_back(seats: SeatTable) -> None:
+    seats.claim("arm0", "h1", "Ana", OPERATOR_HUMAN)
+    with pytest.raises(Conflict, match="leave"):
+        seats.hand_back("arm0", "h1")
+
+
+def test_two_policies_of_ones_own_do_not_push_each_other_out(seats: SeatTable) -> None:
+    seats.claim("arm0", "operate-1", "d-HBC", OPERATOR_POLICY)
+    with pytest.raises(SeatTaken, match="d-HBC"):
+        seats.claim("arm0", "operate-2", "HBC", OPERATOR_POLICY)
 
 
 @pytest.mark.parametrize("operator", [OPERATOR_HOLD, OPERATOR_SCRIPT, OPERATOR_UNSPECIFIED])
@@ -101,7 +182,7 @@ def test_only_people_and_policies_claim(seats: SeatTable, operator: Operator) ->
 
 
 @pytest.mark.parametrize(
-    ("holder_id", "name"), [("", "Ana"), ("h1", ""), ("h" * 129, "Ana"), ("h1", "A" * 41), ("h1", "A\nB")]
+    ("holder_id", "name"), [("", "Ana"), ("h1", ""), ("h" * 129, "Ana"), ("h1", "A" * 65), ("h1", "A\nB")]
 )
 def test_holders_and_names_are_bounded(seats: SeatTable, holder_id: str, name: str) -> None:
     with pytest.raises(InvalidInput):
@@ -128,6 +209,7 @@ def test_seats_are_restored_where_their_arm_still_exists(seats: SeatTable) -> No
 arms = st.sampled_from([*ARMS, "arm9"])
 holders = st.sampled_from(["", "h1", "h2"])
 operators = st.sampled_from(range(6))
+policies = st.sampled_from(["", "lifter"])
 requests = st.one_of(
     st.builds(
         lambda arm, holder, operator: SeatRequest(
@@ -141,9 +223,17 @@ requests = st.one_of(
         lambda arm, holder: SeatRequest(release=SeatRequest.Release(arm=arm, holder_id=holder)), arms, holders
     ),
     st.builds(
-        lambda arm, operator: SeatRequest(assign=SeatRequest.Assign(arm=arm, operator=operator)),
+        lambda arm, operator, policy: SeatRequest(
+            assign=SeatRequest.Assign(arm=arm, operator=operator, policy=policy)
+        ),
         arms,
         operators,
+        policies,
+    ),
+    st.builds(
+        lambda arm, holder: SeatRequest(hand_back=SeatRequest.HandBack(arm=arm, holder_id=holder)),
+        arms,
+        holders,
     ),
 )
 
@@ -160,4 +250,25 @@ def test_the_epoch_grows_with_every_change_and_with_nothing_else(course: list[Se
         for seat in seats:
             changed = seat != before[seat.arm]
             assert seat.epoch == before[seat.arm].epoch + changed
-            assert bool(seat.holder_id) == (seat.operator in (OPERATOR_HUMAN, OPERATOR_POLICY))
+            assert is_whole(seat)
+
+
+def is_whole(seat: SeatHolder) -> bool:
+    """Somebody in particular holds it, or a promoted policy has its name, or neither."""
+    held = {OPERATOR_HUMAN: True, OPERATOR_POLICY: not seat.driver.policy}.get(seat.operator, False)
+    relieves = seat.relieved is not None and seat.relieved.is_machine and seat.operator == OPERATOR_HUMAN
+    return bool(seat.holder_id) == held and (relieves or seat.relieved is None)
+
+
+@given(st.lists(requests, max_size=30))
+def test_nobody_is_driven_out_by_another_than_a_person(course: list[SeatRequest]) -> None:
+    seats = SeatTable(ARMS)
+    for request in course:
+        before = {seat.arm: seat for seat in seats}
+        with contextlib.suppress(MartError):
+            seats.answer(request)
+        for seat in seats:
+            was = before[seat.arm]
+            if seat != was and was.operator == OPERATOR_HUMAN:
+                asked = getattr(request, request.WhichOneof("what") or "")
+                assert asked.holder_id == was.holder_id

@@ -47,7 +47,7 @@ OUTCOME_FAILURE: Outcome
 OUTCOME_DISCARDED: Outcome
 
 class Seat(_message.Message):
-    __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged")
+    __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged", "policy", "relieved")
     ARM_FIELD_NUMBER: _ClassVar[int]
     OPERATOR_FIELD_NUMBER: _ClassVar[int]
     EPOCH_FIELD_NUMBER: _ClassVar[int]
@@ -55,6 +55,8 @@ class Seat(_message.Message):
     NAME_FIELD_NUMBER: _ClassVar[int]
     READY_FIELD_NUMBER: _ClassVar[int]
     ENGAGED_FIELD_NUMBER: _ClassVar[int]
+    POLICY_FIELD_NUMBER: _ClassVar[int]
+    RELIEVED_FIELD_NUMBER: _ClassVar[int]
     arm: str
     operator: _command_pb2.Operator
     epoch: int
@@ -62,7 +64,9 @@ class Seat(_message.Message):
     name: str
     ready: bool
     engaged: bool
-    def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., epoch: _Optional[int] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., ready: _Optional[bool] = ..., engaged: _Optional[bool] = ...) -> None: ...
+    policy: str
+    relieved: str
+    def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., epoch: _Optional[int] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., ready: _Optional[bool] = ..., engaged: _Optional[bool] = ..., policy: _Optional[str] = ..., relieved: _Optional[str] = ...) -> None: ...
 
 class Waiting(_message.Message):
     __slots__ = ("arm", "since_s")
@@ -129,7 +133,7 @@ class RoomStatus(_message.Message):
     def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ...) -> None: ...
 
 class SeatRequest(_message.Message):
-    __slots__ = ("claim", "release", "assign")
+    __slots__ = ("claim", "release", "assign", "hand_back")
     class Claim(_message.Message):
         __slots__ = ("arm", "holder_id", "name", "operator")
         ARM_FIELD_NUMBER: _ClassVar[int]
@@ -149,19 +153,30 @@ class SeatRequest(_message.Message):
         holder_id: str
         def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ...) -> None: ...
     class Assign(_message.Message):
-        __slots__ = ("arm", "operator")
+        __slots__ = ("arm", "operator", "policy")
         ARM_FIELD_NUMBER: _ClassVar[int]
         OPERATOR_FIELD_NUMBER: _ClassVar[int]
+        POLICY_FIELD_NUMBER: _ClassVar[int]
         arm: str
         operator: _command_pb2.Operator
-        def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ...) -> None: ...
+        policy: str
+        def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., policy: _Optional[str] = ...) -> None: ...
+    class HandBack(_message.Message):
+        __slots__ = ("arm", "holder_id")
+        ARM_FIELD_NUMBER: _ClassVar[int]
+        HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
+        arm: str
+        holder_id: str
+        def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ...) -> None: ...
     CLAIM_FIELD_NUMBER: _ClassVar[int]
     RELEASE_FIELD_NUMBER: _ClassVar[int]
     ASSIGN_FIELD_NUMBER: _ClassVar[int]
+    HAND_BACK_FIELD_NUMBER: _ClassVar[int]
     claim: SeatRequest.Claim
     release: SeatRequest.Release
     assign: SeatRequest.Assign
-    def __init__(self, claim: _Optional[_Union[SeatRequest.Claim, _Mapping]] = ..., release: _Optional[_Union[SeatRequest.Release, _Mapping]] = ..., assign: _Optional[_Union[SeatRequest.Assign, _Mapping]] = ...) -> None: ...
+    hand_back: SeatRequest.HandBack
+    def __init__(self, claim: _Optional[_Union[SeatRequest.Claim, _Mapping]] = ..., release: _Optional[_Union[SeatRequest.Release, _Mapping]] = ..., assign: _Optional[_Union[SeatRequest.Assign, _Mapping]] = ..., hand_back: _Optional[_Union[SeatRequest.HandBack, _Mapping]] = ...) -> None: ...
 
 class EpisodeRequest(_message.Message):
     __slots__ = ("ready", "finish", "reset")

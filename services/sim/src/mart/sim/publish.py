@@ -100,6 +100,8 @@ def seat(holder: SeatHolder, ready: bool, newest: Arrival | None) -> Seat:
         name=holder.name,
         ready=ready,
         engaged=newest is not None and newest.command.engaged,
+        policy=holder.driver.policy,
+        relieved=holder.relieved.called if holder.relieved else "",
     )
 
 

@@ -211,12 +211,10 @@ class Room:
         )
 
     def _give_up(self, arm: str, now_s: float) -> None:
-        name = self._seats[arm].name
+        name = self._seats[arm].driver.called
         self._seat_changed(self._seats.free(arm), now_s)
         self._tell(
-            publish.notice(
-                "warning", f"{name or arm} gave no command for {FREED_AFTER_S:g} s: {arm} is free."
-            )
+            publish.notice("warning", f"{name} gave no command for {FREED_AFTER_S:g} s: {arm} is free.")
         )
 
     def _seat_changed(self, seat: SeatHolder, now_s: float) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Literal
 
@@ -11,17 +12,30 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import operator_from_word, operator_word
-from mart.sim.seats import SeatHolder
+from mart.sim.seats import Driver, SeatHolder
 
 
-class SeatRecord(BaseModel):
+class DriverRecord(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    arm: str
     operator: Literal["human", "policy", "script", "hold"]
-    epoch: int = Field(ge=1)
     holder_id: str
     name: str
+    policy: str = ""
+
+    def driver(self) -> Driver:
+        return Driver(operator_from_word(self.operator), self.holder_id, self.name, self.policy)
+
+
+class SeatRecord(DriverRecord):
+    arm: str
+    epoch: int = Field(ge=1)
+    relieved: DriverRecord | None = None
+
+    def holder(self) -> SeatHolder:
+        return SeatHolder(
+            self.arm, self.epoch, self.driver(), self.relieved.driver() if self.relieved else None
+        )
 
 
 class RoomRecord(BaseModel):
@@ -36,28 +50,24 @@ class RoomRecord(BaseModel):
     seats: tuple[SeatRecord, ...] = ()
 
     def holders(self) -> list[SeatHolder]:
-        return [
-            SeatHolder(seat.arm, operator_from_word(seat.operator), seat.epoch, seat.holder_id, seat.name)
-            for seat in self.seats
-        ]
+        return [seat.holder() for seat in self.seats]
 
     def with_seats(self, seats: Iterable[SeatHolder]) -> RoomRecord:
-        records = tuple(
-            SeatRecord.model_validate(
-                {
-                    "arm": seat.arm,
-                    "operator": operator_word(seat.operator),
-                    "epoch": seat.epoch,
-                    "holder_id": seat.holder_id,
-                    "name": seat.name,
-                }
-            )
-            for seat in seats
-        )
-        return self.with_changes(seats=records)
+        return self.with_changes(seats=tuple(_seat_record(seat) for seat in seats))
 
     def with_changes(self, **changes: Any) -> RoomRecord:
         return self.model_copy(update=changes)
+
+
+def _seat_record(seat: SeatHolder) -> SeatRecord:
+    relieved = _fields(seat.relieved) if seat.relieved else None
+    return SeatRecord.model_validate(
+        {"arm": seat.arm, "epoch": seat.epoch, "relieved": relieved, **_fields(seat.driver)}
+    )
+
+
+def _fields(driver: Driver) -> dict[str, str]:
+    return {**asdict(driver), "operator": operator_word(driver.operator)}
 
 
 def load(path: Path) -> RoomRecord | None:

@@ -1,12 +1,14 @@
 """Who may drive which arm. Pure: requests in, a changed table or an error out.
 
 A seat's epoch grows with every change of its holder, so commands and tokens of an earlier holder are recognised.
+Machines (scripts and policies) make room for people: whoever claims a machine's seat takes over from it, also in
+mid-episode, and may hand the seat back to the same machine.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from mart.protocol.errors import Conflict, Forbidden, InvalidInput, NotFound
 from mart.protocol.messages import (
@@ -19,26 +21,54 @@ from mart.protocol.messages import (
     operator_word,
 )
 
-_FREE = (OPERATOR_HOLD, OPERATOR_SCRIPT)
 _CLAIMING = (OPERATOR_HUMAN, OPERATOR_POLICY)
 MAX_HOLDER_ID_CHARACTERS = 128
-MAX_NAME_CHARACTERS = 40
+MAX_NAME_CHARACTERS = 64
+
+
+@dataclass(frozen=True)
+class Driver:
+    """Who drives. `holder_id` is empty for hold, script and a promoted policy, which nobody in particular brought;
+    `name` is what others see; `policy` names a promoted policy."""
+
+    operator: Operator = OPERATOR_HOLD
+    holder_id: str = ""
+    name: str = ""
+    policy: str = ""
+
+    @property
+    def is_machine(self) -> bool:
+        return self.operator in (OPERATOR_SCRIPT, OPERATOR_POLICY)
+
+    @property
+    def called(self) -> str:
+        """By name, or by what it is."""
+        return self.name or operator_word(self.operator)
+
+
+NOBODY = Driver()
 
 
 @dataclass(frozen=True)
 class SeatHolder:
-    """One seat. `holder_id` is empty for hold and script; `name` is what others see."""
+    """One seat. `relieved`: the machine that its human took over from, if any."""
 
     arm: str
-    operator: Operator = OPERATOR_HOLD
     epoch: int = 1
-    holder_id: str = ""
-    name: str = ""
+    driver: Driver = NOBODY
+    relieved: Driver | None = None
 
     @property
-    def free(self) -> bool:
-        """Anybody may claim it."""
-        return self.operator in _FREE
+    def operator(self) -> Operator:
+        return self.driver.operator
+
+    @property
+    def holder_id(self) -> str:
+        return self.driver.holder_id
+
+    @property
+    def name(self) -> str:
+        return self.driver.name
 
 
 class SeatTaken(Conflict):
@@ -72,7 +102,7 @@ class SeatTable:
         return tuple(seat for seat in self if seat.operator == operator)
 
     def answer(self, request: SeatRequest) -> SeatHolder:
-        """Does what a request asks. Raises what claim, release and assign raise; InvalidInput for an empty one."""
+        """Does what a request asks. Raises what the methods for it raise; InvalidInput for an empty one."""
         match request.WhichOneof("what"):
             case "claim":
                 claim = request.claim
@@ -80,13 +110,18 @@ class SeatTable:
             case "release":
                 return self.release(request.release.arm, request.release.holder_id)
             case "assign":
-                return self.assign(request.assign.arm, request.assign.operator)
-        raise InvalidInput("An empty seat request was given; ask to claim, release or assign a seat.")
+                return self.assign(request.assign.arm, request.assign.operator, request.assign.policy)
+            case "hand_back":
+                return self.hand_back(request.hand_back.arm, request.hand_back.holder_id)
+        raise InvalidInput(
+            "An empty seat request was given; ask to claim, release, assign or hand back a seat."
+        )
 
     def claim(self, arm: str, holder_id: str, name: str, operator: Operator) -> SeatHolder:
-        """Gives a free seat to `holder_id`; its holder gets it back unchanged.
+        """Gives a seat that no other holds to `holder_id`; its holder gets it back unchanged.
 
-        Raises SeatTaken, InvalidInput or NotFound.
+        A human takes over from any machine. A policy comes in where nobody or a script sits, or in place of a promoted
+        policy. Raises SeatTaken, InvalidInput or NotFound.
         """
         seat = self[arm]
         if operator not in _CLAIMING:
@@ -95,40 +130,62 @@ class SeatTable:
         _require_text("name", name, MAX_NAME_CHARACTERS)
         if seat.holder_id == holder_id and seat.operator == operator:
             return seat
-        if not seat.free and seat.holder_id != holder_id:
+        takes_over = operator == OPERATOR_HUMAN and seat.driver.is_machine
+        if seat.holder_id not in ("", holder_id) and not takes_over:
             raise SeatTaken(seat)
-        return self._change(seat, operator, holder_id, name)
+        return self._change(
+            seat, Driver(operator, holder_id, name), relieved=seat.driver if takes_over else None
+        )
+
+    def hand_back(self, arm: str, holder_id: str) -> SeatHolder:
+        """Gives a seat back to the machine that its human took over from. Raises Forbidden, Conflict, NotFound."""
+        seat = self[arm]
+        self._require_holder(seat, holder_id)
+        if seat.relieved is None:
+            raise Conflict(f"{arm} was to be handed back, but nobody was relieved there; leave it instead.")
+        return self._change(seat, seat.relieved)
 
     def release(self, arm: str, holder_id: str) -> SeatHolder:
         """Leaves a seat: it goes on hold. A seat that is on hold already stays as it is. Raises Forbidden, NotFound."""
         seat = self[arm]
         if seat.operator == OPERATOR_HOLD:
             return seat
-        if not holder_id or seat.holder_id != holder_id:
-            raise Forbidden(f"{arm} was to be left, but it is not your seat; only its holder can leave it.")
-        return self._change(seat, OPERATOR_HOLD)
+        self._require_holder(seat, holder_id)
+        return self._change(seat, NOBODY)
 
-    def assign(self, arm: str, operator: Operator) -> SeatHolder:
-        """Sets a free seat to script or hold. Raises SeatTaken, InvalidInput, NotFound."""
+    def assign(self, arm: str, operator: Operator, policy: str = "") -> SeatHolder:
+        """Sets a seat that no human holds to script, hold or a promoted policy.
+
+        Raises SeatTaken, InvalidInput or NotFound.
+        """
         seat = self[arm]
-        if operator not in _FREE:
-            raise InvalidInput("A seat is assigned to script or hold; claim it for a human or a policy.")
-        if not seat.free:
+        if operator not in (OPERATOR_HOLD, OPERATOR_SCRIPT, OPERATOR_POLICY):
+            raise InvalidInput("A seat is assigned to script, policy or hold; claim it for a human.")
+        if (operator == OPERATOR_POLICY) != bool(policy):
+            raise InvalidInput(
+                "A seat was assigned with or without a policy's name where it should be otherwise."
+            )
+        if seat.operator == OPERATOR_HUMAN:
             raise SeatTaken(seat)
-        return seat if seat.operator == operator else self._change(seat, operator)
+        if policy:
+            _require_text("policy", policy, MAX_NAME_CHARACTERS)
+        driver = Driver(operator, name=policy, policy=policy)
+        return seat if seat.driver == driver else self._change(seat, driver)
 
     def free(self, arm: str) -> SeatHolder:
         """Takes a seat from a holder who went silent."""
-        return self._change(self[arm], OPERATOR_HOLD)
+        return self._change(self[arm], NOBODY)
 
     def restore(self, seats: Iterable[SeatHolder]) -> None:
         """Takes over the kept seats of arms that still exist."""
         self._seats.update((seat.arm, seat) for seat in seats if seat.arm in self._seats)
 
-    def _change(
-        self, seat: SeatHolder, operator: Operator, holder_id: str = "", name: str = ""
-    ) -> SeatHolder:
-        changed = replace(seat, operator=operator, epoch=seat.epoch + 1, holder_id=holder_id, name=name)
+    def _require_holder(self, seat: SeatHolder, holder_id: str) -> None:
+        if not holder_id or seat.holder_id != holder_id:
+            raise Forbidden(f"{seat.arm} is not your seat; only its holder can leave it or hand it back.")
+
+    def _change(self, seat: SeatHolder, driver: Driver, relieved: Driver | None = None) -> SeatHolder:
+        changed = SeatHolder(seat.arm, seat.epoch + 1, driver, relieved)
         self._seats[seat.arm] = changed
         return changed
 
