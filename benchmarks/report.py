@@ -8,8 +8,10 @@ from __future__ import annotations
 import json
 import os
 import platform
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 RESULTS = Path(__file__).parent / "results"
@@ -47,6 +49,11 @@ def report(name: str, metrics: dict[str, Any], peer: dict[str, Any], bars: list[
         verdict = "holds" if bar.holds else "MISSED"
         print(f"bar   {bar.name:<{width}}  {_readable(bar.value)} ({_readable(bar.bar)}) {verdict}")
     print(f"written to {path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path}")
+
+
+def spread(name: str, values: Sequence[float]) -> dict[str, float]:
+    """Median, smallest and largest of repeated figures."""
+    return {name: median(values), f"{name}_min": min(values), f"{name}_max": max(values)}
 
 
 def machine() -> dict[str, Any]:
