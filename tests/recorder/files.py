@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from mart.protocol import codec
+from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.messages import State
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.recorder.entry import command_entry, event_entry, state_entries, video_entry
 from mart.recorder.episode import Episode, RoomFacts
-from mart.recorder.reader import EpisodeFile
 from mart.recorder.save import Saved, Verify, part_path, save
 from mart.recorder.verify import verify
 from mart.recorder.writer import EpisodeWriter

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from mart.recorder import catalog, labels
+from mart.protocol.episodes import labels
+from mart.protocol.episodes.labels import Kind
+from mart.recorder import catalog
 from mart.recorder.catalog import Row, list_folder
-from mart.recorder.labels import Kind
 from tests.recorder import synthetic
 from tests.recorder.files import write_episode
 

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from mart.protocol.cli import main
-from mart.recorder.labels import Kind, read
+from mart.protocol.episodes.labels import Kind, read
 from tests.recorder import synthetic
 from tests.recorder.files import write_episode, write_part
 from tests.support.processes import free_port

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from mcap.writer import Writer
 
 from mart.protocol import recording
+from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, NotFound
-from mart.recorder.reader import EpisodeFile
 from tests.recorder.files import write_episode
 
 

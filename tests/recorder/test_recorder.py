@@ -13,12 +13,12 @@ import pytest
 from mart.protocol import clock, codec, keys, recording
 from mart.protocol.bus import Sample
 from mart.protocol.bus.memory import MemoryBus, MemoryNetwork
+from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import InvalidInput
 from mart.protocol.keys import Topic
 from mart.protocol.messages import Event, State
 from mart.recorder.capture import Capture, Inbox
 from mart.recorder.catalog import FILE_NAME
-from mart.recorder.reader import EpisodeFile
 from mart.recorder.recorder import Recorder
 from mart.recorder.verify import replica, verify
 from tests.recorder import synthetic

@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from mcap.opcode import Opcode
 
 from mart.protocol import codec, recording
+from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Unavailable
 from mart.protocol.recording import Verdict
 from mart.recorder.entry import video_entry
-from mart.recorder.reader import EpisodeFile
 from mart.recorder.repair import Repaired, repair_all
 from mart.recorder.salvage import Found, Salvage
 from mart.recorder.verify import nobody, verify

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from mart.protocol import codec
 from mart.protocol.bus.memory import MemoryNetwork
+from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt
 from mart.protocol.keys import alive, rollout
 from mart.protocol.messages import Error, RolloutReply, RolloutRequest, State
 from mart.protocol.recording import RoomRecord, Verdict, VerificationRecord
-from mart.recorder.reader import EpisodeFile
 from mart.recorder.verify import compare, replica, stretches, verify
 from tests.recorder import synthetic
 from tests.recorder.files import write_part

@@ -13,6 +13,7 @@ import pytest
 from mart.protocol import clock, codec, keys, recording
 from mart.protocol.bus import Bus, Sample
 from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Conflict
 from mart.protocol.messages import (
     OPERATOR_SCRIPT,
@@ -23,7 +24,6 @@ from mart.protocol.messages import (
     State,
     raise_error,
 )
-from mart.recorder.reader import EpisodeFile
 from tests.recorder import synthetic
 from tests.support.processes import Running, running_router, running_service, started
 

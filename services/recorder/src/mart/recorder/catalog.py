@@ -14,11 +14,11 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
+from mart.protocol.episodes import labels
+from mart.protocol.episodes.labels import Labelled
+from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import MartError
 from mart.protocol.recording import SUFFIX
-from mart.recorder import labels
-from mart.recorder.labels import Labelled
-from mart.recorder.reader import EpisodeFile
 
 _log = logging.getLogger(__name__)
 

@@ -53,8 +53,8 @@ def list_episodes(paths: tuple[Path, ...], as_json: bool) -> None:
 @json_option
 def show(path: Path, as_json: bool) -> None:
     """Show everything that is known about one episode."""
+    from mart.protocol.episodes.reader import EpisodeFile
     from mart.recorder import files, report
-    from mart.recorder.reader import EpisodeFile
 
     file = EpisodeFile.open(path)
     result = {**report.listed(path, files.row_of(path)), "metadata": file.strings}
@@ -67,14 +67,15 @@ def show(path: Path, as_json: bool) -> None:
 @json_option
 def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     """Step episodes again in a replica: do they follow bit for bit? The answer is kept as a label."""
+    from mart.protocol.episodes import labels
+    from mart.protocol.episodes.paths import episode_files
+    from mart.protocol.episodes.reader import EpisodeFile
     from mart.protocol.recording import Verdict
-    from mart.recorder import files, labels
-    from mart.recorder.reader import EpisodeFile
     from mart.recorder.verify import verify as verify_file
 
     found = []
     with _resimulation(replica) as resimulate:
-        for path in files.files(_given(paths)):
+        for path in episode_files(_given(paths)):
             file = EpisodeFile.open(path)
             said = verify_file(file, file.room, resimulate)
             if said.verdict is not Verdict.UNVERIFIED:  # a replica that is away takes nothing back
@@ -91,8 +92,8 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
 @json_option
 def replay(path: Path, replica: str | None, as_json: bool) -> int:
     """Step one episode again in a replica and report every stretch of ticks: where it agrees, where it does not."""
+    from mart.protocol.episodes.reader import EpisodeFile
     from mart.recorder import report
-    from mart.recorder.reader import EpisodeFile
     from mart.recorder.verify import compare
 
     file = EpisodeFile.open(path)
@@ -131,13 +132,15 @@ def label(
     paths: tuple[Path, ...], outcome: str | None, note: str | None, drop: bool | None, as_json: bool
 ) -> None:
     """Say something about episodes. Files never change: labels are appended to labels.jsonl beside them."""
-    from mart.recorder import files, labels, report
+    from mart.protocol.episodes import labels
+    from mart.protocol.episodes.paths import episode_files
+    from mart.recorder import files, report
 
     use = None if drop is None else "drop" if drop else "keep"
     said = {labels.Kind.OUTCOME: outcome, labels.Kind.NOTE: note, labels.Kind.USE: use}
     if not any(value is not None for value in said.values()):
         raise InvalidInput("Nothing to say was given; use --outcome, --note, --drop or --undrop.")
-    chosen = files.files(paths)
+    chosen = episode_files(paths)
     for path in chosen:
         for kind, value in said.items():
             if value is not None:

@@ -1,27 +1,13 @@
-"""Which episode files a command line means."""
+"""What is known about the episode files that a command line means."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
 
-from mart.protocol.errors import NotFound
-from mart.protocol.recording import SUFFIX
-from mart.recorder import labels
+from mart.protocol.episodes import labels
+from mart.protocol.episodes.paths import episode_files
 from mart.recorder.catalog import Row, describe, list_folder, overlaid
-
-
-def files(paths: Iterable[Path]) -> list[Path]:
-    """Every episode file among `paths`: files themselves, folders with all that is in them. Raises NotFound."""
-    found: list[Path] = []
-    for path in paths:
-        if path.is_dir():
-            found += sorted(path.rglob(f"*{SUFFIX}"))
-        elif path.is_file():
-            found.append(path)
-        else:
-            raise NotFound(f"There is no {path}; name episode files or folders of them.")
-    return found
 
 
 def rows(paths: Iterable[Path]) -> list[tuple[Path, Row]]:
@@ -31,7 +17,7 @@ def rows(paths: Iterable[Path]) -> list[tuple[Path, Row]]:
         if path.is_dir() and labels.is_root(path):
             found += [(path / row.path, row) for row in list_folder(path)]
         else:
-            found += [(file, row_of(file)) for file in files([path])]
+            found += [(file, row_of(file)) for file in episode_files([path])]
     return found
 
 

@@ -20,12 +20,12 @@ from google.protobuf.message import Message
 from mcap.records import Attachment, Metadata
 
 from mart.protocol import codec
+from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, MartError
 from mart.protocol.messages import Command, Event, Model, State
 from mart.protocol.recording import MODEL_ATTACHMENT, PART_SUFFIX, RoomRecord
 from mart.recorder.entry import Entry, state_entries
 from mart.recorder.episode import Episode, RoomFacts
-from mart.recorder.reader import EpisodeFile
 from mart.recorder.salvage import Found, Salvage
 from mart.recorder.save import Saved, Verify, free_path, save
 from mart.recorder.writer import EpisodeWriter

@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 from importlib.metadata import distributions
 from pathlib import Path
 
+from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.recording import (
     PART_SUFFIX,
     SUFFIX,
@@ -18,7 +19,6 @@ from mart.protocol.recording import (
     VerificationRecord,
 )
 from mart.recorder.episode import Episode, RoomFacts
-from mart.recorder.reader import EpisodeFile
 from mart.recorder.writer import EpisodeWriter
 
 Verify = Callable[[EpisodeFile, RoomRecord], VerificationRecord]

@@ -15,10 +15,10 @@ import numpy as np
 
 from mart.protocol import codec, keys, recording
 from mart.protocol.bus import Bus
+from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, MartError, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest, State, raise_error
 from mart.protocol.recording import RoomRecord, Verdict, VerificationRecord
-from mart.recorder.reader import EpisodeFile
 
 DIGEST_BYTES = 16
 ACTION_SIZE = 7

@@ -11,6 +11,7 @@ from mcap.reader import SeekingReader
 from mcap.records import Channel, Chunk, McapRecord, Message, Metadata
 from mcap.stream_reader import MAGIC_SIZE
 
+from mart.protocol.episodes.scan import BoundedFile, corruption, records, unpack
 from mart.protocol.errors import Corrupt, NotFound
 from mart.protocol.recording import (
     MAX_RECORD_BYTES,
@@ -23,7 +24,6 @@ from mart.protocol.recording import (
     RoomRecord,
     VerificationRecord,
 )
-from mart.recorder.scan import BoundedFile, corruption, records, unpack
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mart.protocol.episodes import labels
+from mart.protocol.episodes.labels import Kind, Label, Labelled
 from mart.protocol.errors import InvalidInput
-from mart.recorder import labels
-from mart.recorder.labels import Kind, Label, Labelled
 
 _notes = st.text(st.characters(exclude_categories=["Cs"]), max_size=50)
 _paths = st.sampled_from(["2026-09-21/a.mcap", "2026-09-21/b.mcap"])
