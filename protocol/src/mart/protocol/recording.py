@@ -1,6 +1,6 @@
 """The episode file: names of topics, attachments and metadata records, and typed values for those records.
 
-The specification is docs/protocol.md, section 3; `mart.protocol.episodes` reads such files, and the recorder writes them.
+The specification is docs/protocol.md, section 3; `mart.protocol.episodes` reads such files.
 A metadata record is a map from string to string; each class below turns itself into one (`to_strings`) and back
 (`from_strings`, which raises Corrupt where a value is missing or not of its type). A value that is not known is None in
 Python and absent from the file.
