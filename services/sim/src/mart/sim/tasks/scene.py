@@ -3,31 +3,41 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import SHARED_VIEWPOINT, Arm, Task
+from mart.sim.world.data import Array, Data, Flags
 from mart.sim.world.scenery import Camera
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """How a task stands at one instant. `failed` says in words why it can no longer succeed."""
+    """How a task stands at one instant: flags of shape (...), one for each world.
 
-    subtasks: dict[str, bool]
-    success_now: bool
-    failed: str | None
+    failed: what makes success impossible, in words, and where it has happened; of several, the first is told.
+    """
+
+    subtasks: Mapping[str, Flags]
+    success_now: Flags
+    failed: Mapping[str, Flags]
 
 
 class Scene(ABC):
     """Geometry, resets, observations and success of one task.
 
-    Belongs to one world. Holds no state, which is all in mjData; only, once attached, views of what it needs there.
-    What an episode has to remember beyond positions and velocities is there too: `memory_size` numbers, 0 after a reset.
+    Belongs to one world, or to a batch of them. Holds no state, which is all in the data; only, once attached, views of
+    what it needs there. What an episode has to remember beyond positions and velocities is there too: `memory_size`
+    numbers, 0 after a reset.
+
+    `observe`, `remember` and `judge` are written once for both: the arrays they see begin with the axis of the worlds
+    in a batch and have none for a single world, so they index from the end (`position[..., 2]`), reduce over `axis=-1`
+    and choose with `&`, `|` and `np.where` instead of `and`, `or` and `if`. They see what follows from positions
+    (qpos, xpos, xquat, xmat, site_xpos, …) and qvel; contacts and sensors are those of an earlier substep.
     """
 
     memory_size = 0
@@ -40,23 +50,23 @@ class Scene(ABC):
         """Adds the things on the table."""
 
     @abstractmethod
-    def attach(self, data: mujoco.MjData) -> None:
+    def attach(self, data: Data) -> None:
         """Looks everything up once, so that ticks need no names. Called when the model is compiled."""
 
     @abstractmethod
     def place_objects(self, random: np.random.Generator) -> None:
-        """Puts them where an episode begins."""
+        """Puts them where an episode begins. Of a single world only."""
 
     @abstractmethod
-    def observe(self) -> dict[str, NDArray[np.float64]]:
-        """The declared observations that are not the arms' own."""
+    def observe(self) -> dict[str, Array]:
+        """The declared observations that are not the arms' own, each of shape (..., *its own)."""
 
     def remember(self) -> None:  # noqa: B027
         """Notes in `memory` what has happened; called once a tick, before `judge`. Most tasks have nothing to note."""
 
-    def memory(self, data: mujoco.MjData) -> NDArray[np.float64]:
-        """A view of this scene's part of the state, shape (memory_size,)."""
-        return data.userdata[-1 - self.memory_size : -1]
+    def memory(self, data: Data) -> Array:
+        """A view of this scene's part of the state, shape (..., memory_size)."""
+        return data.userdata[..., -1 - self.memory_size : -1]
 
     @abstractmethod
     def judge(self) -> Judgement:

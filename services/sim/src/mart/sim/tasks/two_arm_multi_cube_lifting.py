@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from mart.protocol.tasks import Arm
 from mart.sim.tasks.scene import Judgement, Scene
+from mart.sim.world.data import Array, Data
 from mart.sim.world.gripper import GRASPABLE
 from mart.sim.world.palette import rgba
 from mart.sim.world.shadows import add_shadow
@@ -42,11 +42,11 @@ class MultiCubeLifting(Scene):
                 add_tile(spec, cube, arm.symbol, radius_m=0.009, position=(x, y, z), normal=normal)
             add_shadow(spec, cube_of(arm.name), radius_m=0.05)
 
-    def attach(self, data: mujoco.MjData) -> None:
+    def attach(self, data: Data) -> None:
         bodies = [data.body(cube_of(arm)) for arm in self.task.arm_names]
         self._positions = [body.xpos for body in bodies]
         self._quaternions = [body.xquat for body in bodies]
-        self._upward = [body.xmat[6:9] for body in bodies]  # each axis's share of up
+        self._upward = [body.xmat[..., 6:9] for body in bodies]  # each axis's share of up
         self._joints = [data.joint(cube_of(arm)).qpos for arm in self.task.arm_names]
 
     def place_objects(self, random: np.random.Generator) -> None:
@@ -57,25 +57,23 @@ class MultiCubeLifting(Scene):
             position = (*_start(arm, forward, sideways), CUBE_HALF_M)
             joint[:] = (*position, np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2))
 
-    def observe(self) -> dict[str, NDArray[np.float64]]:
+    def observe(self) -> dict[str, Array]:
         observations = {}
         for index, arm in enumerate(self.task.arm_names):
-            observations[f"{cube_of(arm)}/position_in_world"] = self._positions[index].copy()
-            observations[f"{cube_of(arm)}/quaternion_in_world"] = self._quaternions[index].copy()
+            observations[f"{cube_of(arm)}/position_in_world"] = self._positions[index]
+            observations[f"{cube_of(arm)}/quaternion_in_world"] = self._quaternions[index]
         return observations
 
     def judge(self) -> Judgement:
-        lifted, failed = {}, None
+        lifted, fallen = {}, {}
         for index, subtask in enumerate(self.task.subtasks):
             lifted[subtask.name] = self._lowest_point_m(index) > LIFTED_M
-            if self._positions[index][2] < FALLEN_Z_M:
-                failed = f"Cube {index} fell off the table."
-        return Judgement(lifted, all(lifted.values()), failed)
+            fallen[f"Cube {index} fell off the table."] = self._positions[index][..., 2] < FALLEN_Z_M
+        return Judgement(lifted, np.logical_and.reduce(list(lifted.values())), fallen)
 
-    def _lowest_point_m(self, index: int) -> float:
-        """Height of the cube's lowest corner over the table."""
-        x, y, z = self._upward[index].tolist()
-        return float(self._positions[index][2]) - CUBE_HALF_M * (abs(x) + abs(y) + abs(z))
+    def _lowest_point_m(self, index: int) -> Array:
+        """Height of the cube's lowest corner over the table, shape (...)."""
+        return self._positions[index][..., 2] - CUBE_HALF_M * np.abs(self._upward[index]).sum(axis=-1)
 
 
 def cube_of(arm: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mart.sim.world.progress import Progress
-from mart.sim.world.world import ACTION_SIZE, Diverged, World
+from mart.sim.world.surface import ACTION_SIZE
+from mart.sim.world.world import Diverged, World
 
 __all__ = ["ACTION_SIZE", "Diverged", "Progress", "World"]

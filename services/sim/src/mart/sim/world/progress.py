@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+import numpy as np
+
+from mart.sim.world.data import Array, Flags
 
 
 @dataclass(frozen=True)
@@ -19,6 +24,15 @@ class Progress:
     failed: str | None
 
 
-def next_success_ticks(success_ticks: float, success_now: bool) -> float:
-    """The count after one more tick."""
-    return success_ticks + 1.0 if success_now else 0.0
+def next_success_ticks(success_ticks: Array, success_now: Flags) -> Array:
+    """The count after one more tick; all of shape (...)."""
+    return np.where(success_now, success_ticks + 1.0, 0.0)
+
+
+def first_reasons(failed: Mapping[str, Flags], worlds: int) -> list[str]:
+    """For each world the first of the reasons that hold there, "" where none does."""
+    reasons = [""] * worlds
+    for reason, flags in reversed(list(failed.items())):
+        for world in np.flatnonzero(flags):
+            reasons[world] = reason
+    return reasons

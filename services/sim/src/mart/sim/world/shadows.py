@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.sim.world.data import Data
 from mart.sim.world.palette import rgba
 
 _PIXELS = 64
@@ -19,9 +20,9 @@ _Z_M = 0.0008
 
 
 class Shadows:
-    """Keeps each spot under its caster."""
+    """Keeps each spot under its caster, in one world or in every one of a batch."""
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+    def __init__(self, model: mujoco.MjModel, data: Data) -> None:
         spots = [i for i in range(model.nbody) if model.body(i).name.endswith("/shadow")]
         casters = {model.body(i).name.removesuffix("/shadow"): int(model.body_mocapid[i]) for i in spots}
         sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{name}/tool") for name in casters}
@@ -36,8 +37,8 @@ class Shadows:
 
     def follow(self) -> None:
         data = self._data
-        data.mocap_pos[self._tool_spots, :2] = data.site_xpos[self._sites, :2]
-        data.mocap_pos[self._thing_spots, :2] = data.xpos[self._bodies, :2]
+        data.mocap_pos[..., self._tool_spots, :2] = data.site_xpos[..., self._sites, :2]
+        data.mocap_pos[..., self._thing_spots, :2] = data.xpos[..., self._bodies, :2]
 
 
 def add_shadow_material(spec: mujoco.MjSpec) -> None:

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import mujoco
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.pose import Pose, quaternion_conjugate, quaternion_log, quaternion_multiply
@@ -21,16 +21,15 @@ from mart.protocol.tasks import Task, get_task
 from mart.sim.tasks import Scene, scene_of
 from mart.sim.world import kinematics, model, osc, panda
 from mart.sim.world.arm import MeasuredArm
-from mart.sim.world.gripper import STROKE_M, finger_target_m
+from mart.sim.world.data import Array
 from mart.sim.world.meshes import Detail
-from mart.sim.world.progress import Progress, next_success_ticks
-from mart.sim.world.shadows import Shadows
+from mart.sim.world.progress import Progress, first_reasons
+from mart.sim.world.surface import ACTION_SIZE, Surface
 
-Array = NDArray[np.float64]
+STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+FATAL_WARNINGS = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 
-ACTION_SIZE = 7  # 6 of motion, 1 of gripper
-_STATE = mujoco.mjtState.mjSTATE_INTEGRATION
-_FATAL = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
+_HOLD_OPEN = np.array([0.0] * 6 + [-1.0])
 
 
 def _log_warning(message: str) -> None:
@@ -61,20 +60,9 @@ class World:
         self.control_period_s = 1.0 / control_hz
         self.model = model.build(scene, timestep_s, detail)
         self.data = mujoco.MjData(self.model)
-        scene.attach(self.data)
+        self._surface = Surface(scene, self.model, self.data)
         self._action_shape = (len(self.arms), ACTION_SIZE)
-        limits = scene.task.limits
-        self._action_scale = np.array([limits.step_m] * 3 + [limits.step_rad] * 3 + [-STROKE_M])
-        self._arms = {arm.name: MeasuredArm(self.model, self.data, arm.name) for arm in scene.task.arms}
-        self._shadows = Shadows(self.model, self.data)
-        self._success_ticks = self.data.userdata[-1:]  # here, so that it is saved and replayed with the state
-        self._fatal_warnings = self.data.warning.number[_FATAL]
-        blocks = self.data.userdata[: osc.BLOCK_SIZE * len(self.arms)].reshape(len(self.arms), osc.BLOCK_SIZE)
-        self._modes, self._commands, self._postures = (
-            blocks[:, osc.MODE],
-            blocks[:, osc.COMMAND],
-            blocks[:, osc.POSTURE],
-        )
+        self._fatal_warnings = self.data.warning.number[FATAL_WARNINGS]
 
     @classmethod
     def build(
@@ -117,10 +105,9 @@ class World:
         for index, arm in enumerate(self.task.arms):
             tool_in_world = arm.pose_base_in_world @ self._scene.start_pose_in_base(arm, random)
             joints = kinematics.solve(self.model, arm.name, tool_in_world, np.array(panda.HOME_RAD))
-            self._arms[arm.name].place(joints)
-            self._postures[index] = joints
-        self._commands[:] = (*(0.0,) * 6, finger_target_m(0.0))
-        self._modes[:] = osc.NEW_DELTA
+            self._surface.arms[arm.name].place(joints)
+            self._surface.postures[index] = joints
+        self._surface.command(np.tile(_HOLD_OPEN, (len(self.arms), 1)))
         mujoco.mj_forward(self.model, self.data)
 
     def tool_pose_in_base(self, arm: str) -> Pose:
@@ -129,7 +116,7 @@ class World:
 
     def gripper(self, arm: str) -> float:
         """Measured, 0 open … 1 closed."""
-        return self._arm(arm).gripper()
+        return float(self._arm(arm).gripper())
 
     def action_for(self, arm: str, target_tool_in_base: Pose, gripper: float) -> Array:
         """The action, shape (7,), that goes towards an absolute target as far as workspace and limits allow.
@@ -162,46 +149,37 @@ class World:
             )
         if not np.isfinite(actions).all():
             raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
-        np.multiply(np.minimum(np.maximum(actions, -1.0), 1.0), self._action_scale, out=self._commands)
-        self._modes[:] = osc.NEW_DELTA
+        self._surface.command(actions)
         begun_s = self.sim_time_s
         mujoco.mj_step(self.model, self.data, self._substeps)
         # Poses of the new state: mj_step leaves those of its last substep's beginning.
         mujoco.mj_kinematics(self.model, self.data)
         if self._fatal_warnings.any():
             raise Diverged(begun_s)
-        self._scene.remember()
-        self._success_ticks[0] = next_success_ticks(self._success_ticks[0], self._scene.judge().success_now)
+        self._surface.settle()
 
     def integration_state(self) -> bytes:
         """MuJoCo's full integration state, float64 little-endian: all that decides the future, and the shadows."""
-        self._shadows.follow()
-        state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
-        mujoco.mj_getState(self.model, self.data, state, _STATE)
+        self._surface.cast_shadows()
+        state = np.empty(mujoco.mj_stateSize(self.model, STATE))
+        mujoco.mj_getState(self.model, self.data, state, STATE)
         return state.astype("<f8").tobytes()
 
     def set_integration_state(self, state: bytes) -> None:
         """Raises InvalidInput where the size is not this model's or a number is not finite."""
-        expected = 8 * mujoco.mj_stateSize(self.model, _STATE)
+        expected = 8 * mujoco.mj_stateSize(self.model, STATE)
         if len(state) != expected:
             raise InvalidInput(f"A state of {len(state)} bytes was given; this model's has {expected}.")
         numbers = np.frombuffer(state, dtype="<f8").astype(np.float64)
         if not np.isfinite(numbers).all():
             raise InvalidInput("A state with NaN or infinity was given; every number must be finite.")
         mujoco.mj_resetData(self.model, self.data)
-        mujoco.mj_setState(self.model, self.data, numbers, _STATE)
+        mujoco.mj_setState(self.model, self.data, numbers, STATE)
         mujoco.mj_kinematics(self.model, self.data)
 
     def observations(self) -> dict[str, Array]:
         """All that any operator sees, in the catalogue's order."""
-        seen = self._scene.observe()
-        for name, arm in self._arms.items():
-            seen[f"{name}/tool_position_in_base"], seen[f"{name}/tool_quaternion_in_base"] = (
-                arm.tool_in_base()
-            )
-            seen[f"{name}/joint_positions"] = arm.joint_positions()
-            seen[f"{name}/gripper"] = np.array([arm.gripper()])
-        return {observation.name: seen[observation.name] for observation in self.task.observations}
+        return self._surface.observations()
 
     def observations_for(self, arm: str) -> dict[str, Array]:
         """What this arm's operator sees."""
@@ -209,18 +187,19 @@ class World:
         return {observation.name: seen[observation.name] for observation in self.task.observations_of(arm)}
 
     def progress(self) -> Progress:
-        judgement = self._scene.judge()
-        ticks = int(self._success_ticks[0])
+        judgement = self._surface.judge()
+        ticks = int(self._surface.success_ticks)
+        (reason,) = first_reasons(judgement.failed, worlds=1)
         return Progress(
-            subtasks=judgement.subtasks,
-            success_now=judgement.success_now,
+            subtasks={name: bool(done) for name, done in judgement.subtasks.items()},
+            success_now=bool(judgement.success_now),
             success_ticks=ticks,
             success=ticks >= self.task.success_hold_ticks,
-            failed=judgement.failed,
+            failed=reason or None,
         )
 
     def _arm(self, name: str) -> MeasuredArm:
-        return self._arms[self.task.arm(name).name]
+        return self._surface.arms[self.task.arm(name).name]
 
 
 def _within_unit(vector: Array) -> Array:

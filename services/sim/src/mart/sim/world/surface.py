@@ -1,0 +1,64 @@
+"""All that Python touches between two control periods: commands in; observations, memory and success out.
+
+Written once for one world and for a batch; shapes (...) are () in a world and (worlds,) in a batch. Physics and
+controller lie below, in MuJoCo and osc.c.
+"""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from mart.sim.tasks import Judgement, Scene
+from mart.sim.world import osc
+from mart.sim.world.arm import MeasuredArm
+from mart.sim.world.data import Array, Data
+from mart.sim.world.gripper import STROKE_M
+from mart.sim.world.progress import next_success_ticks
+from mart.sim.world.shadows import Shadows
+
+ACTION_SIZE = 7  # 6 of motion, 1 of gripper
+
+
+class Surface:
+    """The scene must have been made for this data alone: it keeps views of it."""
+
+    def __init__(self, scene: Scene, model: mujoco.MjModel, data: Data) -> None:
+        scene.attach(data)
+        self._scene = scene
+        self._shadows = Shadows(model, data)
+        self.arms = {arm.name: MeasuredArm(model, data, arm.name) for arm in scene.task.arms}
+        limits = scene.task.limits
+        self._action_scale = np.array([limits.step_m] * 3 + [limits.step_rad] * 3 + [-STROKE_M])
+        blocks = data.userdata[..., : osc.BLOCK_SIZE * len(self.arms)]
+        blocks = blocks.reshape(*blocks.shape[:-1], len(self.arms), osc.BLOCK_SIZE)
+        self.modes, self.commands = blocks[..., osc.MODE], blocks[..., osc.COMMAND]
+        self.postures = blocks[..., osc.POSTURE]
+        self.success_ticks = data.userdata[..., -1]  # here, so that it is saved and replayed with the state
+
+    def command(self, actions: Array) -> None:
+        """actions: shape (..., arms, 7), clipped to [-1, 1]."""
+        np.multiply(np.minimum(np.maximum(actions, -1.0), 1.0), self._action_scale, out=self.commands)
+        self.modes[...] = osc.NEW_DELTA
+
+    def settle(self) -> None:
+        """A control period is over: what it did is remembered and counted."""
+        self._scene.remember()
+        self.success_ticks[...] = next_success_ticks(self.success_ticks, self.judge().success_now)
+
+    def judge(self) -> Judgement:
+        return self._scene.judge()
+
+    def cast_shadows(self) -> None:
+        self._shadows.follow()
+
+    def observations(self) -> dict[str, Array]:
+        """All that any operator sees, in the catalogue's order, each of shape (..., *its own). Copies."""
+        seen = self._scene.observe()
+        for name, arm in self.arms.items():
+            seen[f"{name}/tool_position_in_base"], seen[f"{name}/tool_quaternion_in_base"] = (
+                arm.tool_in_base()
+            )
+            seen[f"{name}/joint_positions"] = arm.joint_positions()
+            seen[f"{name}/gripper"] = arm.gripper()[..., None]
+        return {o.name: np.array(seen[o.name], dtype=np.float64) for o in self._scene.task.observations}
