@@ -1,0 +1,232 @@
+"""Table assembly: a base with two sockets, a column for each, and a tabletop with a knob at either end.
+
+Everything goes together by its shape. The knobs are round, so that a tabletop held by one of them hangs down: it takes
+two arms to carry it level (bars instead of knobs would let one arm do it).
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import mujoco
+import numpy as np
+
+from mart.protocol.tasks import Arm
+from mart.sim.tasks.scene import Judgement, Scene
+from mart.sim.tasks.things import Thing, Tool
+from mart.sim.world.data import Array, Data, Flags
+from mart.sim.world.palette import rgba
+from mart.sim.world.scenery import TABLE_HALF_M
+from mart.sim.world.shadows import add_shadow
+from mart.sim.world.symbols import add_tile
+
+BASE_HALF_M = (0.18, 0.06, 0.01)
+SOCKET_X_M = 0.12  # of the sockets in the base, of the columns and of the tabletop's holes
+_SOCKET_HALF_M, _WALL_HALF_M, _WALL_HEIGHT_M = 0.025, 0.008, 0.04
+SEAT_Z_M = 2 * BASE_HALF_M[2]  # where a seated column's foot stands, in the base
+
+COLUMN_HALF_M, COLUMN_HEIGHT_M = 0.022, 0.14
+# Four balls instead of edges under a column: four contacts, and a chamfer that finds the socket.
+_FOOT_RADIUS_M = 0.009
+_PEG_RADIUS_M, _PEG_HEIGHT_M = 0.010, 0.025  # the palm is 45 mm above the pads, so no peg may be higher
+
+TOP_HALF_M = (0.17, 0.10, 0.01)
+_HOLE_HALF_M = 0.016
+KNOB_X_M = 0.205
+_KNOB_RADIUS_M, _KNOB_HALF_M = 0.012, 0.006
+TOP_SEATED_Z_M = SEAT_Z_M + COLUMN_HEIGHT_M + TOP_HALF_M[2]  # of its middle, in the base
+_REST_HEIGHT_M, _REST_Y_M = 0.03, 0.30
+LIFTED_M = 0.10
+
+_DENSITY = {
+    "column": 780.0,
+    "tabletop": 310.0,
+}  # kg/m³: 0.21 and 0.43 kg, so that no arm sags by more than 5 mm
+_FIRM = {"solref": (0.004, 1.0)}
+_SLIPPERY_SOCKET = {"priority": 1, "friction": (0.3, 0.005, 0.0001), **_FIRM}
+_SLIPPERY_PEG = {"priority": 1, "friction": (0.2, 0.005, 0.0001), **_FIRM}
+_UNSEEN = {"group": 3}
+_GHOST = {"contype": 0, "conaffinity": 0, "mass": 0.0}
+_BOX, _SPHERE, _CAPSULE = (
+    mujoco.mjtGeom.mjGEOM_BOX,
+    mujoco.mjtGeom.mjGEOM_SPHERE,
+    mujoco.mjtGeom.mjGEOM_CAPSULE,
+)
+
+_RELEASED_WIDTH_M, _RELEASED_M = 0.06, 0.27
+
+
+class TableAssembly(Scene):
+    def add_objects(self, spec: mujoco.MjSpec) -> None:
+        self._add_base(spec)
+        for arm, side in zip(self.task.arms, (-1, 1), strict=True):
+            _add_column(spec, arm, side)
+        self._add_tabletop(spec)
+
+    def _add_base(self, spec: mujoco.MjSpec) -> None:
+        base = spec.worldbody.add_body(name="table_base", mocap=True)
+        base.add_geom(
+            type=_BOX, size=BASE_HALF_M, pos=(0, 0, BASE_HALF_M[2]), material="walnut", **_SLIPPERY_SOCKET
+        )
+        out, half_z = _SOCKET_HALF_M + _WALL_HALF_M, _WALL_HEIGHT_M / 2
+        for arm, side in zip(self.task.arms, (-1, 1), strict=True):
+            for x, y, half_x, half_y in (
+                (0, -out, out + _WALL_HALF_M, _WALL_HALF_M),
+                (-out, 0, _WALL_HALF_M, _SOCKET_HALF_M),
+                (out, 0, _WALL_HALF_M, _SOCKET_HALF_M),
+                (0, out, out + _WALL_HALF_M, _WALL_HALF_M),
+            ):
+                base.add_geom(
+                    type=_BOX,
+                    size=(half_x, half_y, half_z),
+                    pos=(SOCKET_X_M * side + x, y, SEAT_Z_M + half_z),
+                    material="paint",
+                    rgba=rgba(arm.color),
+                    **_SLIPPERY_SOCKET,
+                )
+
+    def _add_tabletop(self, spec: mujoco.MjSpec) -> None:
+        for x in (-0.08, 0.08):
+            spec.worldbody.add_geom(
+                type=_BOX,
+                size=(0.012, TOP_HALF_M[1], _REST_HEIGHT_M / 2),
+                pos=(x, _REST_Y_M, _REST_HEIGHT_M / 2),
+                material="slate",
+            )
+        top = spec.worldbody.add_body(name="tabletop", pos=(0, _REST_Y_M, _REST_HEIGHT_M + TOP_HALF_M[2]))
+        top.add_freejoint(name="tabletop")
+        half_x, half_y, half_z = TOP_HALF_M
+        hole, beside = _HOLE_HALF_M, (half_y - _HOLE_HALF_M) / 2
+        end = (half_x - SOCKET_X_M - hole) / 2
+        for x, y, size_x, size_y in (
+            (0, -hole - beside, half_x, beside),
+            (-half_x + end, 0, end, hole),
+            (0, 0, SOCKET_X_M - hole, hole),
+            (half_x - end, 0, end, hole),
+            (0, hole + beside, half_x, beside),
+        ):
+            size = (size_x, size_y, half_z)
+            top.add_geom(
+                type=_BOX, size=size, pos=(x, y, 0), material="oak", density=_DENSITY["tabletop"], **_FIRM
+            )
+        for arm, side in zip(self.task.arms, (-1, 1), strict=True):
+            _add_knob(spec, top, arm, side)
+        add_shadow(spec, "tabletop", radius_m=0.26)
+
+    def attach(self, data: Data) -> None:
+        self._base, self._top = Thing(data, "table_base"), Thing(data, "tabletop")
+        self._columns = [Thing(data, column_of(arm)) for arm in self.task.arm_names]
+        self._tools = {arm: Tool(data, arm) for arm in self.task.arm_names}
+
+    def place_objects(self, random: np.random.Generator) -> None:
+        x, y = random.uniform(-0.02, 0.02, 2)
+        self._base.put((x, y - 0.02, 0.0), random.uniform(-0.1, 0.1))
+        for column, side in zip(self._columns, (-1, 1), strict=True):
+            x, y = random.uniform(-0.03, 0.03, 2)
+            column.put((0.20 * side + x, y - 0.25, 0.0), random.uniform(-0.3, 0.3))
+        x, y = random.uniform(-0.02, 0.02, 2)
+        self._top.put((x, _REST_Y_M + y, _REST_HEIGHT_M + TOP_HALF_M[2]), random.uniform(-0.1, 0.1))
+
+    def observe(self) -> dict[str, Array]:
+        observations = {f"{arm}/tool_position_in_world": tool.position for arm, tool in self._tools.items()}
+        for thing in (self._base, self._top, *self._columns):
+            observations |= thing.observations()
+        return observations
+
+    def judge(self) -> Judgement:
+        column0, column1 = (
+            self._column_seated(*of_one) for of_one in zip(self._columns, (-1, 1), strict=True)
+        )
+        lifted = (self._top.position[..., 2] > LIFTED_M) & (self._top.uprightness > 0.95)
+        seated = self._top_seated() & column0 & column1
+        subtasks = {
+            "column0_seated": column0,
+            "column1_seated": column1,
+            "tabletop_lifted": lifted,
+            "tabletop_seated": seated,
+        }
+        let_go = [self._let_go(tool) for tool in self._tools.values()]
+        return Judgement(subtasks, np.logical_and.reduce([seated, *let_go]), self._failures())
+
+    def _column_seated(self, column: Thing, side: int) -> Flags:
+        off = np.abs(self._base.frame(column.position) - (SOCKET_X_M * side, 0.0, SEAT_Z_M))
+        return np.all(off < (0.020, 0.020, 0.006), axis=-1) & (column.uprightness > 0.985)
+
+    def _top_seated(self) -> Flags:
+        off = np.abs(self._base.frame(self._top.position) - (0.0, 0.0, TOP_SEATED_Z_M))
+        return np.all(off < (0.015, 0.015, 0.006), axis=-1) & (self._top.uprightness > 0.995)
+
+    def _let_go(self, tool: Tool) -> Flags:
+        away_m = np.linalg.norm(tool.position - self._top.position, axis=-1)
+        return (tool.width_m > _RELEASED_WIDTH_M) | (away_m > _RELEASED_M)
+
+    def _failures(self) -> dict[str, Flags]:
+        failures = {}
+        for index, column in enumerate(self._columns):
+            low = column.position[..., 2] < 0.06
+            failures[f"Column {index} fell off the table."] = _off_the_table(column)
+            failures[f"Column {index} fell over."] = low & (column.uprightness < 0.7)
+        failures["The tabletop fell off the table."] = _off_the_table(self._top)
+        failures["The tabletop tipped over."] = self._top.uprightness < 0.5
+        return failures
+
+
+def column_of(arm: str) -> str:
+    return arm.replace("arm", "column")
+
+
+def _add_column(spec: mujoco.MjSpec, arm: Arm, side: int) -> None:
+    """Its frame is at its foot."""
+    name = column_of(arm.name)
+    half, height, radius = COLUMN_HALF_M, COLUMN_HEIGHT_M, _FOOT_RADIUS_M
+    column = spec.worldbody.add_body(name=name, pos=(0.20 * side, -0.25, 0))
+    column.add_freejoint(name=name)
+    column.add_geom(
+        type=_BOX,
+        size=(half, half, height / 2),
+        pos=(0, 0, height / 2),
+        material="paint",
+        rgba=rgba(arm.color),
+        **_GHOST,
+    )
+    column.add_geom(
+        name=name,
+        type=_BOX,
+        size=(half, half, (height - radius) / 2),
+        pos=(0, 0, (height + radius) / 2),
+        density=_DENSITY["column"],
+        **_FIRM,
+        **_UNSEEN,
+    )
+    inset = half - radius
+    for x, y in product((-inset, inset), repeat=2):
+        column.add_geom(type=_SPHERE, size=(radius, 0, 0), pos=(x, y, radius), mass=0, **_FIRM, **_UNSEEN)
+    column.add_geom(
+        type=_CAPSULE,
+        size=(_PEG_RADIUS_M, 0, 0),
+        fromto=(0, 0, height - _PEG_RADIUS_M, 0, 0, height + _PEG_HEIGHT_M - _PEG_RADIUS_M),
+        mass=0.004,
+        material="brass",
+        **_SLIPPERY_PEG,
+    )
+    for normal in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)):
+        position = (half * normal[0], half * normal[1], 0.55 * height)
+        add_tile(spec, column, arm.symbol, radius_m=0.012, position=position, normal=normal)
+    add_shadow(spec, name, radius_m=0.055)
+
+
+def _add_knob(spec: mujoco.MjSpec, top: mujoco.MjsBody, arm: Arm, side: int) -> None:
+    post = (KNOB_X_M - TOP_HALF_M[0]) / 2
+    look = {"material": "paint", "rgba": rgba(arm.color), "density": _DENSITY["tabletop"], **_FIRM}
+    top.add_geom(type=_BOX, size=(post, 0.004, 0.005), pos=(side * (KNOB_X_M - post), 0, 0), **look)
+    x, y = side * KNOB_X_M, _KNOB_HALF_M
+    top.add_geom(
+        name=f"knob{side}", type=_CAPSULE, size=(_KNOB_RADIUS_M, 0, 0), fromto=(x, -y, 0, x, y, 0), **look
+    )
+    tile = (side * (SOCKET_X_M + 0.033), 0.0, TOP_HALF_M[2])
+    add_tile(spec, top, arm.symbol, radius_m=0.010, position=tile, normal=(0, 0, 1))
+
+
+def _off_the_table(thing: Thing) -> Flags:
+    outside = np.any(np.abs(thing.position[..., :2]) > TABLE_HALF_M, axis=-1)
+    return outside | (thing.position[..., 2] < -0.05)
