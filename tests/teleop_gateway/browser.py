@@ -73,13 +73,12 @@ class Browser:
         sent_us = clock.monotonic_ns() // 1000
         values = {
             "sequence": self._sequence,
+            "seen_tick": 0,
             "gripper": 0.0,
             "quaternion_wxyz": (1.0, 0.0, 0.0, 0.0),
             **given,
         }
-        return PhoneFrame(
-            seat_epoch=epoch, seen_tick=0, sent_us=sent_us, position=position, flags=flags, **values
-        )
+        return PhoneFrame(seat_epoch=epoch, sent_us=sent_us, position=position, flags=flags, **values)
 
     async def drive(self, epoch: int, duration_s: float = 1e9, **given: Any) -> None:
         """Sends frames at 60 Hz."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mart.protocol.messages import OPERATOR_HUMAN, Command, pose_from_message
+from mart.protocol.messages import OPERATOR_HUMAN, ArmState, Command, pose_from_message
 from mart.protocol.pose import Pose
 from mart.teleop_gateway.driving import LOST_AFTER_S, Driving, Input
 from mart.teleop_gateway.frame import Flag
@@ -185,3 +185,25 @@ def test_the_phones_state_is_told(seat: Seat) -> None:
     assert phone is not None
     assert phone.age_s == pytest.approx(0.1)
     assert not phone.tracking
+
+
+def test_whoever_takes_over_drops_nothing_before_the_first_press_or_grip(seat: Seat) -> None:
+    seat.driving.see(ArmState(arm="arm0", gripper=0.6, action=[0.0] * 6 + [1.0]))
+    assert seat.driving.gripper == 1.0  # what a page that comes now is told
+    assert [seat.command(gripper=0.0).gripper for _ in range(3)] == [1.0, 1.0, 1.0]
+    assert target(seat.command(gripper=0.0)).distance_to(HOME) == (0.0, 0.0)
+    assert seat.command(gripper=0.0, more=Flag.CLUTCH).gripper == 0.0
+    assert seat.command(gripper=0.0).gripper == 0.0
+
+
+def test_a_grip_counts_also_with_an_open_clutch(seat: Seat) -> None:
+    seat.driving.see(ArmState(arm="arm0", action=[0.0] * 6 + [1.0]))
+    assert [seat.command(gripper=given).gripper for given in (0.0, 0.0, 0.5, 0.5)] == [1.0, 1.0, 0.5, 0.5]
+
+
+def test_a_phone_that_comes_drops_nothing_either(seat: Seat) -> None:
+    seat.driving.see(ArmState(arm="arm0", gripper=0.0))
+    seat.command(gripper=0.0)
+    seat.command(gripper=1.0)
+    seat.driving.connect(Input.PHONE)
+    assert seat.command(Input.PHONE, gripper=0.0).gripper == 1.0

@@ -10,7 +10,7 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import Conflict, Forbidden, InvalidInput, Unavailable
-from mart.protocol.messages import Offer
+from mart.protocol.messages import OPERATOR_POLICY, Offer
 from mart.protocol.tokens import Role
 from mart.teleop_gateway import peers
 from tests.support.mailbox import Mailbox
@@ -113,6 +113,18 @@ def test_the_bus_gets_what_the_operator_sees(on_seat: OnSeat) -> None:
             assert (picture.format, picture.frame_id) == ("h264", "arm0")
             age_s = clock.wall_ns() * 1e-9 - picture.timestamp.ToNanoseconds() * 1e-9
             assert 0 < age_s < 5
+
+    on_seat(body)
+
+
+def test_a_policys_seat_is_watched_and_driven_by_nobody(on_seat: OnSeat) -> None:
+    async def body(seat: SeatUnderTest) -> None:
+        seat.room.seat(epoch=2, operator=OPERATOR_POLICY)
+        async with connected(seat.exchange(Role.VIEWER, seat.token(Role.VIEWER, epoch=2))) as viewer:
+            assert await viewer.next_tick() is not None
+            with seat.commands() as commands:
+                await viewer.drive(2, 0.3, clutch=True)
+                assert len(commands) == 0
 
     on_seat(body)
 

@@ -120,8 +120,8 @@ def test_a_second_browser_replaces_the_first(on_seat: OnSeat) -> None:
         ):
             await second.wait_told(lambda told: told["type"] == "tick")
             with seat.commands() as commands:
-                await asyncio.gather(first.drive(1, 0.3), second.drive(1, 0.3, gripper=0.5))
-                assert {command.gripper for command in commands.all()} == {0.5}
+                await asyncio.gather(first.drive(1, 0.3), second.drive(1, 0.3, seen_tick=4711))
+                assert {command.seen_tick for command in commands.all()} == {4711}
             assert first.told[-1] == {"type": "replaced"}
 
     on_seat(body)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import enum
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-from mart.protocol.messages import OPERATOR_HUMAN, Command, CommandStamps, pose_message
+from mart.protocol.messages import OPERATOR_HUMAN, ArmState, Command, CommandStamps, pose_message
 from mart.protocol.pose import Pose
 from mart.teleop_gateway.frame import Flag
 from mart.teleop_gateway.guard import Guard, Hand
@@ -27,6 +27,7 @@ class _Source:
     """What is known of one driving peer. clock_offset_ns: gateway clock minus the peer's, once the peer has told it."""
 
     guard: Guard
+    grips: bool = False  # its gripper counts
     last: Hand | None = None
     clock_offset_ns: int | None = None
 
@@ -42,7 +43,7 @@ class Driving:
     """The driving of one arm by one holder of its seat (one epoch).
 
     `first_sequence` must be above every command's number of an earlier process for the same epoch: the sim takes only
-    newer ones.
+    newer ones. gripper_told: what the gripper was asked for in the newest tick, by whoever drove then; None: unknown.
     """
 
     arm: str
@@ -50,6 +51,7 @@ class Driving:
     first_sequence: int
     retarget: Retarget
     active: Input = Input.KEYBOARD
+    gripper_told: float | None = None
     _sources: dict[Input, _Source] = field(default_factory=dict)
     _rejected: Counter[str] = field(default_factory=Counter)
     _target: Target | None = None
@@ -94,11 +96,18 @@ class Driving:
         hand = peer.guard.admit(payload, now_s) if peer else None
         if peer is None or hand is None:
             return None
+        peer.grips = peer.grips or _means_its_gripper(hand, peer.last)
         peer.last = hand
         if source is not self.active or measured_tool_in_base is None:
             return None
-        self._target = self.retarget.follow(hand, measured_tool_in_base)
+        target = self.retarget.follow(hand, measured_tool_in_base)
+        gripper = target.gripper if peer.grips or self.gripper_told is None else self.gripper
+        self._target = replace(target, gripper=gripper)
         return self._command(hand, self._target, peer.clock_offset_ns, now_ns)
+
+    def see(self, arm: ArmState) -> None:
+        """The arm after the newest tick, whoever drove it."""
+        self.gripper_told = (arm.action[-1] + 1.0) / 2.0 if arm.action else arm.gripper
 
     def world_was_reset(self) -> None:
         self._target = None
@@ -115,7 +124,7 @@ class Driving:
     @property
     def gripper(self) -> float:
         """What was asked for last, 0 open … 1 closed."""
-        return self._target.gripper if self._target else 0.0
+        return self._target.gripper if self._target else self.gripper_told or 0.0
 
     def phone(self, now_s: float) -> PhoneState | None:
         peer = self._sources.get(Input.PHONE)
@@ -155,6 +164,11 @@ class Driving:
             seen_tick=hand.frame.seen_tick,
             emergency_stop=Flag.EMERGENCY_STOP in hand.frame.flags,
         )
+
+
+def _means_its_gripper(hand: Hand, before: Hand | None) -> bool:
+    """A hand that has just come does not know what its arm holds: until it presses or grips, it must drop nothing."""
+    return hand.clutch or (before is not None and hand.frame.gripper != before.frame.gripper)
 
 
 def _counts(guard: Guard) -> Counter[str]:

@@ -1,4 +1,6 @@
-"""The gateway: one process for each human seat, there before its first offer, back within a second of a crash."""
+"""The gateway: one process for each seat of a person or a policy, there before its first offer, back within a second
+of a crash. A policy's seat has a picture for those who watch, for the recording, and for whoever takes over.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +12,8 @@ import logging
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.errors import MartError, Unavailable
-from mart.protocol.messages import OPERATOR_HUMAN, Event, OpenSeat, OpenSeatReply, RoomStatus, error_message
-from mart.teleop_gateway.assignment import SEAT_KIND, Assignment
+from mart.protocol.messages import Event, OpenSeat, OpenSeatReply, RoomStatus, error_message
+from mart.teleop_gateway.assignment import SEAT_KIND, SERVED, Assignment
 from mart.teleop_gateway.child import Child, Spares
 from mart.teleop_gateway.reading import Reader
 
@@ -38,7 +40,7 @@ class Gateway:
         self.name = name
         self._bus = bus
         self._spares = Spares()
-        self._human: dict[str, frozenset[Assignment]] = {}  # by room, as last told
+        self._wanted: dict[str, frozenset[Assignment]] = {}  # by room, as last told
         self._running: dict[Assignment, asyncio.Task[None]] = {}
         self._gateways = {name}
         self._open: set[str] = set()  # ids of seats whose process answers offers, whoever runs it
@@ -64,8 +66,8 @@ class Gateway:
     # What the rooms say
 
     def _on_status(self, status: RoomStatus) -> None:
-        human = (seat.arm for seat in status.seats if seat.operator == OPERATOR_HUMAN)
-        self._human[status.room] = frozenset(Assignment(status.room, arm) for arm in human)
+        arms = (seat.arm for seat in status.seats if seat.operator in SERVED)
+        self._wanted[status.room] = frozenset(Assignment(status.room, arm) for arm in arms)
         self._reconcile()
 
     def _on_gateway_token(self, key: str, alive: bool) -> None:
@@ -83,8 +85,8 @@ class Gateway:
 
     def _reconcile(self) -> None:
         gateways = frozenset(self._gateways)
-        human = frozenset[Assignment]().union(*self._human.values())
-        mine = {seat for seat in human if owner(gateways, seat) == self.name}
+        wanted = frozenset[Assignment]().union(*self._wanted.values())
+        mine = {seat for seat in wanted if owner(gateways, seat) == self.name}
         for seat in mine - self._running.keys():
             self._running[seat] = self._bus.spawn(self._keep(seat))
         for seat in self._running.keys() - mine:
@@ -150,6 +152,6 @@ class Gateway:
                 await self._opened.wait_for(lambda: seat.id in self._open)
         except TimeoutError as error:
             raise Unavailable(
-                f"{seat.arm} in {seat.room} has no process after {OPEN_TIMEOUT_S:g} s; is the seat a person's? "
-                "`mart rooms` tells."
+                f"{seat.arm} in {seat.room} has no process after {OPEN_TIMEOUT_S:g} s; is the seat a person's "
+                "or a policy's? `mart rooms` tells."
             ) from error

@@ -1,4 +1,4 @@
-"""One human seat: its peers drive its arm and see its view. Lives in a process of its own."""
+"""One seat: its peers drive its arm and see its view; a policy's is watched only. Lives in a process of its own."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.bus.base import Bus, Closable
 from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import (
-    OPERATOR_HUMAN,
     Answer,
+    ArmState,
     Event,
     Offer,
     RoomStatus,
@@ -26,7 +26,7 @@ from mart.protocol.messages import (
 from mart.protocol.pose import Pose
 from mart.protocol.tokens import Role
 from mart.teleop_gateway import channel
-from mart.teleop_gateway.assignment import SEAT_KIND, Assignment
+from mart.teleop_gateway.assignment import SEAT_KIND, SERVED, Assignment
 from mart.teleop_gateway.driving import Driving, Input
 from mart.teleop_gateway.encoder import Codec
 from mart.teleop_gateway.latency import MotionToPhoton
@@ -189,14 +189,16 @@ class Seat:
             if arm.arm == self.arm:
                 measured = pose_from_message(arm.tool_in_base)
                 self._scenery.offer(state, received_ns)
-                self._loop.call_soon_threadsafe(self._on_state, state, measured)
+                self._loop.call_soon_threadsafe(self._on_state, state, arm, measured)
 
-    def _on_state(self, state: State, measured_tool_in_base: Pose) -> None:
+    def _on_state(self, state: State, arm: ArmState, measured_tool_in_base: Pose) -> None:
         was_reset = state.boot != self._state.boot or state.sim_time_s < self._state.sim_time_s
         self._state = state
         self._measured = measured_tool_in_base
-        if was_reset and self._driving is not None:
-            self._driving.world_was_reset()
+        if self._driving is not None:
+            self._driving.see(arm)
+            if was_reset:
+                self._driving.world_was_reset()
         self._scenery.on_boot(state.boot)
         if self._status.control_hz:
             self._latency.on_state(state, self._status.control_hz)
@@ -217,7 +219,7 @@ class Seat:
         if self._azimuth_rad is None:
             return
         epoch = next(
-            (s.epoch for s in self._status.seats if s.arm == self.arm and s.operator == OPERATOR_HUMAN), None
+            (s.epoch for s in self._status.seats if s.arm == self.arm and s.operator in SERVED), None
         )
         if self._driving is not None and self._driving.seat_epoch == epoch:
             return
