@@ -132,7 +132,11 @@ _HORIZON_HZ = 20.0
 
 @dataclass(frozen=True)
 class Task:
-    """One task. `horizon_ticks` counts ticks of a room at 20 Hz; `horizon_at` tells it for other rates."""
+    """One task. `horizon_ticks` and `trial_ticks` count ticks of a room at 20 Hz, whatever the room's own rate.
+
+    The horizon is for people, who may take their time. A trial is what a session that collects under a clock allows:
+    three to four times what a practised operator needs (decision 0012). None: as long as the horizon.
+    """
 
     name: str
     title: str
@@ -141,6 +145,7 @@ class Task:
     subtasks: tuple[Subtask, ...]
     observations: tuple[Observation, ...]
     horizon_ticks: int
+    trial_ticks: int | None = None
     success_hold_ticks: int = 10
     limits: Limits = Limits()
     workspace: Workspace = Workspace()
@@ -149,6 +154,11 @@ class Task:
     def time_limit_s(self) -> float:
         """How long an episode may last."""
         return self.horizon_ticks / _HORIZON_HZ
+
+    @property
+    def trial_limit_s(self) -> float:
+        """How long an episode may last that is collected under a clock."""
+        return self.time_limit_s if self.trial_ticks is None else self.trial_ticks / _HORIZON_HZ
 
     def horizon_at(self, control_hz: float) -> int:
         """How many ticks an episode may last in a room of this rate."""

@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Task
 from mart.sim.experts.hand import Hand
-from mart.sim.experts.plan import Plan, Sight, Waypoint
+from mart.sim.experts.person import Person
+from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Waypoint
 from mart.sim.experts.plans import plan_of
 from mart.sim.experts.skill import Skill
 
 _SAME_WAYPOINT_M = 0.05  # a waypoint that jumps further than this is a new movement
+_SLIP_S = 0.4  # how long a hand that slipped stays open
 
 
 @dataclass(frozen=True)
@@ -36,25 +38,31 @@ class Expert:
     def __init__(self, task: Task, arm: str, skill: Skill, random: np.random.Generator) -> None:
         self._arm = task.arm(arm)
         self._plan_of = plan_of(task)
-        self._skill = skill
-        self._random = random
-        self._hand = Hand(skill, random)
+        self._person = Person(skill, random)
+        self._hand = Hand(self._person)
         self._plan: Plan | None = None
         self._waypoint: Waypoint | None = None
+        self._intent: Intent | None = None
         self._seen_s = 0.0
         self._rest_until_s = 0.0
+        self._slip_until_s = 0.0
 
     def act(self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float) -> Intent:
         """observations: what the task declares for this arm; see `World.observations_for`."""
-        sight = self._look(observations, sim_time_s)
-        measured = sight.pose_tool_in_base
-        elapsed_s = max(0.0, sim_time_s - self._seen_s)
-        self._seen_s = max(self._seen_s, sim_time_s)
-        waypoint = self._next_waypoint(sight)
-        if sim_time_s < self._rest_until_s:
-            return Intent(self._hand.rest(measured), waypoint.gripper, engaged=False)
+        if self._intent is None or sim_time_s > self._seen_s:
+            self._intent = self._want(self._look(observations, sim_time_s))
+            self._seen_s = sim_time_s
+        return self._intent
+
+    def _want(self, sight: Sight) -> Intent:
+        now_s, measured = sight.sim_time_s, sight.pose_tool_in_base
+        elapsed_s = now_s - self._seen_s if self._intent is not None else 0.0
+        waypoint = self._waypoint = self._next_waypoint(sight)
+        gripper = self._grip(waypoint, now_s, elapsed_s)
+        if now_s < self._rest_until_s:
+            return Intent(self._hand.rest(measured), gripper, engaged=False)
         target = self._hand.move(waypoint.pose_tool_in_base, measured, waypoint.pace, elapsed_s)
-        return Intent(target, waypoint.gripper, engaged=True)
+        return Intent(target, gripper, engaged=True)
 
     def _look(self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float) -> Sight:
         name = self._arm.name
@@ -68,20 +76,23 @@ class Expert:
 
     def _next_waypoint(self, sight: Sight) -> Waypoint:
         if self._plan is None or self._waypoint is None:
-            self._plan = self._plan_of(self._arm, self._skill, sight)
-            self._waypoint = next(self._plan)
-            self._seen_s = sight.sim_time_s
-            self._rest_until_s = sight.sim_time_s + self._skill.reaction_s * self._random.uniform(0.7, 1.3)
-            return self._waypoint
+            self._plan = self._plan_of(self._arm, self._person, sight)
+            self._rest_until_s = sight.sim_time_s + self._person.reacts_s()
+            return next(self._plan)
         if sight.sim_time_s < self._rest_until_s:
             return self._waypoint
         waypoint = self._plan.send(sight)
-        if self._is_new(waypoint) and self._random.random() < self._skill.pause_probability:
-            self._rest_until_s = sight.sim_time_s + self._skill.pause_s * self._random.uniform(0.5, 1.5)
-        self._waypoint = waypoint
+        if _is_new(waypoint, self._waypoint):
+            self._rest_until_s = sight.sim_time_s + self._person.pauses_s()
         return waypoint
 
-    def _is_new(self, waypoint: Waypoint) -> bool:
-        assert self._waypoint is not None
-        way_m, _ = waypoint.pose_tool_in_base.distance_to(self._waypoint.pose_tool_in_base)
-        return way_m > _SAME_WAYPOINT_M
+    def _grip(self, waypoint: Waypoint, now_s: float, elapsed_s: float) -> float:
+        """What the gripper is told: a hand that should stay closed opens now and then for a moment."""
+        if waypoint.gripper >= CLOSED and self._person.lets_slip(elapsed_s):
+            self._slip_until_s = now_s + _SLIP_S
+        return OPEN if now_s < self._slip_until_s else waypoint.gripper
+
+
+def _is_new(waypoint: Waypoint, last: Waypoint) -> bool:
+    way_m, _ = waypoint.pose_tool_in_base.distance_to(last.pose_tool_in_base)
+    return way_m > _SAME_WAYPOINT_M

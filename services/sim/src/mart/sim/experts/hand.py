@@ -1,4 +1,8 @@
-"""The human part of a scripted operator: moves a reference towards a waypoint, with limited speed and a tremor."""
+"""The human part of a scripted operator: moves a reference towards a goal, with limited speed, misses and a tremor.
+
+A movement has a first part that ends beside its goal, by an error in proportion to its speed, and corrections that
+follow when the error has been seen: the optimized initial impulse model (Meyer, Abrams, Kornblum, Wright, Smith 1988).
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
-from mart.sim.experts.skill import Skill
+from mart.sim.experts.person import Person
 
 _TREMOR_TIME_S = 0.4  # how long the tremor takes to wander off
 _SLOWING_PER_S = 6.0  # near its goal a hand slows down in proportion to what is left
@@ -15,26 +19,40 @@ _LEASH_M = 0.15
 _LEASH_RAD = 0.9
 _ARRIVED_M, _ARRIVED_RAD = 0.004, 0.03  # of the reference
 _FOLLOWED_M, _FOLLOWED_RAD = 0.015, 0.12  # of the measured tool, tremor included
+_NEW_GOAL_M, _NEW_GOAL_RAD = (
+    0.02,
+    0.2,
+)  # a goal that jumps further begins a movement; one that drifts is followed
+
+Vector = NDArray[np.float64]
 
 
 class Hand:
     """Holds where the person wants the tool to be, as the reference without tremor."""
 
-    def __init__(self, skill: Skill, random: np.random.Generator) -> None:
-        self._skill = skill
-        self._random = random
-        self._speed_factor = random.uniform(0.85, 1.15)  # people differ
+    def __init__(self, person: Person) -> None:
+        self._person = person
+        self._speed_factor = person.random.uniform(0.85, 1.15)  # people differ
         self._tremor = np.zeros(6)
+        self._miss = np.zeros(6)  # of the movement under way: translation, rotation vector
+        self._correct_in_s = 0.0
+        self._goal: Pose | None = None
         self._reference: Pose | None = None
+        self._resting: Pose | None = None
 
     def move(self, goal: Pose, measured: Pose, pace: float, elapsed_s: float) -> Pose:
         """One moment of moving towards `goal` at `pace` times the usual speed; the pose to command."""
-        start = self._reference or measured
-        factor = pace * self._speed_factor
-        shift, turn = difference(goal, start)
-        shift = _shortened(shift, _stride(shift, self._skill.speed_m_per_s * factor, elapsed_s))
-        turn = _shortened(turn, _stride(turn, self._skill.turn_rad_per_s * factor, elapsed_s))
-        self._reference = _leashed(moved(start, shift, turn), measured)
+        start, self._resting = self._reference or measured, None
+        if self._goal is None or not _near(goal, self._goal, _NEW_GOAL_M, _NEW_GOAL_RAD):
+            self._begin(difference(goal, start), pace)
+        self._goal = goal
+        shift, turn = difference(moved(goal, self._miss[:3], self._miss[3:]), start)
+        skill, factor = self._person.skill, pace * self._speed_factor
+        step = _shortened(shift, _stride(shift, skill.speed_m_per_s * factor, elapsed_s))
+        turn_step = _shortened(turn, _stride(turn, skill.turn_rad_per_s * factor, elapsed_s))
+        self._reference = _leashed(moved(start, step, turn_step), measured)
+        if _small(shift, turn):
+            self._correct(pace, elapsed_s)
         self._shake(elapsed_s)
         return moved(self._reference, self._tremor[:3], self._tremor[3:])
 
@@ -47,25 +65,46 @@ class Hand:
         )
 
     def rest(self, measured: Pose) -> Pose:
-        """The pose to command while the clutch is let go; moving on starts from the measured one."""
-        last = self._reference or measured
-        self._reference = None
-        return last
+        """The pose to command while the clutch is let go, always the same; moving on starts from the measured one."""
+        if self._resting is None:
+            self._resting = self._reference or measured
+        self._reference = self._goal = None
+        return self._resting
+
+    def _begin(self, way: tuple[Vector, Vector], pace: float) -> None:
+        """A new movement: its first part will end beside the goal, more often too far than too short."""
+        random, share = self._person.random, self._person.skill.overshoot * pace
+        shift, turn = way
+        along = share * random.normal(0.5, 1.0, 2)
+        across = share * 0.3 * float(np.linalg.norm(shift)) * random.standard_normal(3)
+        self._miss = np.concatenate([along[0] * shift + across, along[1] * turn])
+        self._correct_in_s = self._person.notices_s()
+
+    def _correct(self, pace: float, elapsed_s: float) -> None:
+        """The first part is over: once the miss has been noticed, what is left of it is a movement like any other."""
+        self._correct_in_s -= elapsed_s
+        if self._correct_in_s > 0.0:
+            return
+        miss, self._miss = self._miss, np.zeros(6)
+        if not _small(miss[:3], miss[3:]):
+            self._begin((-miss[:3], -miss[3:]), pace)
 
     def _shake(self, elapsed_s: float) -> None:
         """An Ornstein-Uhlenbeck step, exact for any time."""
-        spread = np.repeat([self._skill.tremor_m, self._skill.tremor_rad], 3)
+        skill = self._person.skill
+        spread = np.repeat([skill.tremor_m, skill.tremor_rad], 3)
         keep = np.exp(-elapsed_s / _TREMOR_TIME_S)
-        self._tremor = keep * self._tremor + spread * np.sqrt(1 - keep**2) * self._random.standard_normal(6)
+        drive = self._person.random.standard_normal(6)
+        self._tremor = keep * self._tremor + spread * np.sqrt(1 - keep**2) * drive
 
 
-def difference(goal: Pose, start: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def difference(goal: Pose, start: Pose) -> tuple[Vector, Vector]:
     """Translation (metres) and rotation vector (radians), both along the parent's axes, from `start` to `goal`."""
     turn = Pose(np.zeros(3), goal.quaternion_wxyz) @ Pose(np.zeros(3), start.quaternion_wxyz).inverse()
     return goal.position - start.position, turn.log()[3:]
 
 
-def moved(start: Pose, shift: NDArray[np.float64], turn: NDArray[np.float64]) -> Pose:
+def moved(start: Pose, shift: Vector, turn: Vector) -> Pose:
     """The inverse of `difference`."""
     turned = Pose.exp(np.concatenate([np.zeros(3), turn])) @ Pose(np.zeros(3), start.quaternion_wxyz)
     return Pose(start.position + shift, turned.quaternion_wxyz)
@@ -81,11 +120,15 @@ def _near(goal: Pose, pose: Pose, metres: float, radians: float) -> bool:
     return distance_m < metres and angle_rad < radians
 
 
-def _stride(way: NDArray[np.float64], speed: float, elapsed_s: float) -> float:
+def _small(shift: Vector, turn: Vector) -> bool:
+    return float(np.linalg.norm(shift)) < _ARRIVED_M and float(np.linalg.norm(turn)) < _ARRIVED_RAD
+
+
+def _stride(way: Vector, speed: float, elapsed_s: float) -> float:
     left = float(np.linalg.norm(way))
     return min(speed * elapsed_s, left * min(1.0, _SLOWING_PER_S * elapsed_s) + 0.005 * elapsed_s)
 
 
-def _shortened(vector: NDArray[np.float64], length: float) -> NDArray[np.float64]:
+def _shortened(vector: Vector, length: float) -> Vector:
     size = float(np.linalg.norm(vector))
     return vector if size <= length else vector * (length / size)
