@@ -84,6 +84,10 @@ check-proto: $(VENV)/.tools
 	diff -r --brief --exclude=__pycache__ "$$fresh/mart/v1" protocol/src/mart/v1 \
 	|| { echo "The generated protobuf code is stale: run 'make proto' and commit the result." >&2; exit 1; }
 
+.PHONY: task-pages
+task-pages: $(VENV)/.tools ## Write docs/tasks.md and draw its pictures anew, from the catalogue and the scenes
+	@$(BIN)/python tools/task_pages.py
+
 .PHONY: constraints
 constraints: ## Pin the newest versions of everything anew, from a real installation
 	@tools/pin $(PYTHON) $(PARTS)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from tests.contract.repository import ROOT, relative, tracked_files
 _DOCUMENTS = [path for path in tracked_files() if path.suffix == ".md"]
 _CONSOLE = re.compile(r"^```console\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _SPAN = re.compile(r"`((?:make|mart) [^`]+)`")
+_PYTHON = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"\]\((?!https?:|#)([^)#]+)")
 _HEADING_OR_PLACEHOLDER = re.compile(r"…|[\[\]|{}<>]")
 
@@ -59,6 +61,17 @@ def test_make_verbs_exist(document: str, command: str) -> None:
 )
 def test_the_readme_or_the_guides_name_every_verb(verb: str) -> None:
     assert any(verb in command.split() for _, command in _MAKE)
+
+
+_RUNNABLE = [(path, block) for path in _DOCUMENTS for block in _PYTHON.findall(path.read_text())]
+
+
+@pytest.mark.parametrize(
+    ("path", "block"), _RUNNABLE, ids=lambda value: relative(value) if isinstance(value, Path) else ""
+)
+def test_python_examples_run(path: Path, block: str, tmp_path: Path) -> None:
+    """Each `python` block by itself; a block that is a file of something larger says so: `python file=…`."""
+    subprocess.run([sys.executable, "-W", "error", "-c", block], cwd=tmp_path, check=True)
 
 
 @pytest.mark.parametrize("path", _DOCUMENTS, ids=relative)

@@ -1,0 +1,129 @@
+"""Writes docs/tasks.md from the catalogue, and draws every task from every viewpoint: `make task-pages`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from mart.protocol.tasks import Task, arm_counts, get_task, task_names
+from mart.sim.envs import gymnasium_id
+from mart.sim.envs.renderer import Renderer
+from mart.sim.experts import Expert, get_skill
+from mart.sim.world import World
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+SHEET = "images/tasks.jpg"
+
+_VIEW_PX = (480, 360)
+_MARGIN_PX, _TITLE_PX = 12, 40
+_PAPER, _INK, _SOFT_INK = "#FFFFFF", "#1F2428", "#6A737D"
+_SEED = 4
+_LONGEST_S = 20.0
+
+
+def page() -> str:
+    """The text of docs/tasks.md."""
+    tasks = [get_task(name) for name in task_names()]
+    return "\n".join([*_overview(tasks), *(line for task in tasks for line in _section(task))])
+
+
+def sheet() -> Image.Image:
+    """One row for each task, one picture for each viewpoint, in the middle of what experts do."""
+    rows = [_row(task) for task in map(get_task, task_names())]
+    whole = Image.new("RGB", (max(row.width for row in rows), sum(row.height for row in rows)), _PAPER)
+    top = 0
+    for row in rows:
+        whole.paste(row, (0, top))
+        top += row.height
+    return whole
+
+
+def _overview(tasks: list[Task]) -> Iterator[str]:
+    yield "# What tasks are there?"
+    yield ""
+    yield "Made by `make task-pages` from the catalogue and the scenes. A subtask in *italics* takes more than one arm at the"
+    yield "same time. How to use a task from your own code:"
+    yield "[how-to-use-the-environments.md](how-to-use-the-environments.md)."
+    yield ""
+    yield f"![Every task from every viewpoint: one for each seat, and the shared one]({SHEET})"
+    yield ""
+    yield "| task | arms | what everyone is told | subtasks | success holds | time limit |"
+    yield "|---|---|---|---|---|---|"
+    for task in tasks:
+        counts = ", ".join(map(str, arm_counts(task.name)))
+        subtasks = "; ".join(f"*{s.title}*" if s.coordinated else s.title for s in task.subtasks)
+        holds_s = task.success_hold_ticks / 20
+        yield (
+            f"| [{task.title}](#{task.name}) | {counts} | {task.instruction} | {subtasks} | {holds_s:g} s | "
+            f"{task.time_limit_s:g} s |"
+        )
+
+
+def _section(task: Task) -> Iterator[str]:
+    yield ""
+    yield f"## {task.name}"
+    yield ""
+    yield f"{task.title}, with {len(task.arms)} arms. In Gymnasium: `{gymnasium_id(task.name)}`."
+    yield ""
+    yield "| observation | shape | unit | seen by |"
+    yield "|---|---|---|---|"
+    for one in task.observations:
+        yield f"| `{one.name}` | {'×'.join(map(str, one.shape))} | {one.unit} | {', '.join(one.arms)} |"
+
+
+def _row(task: Task) -> Image.Image:
+    width, height = _VIEW_PX
+    world = _in_the_middle(task)
+    step = width + _MARGIN_PX
+    size = (_MARGIN_PX + step * len(task.viewpoints), _TITLE_PX + height + 2 * _MARGIN_PX)
+    row = Image.new("RGB", size, _PAPER)
+    draw = ImageDraw.Draw(row)
+    draw.text((_MARGIN_PX, _MARGIN_PX), task.title, _INK, ImageFont.load_default(22))
+    for index, viewpoint in enumerate(task.viewpoints):
+        left = _MARGIN_PX + index * step
+        row.paste(_view(world, viewpoint), (left, _TITLE_PX + _MARGIN_PX))
+        draw.text((left + width, _TITLE_PX), viewpoint, _SOFT_INK, ImageFont.load_default(16), anchor="rs")
+    return row
+
+
+def _view(world: World, viewpoint: str) -> Image.Image:
+    """Drawn at twice the size and made smaller, so that edges are smooth."""
+    width, height = _VIEW_PX
+    with closing(Renderer(world.model, viewpoint, 2 * width, 2 * height)) as renderer:
+        large = Image.fromarray(renderer.draw(world.integration_state()))
+    return large.resize(_VIEW_PX, Image.Resampling.LANCZOS)
+
+
+def _in_the_middle(task: Task) -> World:
+    """The world when experts have done about half."""
+    length_s = _played(World.build(task.name), _LONGEST_S)
+    world = World.build(task.name)
+    _played(world, 0.55 * length_s)
+    return world
+
+
+def _played(world: World, until_s: float) -> float:
+    """Seconds until success, or until told to stop."""
+    world.reset(_SEED)
+    skill = get_skill("expert")
+    experts = {
+        arm: Expert(world.task, arm, skill, np.random.default_rng(index))
+        for index, arm in enumerate(world.arms)
+    }
+    while world.sim_time_s < until_s and not world.progress().success:
+        intents = {
+            arm: expert.act(world.observations_for(arm), world.sim_time_s) for arm, expert in experts.items()
+        }
+        world.step(
+            [world.action_for(arm, one.target_tool_in_base, one.gripper) for arm, one in intents.items()]
+        )
+    return world.sim_time_s
+
+
+if __name__ == "__main__":
+    (DOCS / "tasks.md").write_text(page() + "\n")
+    sheet().save(DOCS / SHEET, quality=88, optimize=True)
