@@ -8,7 +8,7 @@ from collections import Counter
 
 import pytest
 
-from mart.sim.complaints import Complaints
+from mart.protocol.complaints import Complaints
 from mart.sim.loop import Mailbox
 
 

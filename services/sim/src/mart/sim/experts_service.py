@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus import Bus, Publisher, Sample
+from mart.protocol.complaints import Complaints
 from mart.protocol.errors import MartError
 from mart.protocol.messages import OPERATOR_SCRIPT, RoomStatus, Seat, State
 from mart.protocol.service import running
 from mart.protocol.tasks import get_task
-from mart.sim.complaints import Complaints
 from mart.sim.experts import Skill, get_skill
 from mart.sim.operate import REPEAT_S, ScriptedOperator
 from mart.sim.settings import ExpertsSettings

@@ -17,6 +17,7 @@ import mujoco
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus import Bus, Closable, Request, Sample
+from mart.protocol.complaints import Complaints
 from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import (
     EpisodeRequest,
@@ -28,7 +29,6 @@ from mart.protocol.messages import (
     error_message,
 )
 from mart.sim import publish
-from mart.sim.complaints import Complaints
 from mart.sim.room import Room
 from mart.sim.world import World
 

@@ -10,10 +10,10 @@ from collections import Counter
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus import Request
+from mart.protocol.complaints import Complaints
 from mart.protocol.errors import MartError
 from mart.protocol.messages import RolloutReply, RolloutRequest, error_message
 from mart.protocol.service import announced, connected
-from mart.sim.complaints import Complaints
 from mart.sim.lockstep import Lockstep
 from mart.sim.settings import ReplicaSettings
 
