@@ -111,7 +111,13 @@ def test_a_promoted_policy_is_assigned_by_name(seats: SeatTable) -> None:
 
 @pytest.mark.parametrize(
     ("operator", "policy"),
-    [(OPERATOR_POLICY, ""), (OPERATOR_SCRIPT, "x"), (OPERATOR_HOLD, "x"), (OPERATOR_POLICY, "x" * 65)],
+    [
+        (OPERATOR_POLICY, ""),
+        (OPERATOR_SCRIPT, "x"),
+        (OPERATOR_HOLD, "x"),
+        (OPERATOR_POLICY, "x" * 65),
+        (OPERATOR_POLICY, "../x"),
+    ],
 )
 def test_only_a_policy_seat_names_a_policy(seats: SeatTable, operator: Operator, policy: str) -> None:
     with pytest.raises(InvalidInput):

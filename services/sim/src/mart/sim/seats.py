@@ -7,6 +7,7 @@ mid-episode, and may hand the seat back to the same machine.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -24,6 +25,7 @@ from mart.protocol.messages import (
 _CLAIMING = (OPERATOR_HUMAN, OPERATOR_POLICY)
 MAX_HOLDER_ID_CHARACTERS = 128
 MAX_NAME_CHARACTERS = 64
+_POLICY_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
 
 
 @dataclass(frozen=True)
@@ -167,8 +169,10 @@ class SeatTable:
             )
         if seat.operator == OPERATOR_HUMAN:
             raise SeatTaken(seat)
-        if policy:
-            _require_text("policy", policy, MAX_NAME_CHARACTERS)
+        if policy and not _POLICY_NAME.fullmatch(policy):
+            raise InvalidInput(
+                f"{policy[:80]!r} cannot name a promoted policy; use 1 to 64 lower-case letters, digits, '-' or '_'."
+            )
         driver = Driver(operator, name=policy, policy=policy)
         return seat if seat.driver == driver else self._change(seat, driver)
 
