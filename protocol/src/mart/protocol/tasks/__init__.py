@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import ModuleType
 
 from mart.protocol.errors import InvalidInput, NotFound
-from mart.protocol.tasks import two_arm_multi_cube_lifting
+from mart.protocol.tasks import three_arm_lift_wiping, two_arm_drink_tray_lifting, two_arm_multi_cube_lifting
 from mart.protocol.tasks.task import (
     MAX_ARMS,
     SHARED_VIEWPOINT,
@@ -33,7 +33,10 @@ __all__ = [
     "task_names",
 ]
 
-_ENTRIES = {entry.NAME: entry for entry in (two_arm_multi_cube_lifting,)}
+_ENTRIES = {
+    entry.NAME: entry
+    for entry in (two_arm_multi_cube_lifting, two_arm_drink_tray_lifting, three_arm_lift_wiping)
+}
 
 
 def task_names() -> tuple[str, ...]:

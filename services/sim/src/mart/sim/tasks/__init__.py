@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from mart.protocol.tasks import Task
 from mart.sim.tasks.scene import Judgement, Scene
+from mart.sim.tasks.three_arm_lift_wiping import LiftWiping
+from mart.sim.tasks.two_arm_drink_tray_lifting import DrinkTrayLifting
 from mart.sim.tasks.two_arm_multi_cube_lifting import MultiCubeLifting
 
 __all__ = ["Judgement", "Scene", "scene_of"]
 
-_SCENES: dict[str, type[Scene]] = {"two_arm_multi_cube_lifting": MultiCubeLifting}
+_SCENES: dict[str, type[Scene]] = {
+    "two_arm_multi_cube_lifting": MultiCubeLifting,
+    "two_arm_drink_tray_lifting": DrinkTrayLifting,
+    "three_arm_lift_wiping": LiftWiping,
+}
 
 
 def scene_of(task: Task) -> Scene:

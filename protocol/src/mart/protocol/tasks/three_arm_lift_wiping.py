@@ -1,0 +1,49 @@
+"""Two arms carry a tray of drinks aside, a third wipes the table under it: the paper's three-arm task."""
+
+from __future__ import annotations
+
+import math
+
+from mart.protocol.tasks.task import Arm, Observation, Subtask, Task, proprioception
+from mart.protocol.tasks.tray import tray_observations
+
+NAME = "three_arm_lift_wiping"
+DEFAULT_ARMS = 3
+ARM_COUNTS = (3,)
+
+WIPER = "arm2"
+SPOTS_X, SPOTS_Y = 6, 4
+
+# The carriers stand a little towards the rack, so that the tray is before them at both of its places.
+_CARRIER_X_M, _CARRIER_Y_M, _WIPER_Y_M = 0.72, -0.14, 0.62
+
+
+def task(arms: int) -> Task:
+    placed = (
+        Arm.at(0, -_CARRIER_X_M, _CARRIER_Y_M, 0.0),
+        Arm.at(1, _CARRIER_X_M, _CARRIER_Y_M, math.pi),
+        Arm.at(2, 0.0, _WIPER_Y_M, -math.pi / 2),
+    )
+    assert len(placed) == arms
+    names = tuple(arm.name for arm in placed)
+    return Task(
+        name=NAME,
+        title="Lift and wipe",
+        instruction="Blue and orange carry the tray of drinks together onto the rack. "
+        "Green takes the sponge and wipes away the dirt that was under it.",
+        arms=placed,
+        subtasks=(
+            Subtask("lift_tray", "The tray is up", coordinated=True),
+            Subtask("carry_tray", "The tray is aside", coordinated=True),
+            Subtask("wipe_table", "The table is clean", coordinated=False),
+        ),
+        observations=(
+            *(o for name in names for o in proprioception(name)),
+            *tray_observations(names),
+            Observation("sponge/position_in_world", (3,), "m", (WIPER,)),
+            Observation("sponge/quaternion_in_world", (4,), "wxyz", (WIPER,)),
+            Observation("dirt/wiped", (SPOTS_X * SPOTS_Y,), "0 dirty, 1 wiped", (WIPER,)),
+        ),
+        horizon_ticks=2400,  # two minutes: scripts need 12 s
+        trial_ticks=840,
+    )

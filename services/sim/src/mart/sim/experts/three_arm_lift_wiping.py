@@ -1,0 +1,124 @@
+"""Two carry the tray onto the rack, in step; the third takes the sponge, waits until they are aside, and wipes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Arm
+from mart.protocol.tasks.three_arm_lift_wiping import WIPER
+from mart.sim.experts.carrying import Carrier, raised
+from mart.sim.experts.person import Person
+from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, pick, stay, wait
+from mart.sim.tasks.dirt import spots
+from mart.sim.tasks.three_arm_lift_wiping import ASIDE_Y_M, BLOCK_M, RACK_HALF_M, RACK_M, SPONGE_HALF_M
+
+_CARRY_Z_M = 0.13  # of the tray over the table, on its way; 5 cm is the rack's
+_NEAR_M = 0.02
+_RACK_TRAY_Z_M = 2 * RACK_HALF_M[2] + 0.005
+
+_LOST_M = 0.04  # a sponge further from the tool than it was gripped is not in the hand
+_OVER_M = 0.10
+_PRESS_M, _PRESS_MORE_M_PER_S, _PRESS_MOST_M = 0.004, 0.003, 0.010
+_PACE = 0.8
+
+Vector = NDArray[np.float64]
+
+
+def lift_and_wipe(arm: Arm, person: Person, sight: Sight) -> Plan:
+    return wipe(arm, person, sight) if arm.name == WIPER else carry(arm, person, sight)
+
+
+def carry(arm: Arm, person: Person, sight: Sight) -> Plan:
+    carrier = Carrier(arm, person)
+
+    def tray(now: Sight) -> Vector:
+        return now.observations["tray/position_in_world"]
+
+    def beside(now: Sight) -> Vector:
+        return np.array([*RACK_M, 0.0]) - tray(now) * (1, 1, 0)
+
+    def is_up(now: Sight) -> bool:
+        return bool(tray(now)[2] > _CARRY_Z_M - _NEAR_M)
+
+    def is_over_rack(now: Sight) -> bool:
+        return float(np.linalg.norm(beside(now))) < _NEAR_M
+
+    while True:
+        sight = yield from carrier.pick(sight)
+        sight = yield from carrier.await_partner(sight)
+        if not is_over_rack(sight):
+            up = np.array([0.0, 0.0, _CARRY_Z_M - tray(sight)[2]])
+            sight = yield from carrier.along(sight, up, is_up)
+            sight = yield from carrier.along(sight, beside(sight), is_over_rack)
+        down = np.array([0.0, 0.0, _RACK_TRAY_Z_M - tray(sight)[2]])
+        sight = yield from carrier.along(sight, down, lambda _: False)
+
+
+def wipe(arm: Arm, person: Person, sight: Sight) -> Plan:
+    wiper = _Wiper(arm, person)
+    while True:
+        sight = yield from pick(sight, person, wiper.grip)
+        sight = yield from wiper.wait_aside(sight)
+        sight = yield from wiper.rub(sight)
+        sight = yield from stay(sight, Waypoint(sight.pose_tool_in_base, OPEN), person.settles_s())
+
+
+class _Wiper:
+    """What the third operator sees and does; waypoints are in the arm's own base frame."""
+
+    def __init__(self, arm: Arm, person: Person) -> None:
+        self._person = person
+        self._base_from_world = arm.pose_base_in_world.inverse()
+
+    def grip(self, now: Sight) -> Pose:
+        return self._sponge(now) @ Pose(np.array(BLOCK_M), Pose.identity().quaternion_wxyz)
+
+    def wait_aside(self, sight: Sight) -> Step:
+        """Holds the sponge up until the tray has left the dirt."""
+        up = Waypoint(raised(sight.pose_tool_in_base, _OVER_M), CLOSED, _PACE)
+
+        def has_news(now: Sight) -> bool:
+            return self._is_aside(now) or self.has_lost(now)
+
+        return (yield from wait(sight, up, self._person, has_news))
+
+    def rub(self, sight: Sight) -> Step:
+        """Over whatever is nearest and still dirty, pressed harder where it does not come off; then up, and stay so."""
+        begun_s, left = sight.sim_time_s, -1
+        offset = sight.pose_tool_in_base.position - self._sponge(sight).position
+        turn = sight.pose_tool_in_base.quaternion_wxyz
+        while not self.has_lost(sight):
+            dirty = spots()[sight.observations["dirt/wiped"] < 1]
+            if len(dirty) != left:
+                begun_s, left = sight.sim_time_s, len(dirty)
+            place = self._next_place(sight, dirty, sight.sim_time_s - begun_s)
+            sight = yield Waypoint(Pose(place + offset, turn), CLOSED, _PACE)
+        return sight
+
+    def has_lost(self, now: Sight) -> bool:
+        return float(np.linalg.norm(self.grip(now).position - now.pose_tool_in_base.position)) > _LOST_M
+
+    def _next_place(self, now: Sight, dirty: Vector, stuck_s: float) -> Vector:
+        """Where the sponge's middle should be."""
+        here = self._sponge(now).position
+        if len(dirty) == 0:
+            return np.array([*here[:2], _OVER_M])
+        in_base = self._base_from_world.transform_points(np.column_stack([dirty, np.zeros(len(dirty))]))
+        nearest = in_base[np.argmin(np.hypot(*(in_base - here).T[:2]))]
+        if not self._is_aside(now):
+            return np.array([*here[:2], _OVER_M])
+        if float(np.hypot(*(nearest - here)[:2])) > 2 * SPONGE_HALF_M[0]:
+            return np.array([*nearest[:2], 0.5 * _OVER_M])
+        press_m = min(_PRESS_M + _PRESS_MORE_M_PER_S * stuck_s, _PRESS_MOST_M)
+        return np.array([*nearest[:2], SPONGE_HALF_M[2] - press_m])
+
+    def _sponge(self, now: Sight) -> Pose:
+        return self._base_from_world @ Pose(
+            now.observations["sponge/position_in_world"], now.observations["sponge/quaternion_in_world"]
+        )
+
+    @staticmethod
+    def _is_aside(now: Sight) -> bool:
+        return bool(now.observations["tray/position_in_world"][1] < ASIDE_Y_M)

@@ -1,0 +1,128 @@
+"""Lift and wipe: a tray of drinks stands on a dirty table; beside it a rack for the tray, and a sponge."""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+import numpy as np
+
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Arm
+from mart.protocol.tasks.three_arm_lift_wiping import WIPER
+from mart.protocol.tasks.tray import CARRIERS
+from mart.sim.tasks.dirt import Dirt, add_dirt
+from mart.sim.tasks.scene import Judgement, Scene
+from mart.sim.tasks.tray import Tray, across, add_tray
+from mart.sim.world.data import Array, Data
+from mart.sim.world.gripper import GRASPABLE
+from mart.sim.world.palette import rgba
+from mart.sim.world.shadows import add_shadow
+from mart.sim.world.symbols import add_tile
+
+RACK_M = (0.0, -0.35)  # its middle
+RACK_HALF_M = (0.13, 0.07, 0.025)
+LIFTED_M = 0.04  # of the tray's lowest corner: a tray that is dragged over the table stays under it
+ASIDE_Y_M = -0.27  # of the tray's middle: from here on it leaves the dirt free
+FALLEN_Z_M = -0.05
+
+SPONGE_HALF_M = (
+    0.045,
+    0.030,
+    0.015,
+)  # about the sponge's origin; its length points away from the wiper's base
+BLOCK_HALF_M, BLOCK_M = (0.030, 0.012, 0.020), (0.0, 0.0, 0.035)  # to hold it by
+
+_TRAY_SPREAD_M, _TRAY_SPREAD_RAD = 0.04, 0.2
+_SPONGE_IN_BASE = (0.38, 0.30)
+_SPONGE_SPREAD_M, _SPONGE_SPREAD_RAD = 0.05, 0.5
+_TOOL_Z_M = 0.22
+
+_BOX = mujoco.mjtGeom.mjGEOM_BOX
+
+
+class LiftWiping(Scene):
+    memory_size = Dirt.SPOTS
+
+    def add_objects(self, spec: mujoco.MjSpec) -> None:
+        add_tray(spec, [self.task.arm(name) for name in CARRIERS])
+        _add_sponge(spec, self.task.arm(WIPER))
+        spec.worldbody.add_geom(
+            name="rack", type=_BOX, size=RACK_HALF_M, pos=(*RACK_M, RACK_HALF_M[2]), material="slate"
+        )
+        add_dirt(spec)
+
+    def attach(self, data: Data) -> None:
+        self._tray = Tray(data, [self.task.arm(name) for name in CARRIERS])
+        sponge = data.body("sponge")
+        self._sponge_position, self._sponge_quaternion = sponge.xpos, sponge.xquat
+        self._sponge_joint = data.joint("sponge").qpos
+        self._dirt = Dirt(data, self.memory(data), sponge, SPONGE_HALF_M)
+
+    def place_objects(self, random: np.random.Generator) -> None:
+        x, y = random.uniform(-_TRAY_SPREAD_M, _TRAY_SPREAD_M, 2)
+        self._tray.place(x, y, random.uniform(-_TRAY_SPREAD_RAD, _TRAY_SPREAD_RAD), random)
+        forward, left = _SPONGE_IN_BASE + random.uniform(-_SPONGE_SPREAD_M, _SPONGE_SPREAD_M, 2)
+        yaw = random.uniform(-_SPONGE_SPREAD_RAD, _SPONGE_SPREAD_RAD)
+        turn = np.array([math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)])
+        sponge_in_base = Pose(np.array([forward, left, SPONGE_HALF_M[2]]), turn)
+        placed = self.task.arm(WIPER).pose_base_in_world @ sponge_in_base
+        self._sponge_joint[:] = *placed.position, *placed.quaternion_wxyz
+
+    def start_pose_in_base(self, arm: Arm, random: np.random.Generator) -> Pose:
+        start = super().start_pose_in_base(arm, random)
+        if arm.name != WIPER:
+            return across(start)
+        over_sponge = np.array([*_SPONGE_IN_BASE, _TOOL_Z_M])
+        return Pose(over_sponge + random.uniform(-0.03, 0.03, 3), start.quaternion_wxyz)
+
+    def observe(self) -> dict[str, Array]:
+        return {
+            **self._tray.observe(),
+            "sponge/position_in_world": self._sponge_position,
+            "sponge/quaternion_in_world": self._sponge_quaternion,
+            "dirt/wiped": self._dirt.wiped,
+        }
+
+    def remember(self) -> None:
+        self._dirt.wipe()
+
+    def judge(self) -> Judgement:
+        failed = {
+            **self._tray.spills(),
+            "The sponge fell off the table.": self._sponge_position[..., 2] < FALLEN_Z_M,
+        }
+        lifted = (self._tray.lowest_point_m() > LIFTED_M) & ~np.logical_or.reduce(list(failed.values()))
+        aside = lifted & (self._tray.position[..., 1] < ASIDE_Y_M)
+        clean = self._dirt.is_gone()
+        return Judgement(
+            {"lift_tray": lifted, "carry_tray": aside, "wipe_table": clean}, aside & clean, failed
+        )
+
+
+def _add_sponge(spec: mujoco.MjSpec, wiper: Arm) -> None:
+    """A sponge under a block to hold it by. Its own low friction counts (priority), or it would drag the hand back."""
+    sponge = spec.worldbody.add_body(name="sponge", pos=(0.3, 0.24, SPONGE_HALF_M[2]))
+    sponge.add_freejoint(name="sponge")
+    sponge.add_geom(
+        name="sponge",
+        type=_BOX,
+        size=SPONGE_HALF_M,
+        mass=0.05,
+        friction=(0.3, 0.005, 0.0001),
+        priority=2,
+        material="sponge",
+    )
+    sponge.add_geom(
+        name="sponge_block",
+        type=_BOX,
+        size=BLOCK_HALF_M,
+        pos=BLOCK_M,
+        mass=0.05,
+        material="paint",
+        rgba=rgba(wiper.color),
+        **GRASPABLE,
+    )
+    top = (0.0, 0.0, BLOCK_M[2] + BLOCK_HALF_M[2])
+    add_tile(spec, sponge, wiper.symbol, radius_m=0.010, position=top, normal=(0, 0, 1))
+    add_shadow(spec, "sponge", radius_m=0.08)
