@@ -1,0 +1,1 @@
+"""Judging: checkpoints in worlds, by rollouts over the bus."""

@@ -1,0 +1,63 @@
+"""Table I: what each kind of subtask costs the operators' success, from what the episode files say.
+
+The paper (section "System Analysis"): an episode passes through stages, and the marginal degradation of a stage is the
+best success rate that it could have had (100 % for the first, the rate of the stage before for the others) less the one
+that it had. That is the share of all episodes that got as far as this stage and no further, so the degradations and
+the rate of the last stage add up to 100 %.
+
+Stages are the task catalogue's subtasks in order, neighbours of the same kind taken together: Table Assembly is
+uncoordinated and then coordinated, Lift Wiping the other way round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from mart.protocol.tasks import Task
+from mart.trainer.evaluate.statistics import Rate
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """What was reached in one episode. done: names of the subtasks that were done at any time."""
+
+    done: frozenset[str]
+    success: bool
+
+
+@dataclass(frozen=True)
+class Stage:
+    """entered, passed: how many episodes began and completed it, all stages before included."""
+
+    subtasks: tuple[str, ...]
+    coordinated: bool
+    entered: int
+    passed: int
+
+
+@dataclass(frozen=True)
+class Coordination:
+    task: str
+    stages: tuple[Stage, ...]
+    episodes: int
+    successes: int
+
+    def degradation(self, *, coordinated: bool) -> Rate | None:
+        """Episodes lost in all stages of one kind, of all episodes; None where the task has no such stage."""
+        stages = [stage for stage in self.stages if stage.coordinated is coordinated]
+        if not stages:
+            return None
+        return Rate(sum(stage.entered - stage.passed for stage in stages), self.episodes)
+
+
+def coordination(task: Task, attempts: Sequence[Attempt]) -> Coordination:
+    stages = []
+    left: Sequence[Attempt] = attempts
+    for coordinated, group in groupby(task.subtasks, lambda subtask: subtask.coordinated):
+        names = tuple(subtask.name for subtask in group)
+        passed = [attempt for attempt in left if attempt.done.issuperset(names)]
+        stages.append(Stage(names, coordinated, len(left), len(passed)))
+        left = passed
+    return Coordination(task.name, tuple(stages), len(attempts), sum(attempt.success for attempt in attempts))
