@@ -1,0 +1,1 @@
+"""Policies in seats: states in, commands out, beside people."""
