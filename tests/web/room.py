@@ -80,6 +80,8 @@ class Room:
             holder_id=seat.holder_id,
             name=seat.name,
             ready=self.course.is_ready(seat.arm),
+            policy=seat.driver.policy,
+            relieved=seat.relieved.called if seat.relieved else "",
         )
 
     def _on_seat(self, request: Request) -> None:

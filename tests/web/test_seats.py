@@ -58,11 +58,48 @@ async def test_a_free_seat_is_set_to_a_script(enter: Enter, room: Room) -> None:
     assert (seat["operator"], room.seats["arm0"].operator) == ("script", OPERATOR_SCRIPT)
 
 
-@pytest.mark.parametrize("operator", ["policy", "", "HUMAN", "nobody", 7, None])
+async def test_a_policy_is_seated_taken_over_from_and_handed_back_to(enter: Enter, room: Room) -> None:
+    ana, ben = await enter("Ana"), await enter("Ben")
+    seated = (await ben.post(SEAT, json={"operator": "policy", "policy": "lifter"})).json()["seat"]
+    assert (seated["operator"], seated["name"], seated["policy"]) == ("policy", "lifter", "lifter")
+    taken = (await ana.post(SEAT, json={"operator": "human"})).json()["seat"]
+    assert (taken["mine"], taken["relieved"]) == (True, "lifter")
+    assert (await ben.post(f"{SEAT}/hand-back")).status_code == 403
+    back = (await ana.post(f"{SEAT}/hand-back")).json()["seat"]
+    assert (back["operator"], back["policy"], back["epoch"]) == ("policy", "lifter", taken["epoch"] + 1)
+
+
+async def test_where_nobody_was_relieved_nothing_is_handed_back(enter: Enter, room: Room) -> None:
+    ana = await enter("Ana")
+    await ana.post(SEAT, json={"operator": "human"})
+    assert (await ana.post(f"{SEAT}/hand-back")).status_code == 409
+
+
+async def test_a_seat_is_not_handed_back_from_another_site(enter: Enter, room: Room) -> None:
+    ana = await enter("Ana")
+    answer = await ana.post(f"{SEAT}/hand-back", headers={"Origin": "https://evil.example"})
+    assert answer.status_code == 403
+
+
+async def test_where_no_human_drives_whoever_watches_has_a_say(enter: Enter, room: Room) -> None:
+    ana = await enter("Ana")
+    for arm in ("arm0", "arm1"):
+        await ana.post(f"/api/rooms/room-1/seats/{arm}", json={"operator": "policy", "policy": "lifter"})
+    told = (await ana.post(EPISODE, json={"action": "ready", "arm": "arm0"})).json()["room"]
+    assert told["episode"]["phase"] == "countdown"
+
+
+@pytest.mark.parametrize("policy", ["", "../etc", "A b", "x" * 65])
+async def test_a_policy_that_cannot_be_is_refused(enter: Enter, room: Room, policy: str) -> None:
+    answer = await (await enter("Ana")).post(SEAT, json={"operator": "policy", "policy": policy})
+    assert answer.status_code == 400
+
+
+@pytest.mark.parametrize("operator", ["", "HUMAN", "nobody", 7, None])
 async def test_a_seat_takes_only_operators_that_exist(enter: Enter, room: Room, operator: object) -> None:
     answer = await (await enter("Ana")).post(SEAT, json={"operator": operator})
     assert answer.status_code == 400
-    assert "'human', 'script' or 'hold'" in answer.json()["error"]["message"]
+    assert "'human', 'policy', 'script' or 'hold'" in answer.json()["error"]["message"]
 
 
 @pytest.mark.parametrize(

@@ -34,6 +34,8 @@ def view(run: Run, the_room: dict[str, Any] | None, **more: Any) -> dict[str, An
 
 
 MINE = seat(mine=True)
+RELIEVING = seat(mine=True, relieved="lifter")
+OUTCOMES = ["success", "failure", "discard"]
 READY = seat(mine=True, ready=True)
 SAVED = {"path": "episodes/x.mcap", "verified": True, "verdict": "", "size_bytes": 2_345_678}
 
@@ -44,9 +46,14 @@ SAVED = {"path": "episodes/x.mcap", "verified": True, "verdict": "", "size_bytes
         (room(MINE), "Practice", ["ready"]),
         (room(READY, seat("arm1", name="Ben")), "Ready", ["unready"]),
         (room(MINE, phase="countdown", remaining_s=2.2), "Starts in", []),
-        (room(MINE, phase="recording", elapsed_s=42.9), "Recording", ["success", "failure", "discard"]),
+        (room(MINE, phase="recording", elapsed_s=42.9), "Recording", OUTCOMES),
         (room(MINE, phase="ended", outcome="failure", reason="time is up"), "Failed", []),
-        (room(seat(operator="script", name="")), "Free seat", ["take"]),
+        (room(seat(operator="hold", name="")), "Free seat", ["take"]),
+        (room(seat(operator="script", name="")), "Practice", ["take", "ready"]),
+        (room(seat(operator="policy", name="lifter"), phase="recording"), "Recording", ["take", *OUTCOMES]),
+        (room(seat(operator="policy", name="lifter"), seat("arm1")), "Practice", ["take"]),
+        (room(RELIEVING), "Practice", ["ready", "back"]),
+        (room(RELIEVING, phase="recording"), "Recording", [*OUTCOMES, "back"]),
         (room(seat(name="Ben")), "Watching", ["lobby"]),
         (room(seat(operator="hold", name=""), seat("arm1", mine=True)), "Watching", ["lobby"]),
         (None, "No such seat", ["lobby"]),

@@ -98,6 +98,8 @@ def seat_json(seat: Seat, holder_id: str) -> Json:
         "ready": seat.ready,
         "engaged": seat.engaged,
         "mine": mine,
+        "policy": seat.policy,
+        "relieved": seat.relieved,
     }
 
 

@@ -112,21 +112,30 @@ class Rooms:
         release = SeatRequest.Release(arm=arm, holder_id=person.holder_id)
         return await self._ask_seat(room, arm, SeatRequest(release=release))
 
-    async def assign(self, room: str, arm: str, operator: Operator) -> Seat:
-        return await self._ask_seat(
-            room, arm, SeatRequest(assign=SeatRequest.Assign(arm=arm, operator=operator))
-        )
+    async def assign(self, room: str, arm: str, operator: Operator, policy: str = "") -> Seat:
+        assign = SeatRequest.Assign(arm=arm, operator=operator, policy=policy)
+        return await self._ask_seat(room, arm, SeatRequest(assign=assign))
+
+    async def hand_back(self, room: str, arm: str, person: Person) -> Seat:
+        hand_back = SeatRequest.HandBack(arm=arm, holder_id=person.holder_id)
+        return await self._ask_seat(room, arm, SeatRequest(hand_back=hand_back))
 
     async def set_ready(self, room: str, arm: str, person: Person, ready: bool) -> None:
-        request = EpisodeRequest.Ready(arm=arm, holder_id=person.holder_id, ready=ready)
+        request = EpisodeRequest.Ready(arm=arm, holder_id=self._say(room, person), ready=ready)
         await self._ask_episode(room, EpisodeRequest(ready=request))
 
     async def finish(self, room: str, person: Person, outcome: Outcome) -> None:
-        request = EpisodeRequest.Finish(holder_id=person.holder_id, outcome=outcome)
+        request = EpisodeRequest.Finish(holder_id=self._say(room, person), outcome=outcome)
         await self._ask_episode(room, EpisodeRequest(finish=request))
 
     async def reset(self, room: str, person: Person) -> None:
-        await self._ask_episode(room, EpisodeRequest(reset=EpisodeRequest.Reset(holder_id=person.holder_id)))
+        request = EpisodeRequest.Reset(holder_id=self._say(room, person))
+        await self._ask_episode(room, EpisodeRequest(reset=request))
+
+    def _say(self, room: str, person: Person) -> str:
+        """Whoever holds no seat speaks as anybody: the sim hears them where no human drives."""
+        seats = self.lobby.status(room, clock.monotonic_s()).seats
+        return person.holder_id if any(seat.holder_id == person.holder_id for seat in seats) else ""
 
     async def _ask_seat(self, room: str, arm: str, request: SeatRequest) -> Seat:
         self.lobby.seat(room, arm, clock.monotonic_s())

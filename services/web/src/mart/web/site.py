@@ -9,6 +9,8 @@ from mart.web.limits import RateLimit
 from mart.web.pairing import PairingCodes
 from mart.web.people import People
 from mart.web.rooms import Rooms
+from mart.web.trainer import KIND as TRAINER
+from mart.web.trainer import Trainer
 
 
 def _wrong_codes() -> RateLimit:
@@ -33,3 +35,7 @@ class Site:
     pairing: PairingCodes = field(default_factory=PairingCodes)
     wrong_codes: RateLimit = field(default_factory=_wrong_codes)
     offers: RateLimit = field(default_factory=_offers)
+
+    @property
+    def trainer(self) -> Trainer:
+        return Trainer(self.bus, lambda: self.rooms.services().get(TRAINER, []))

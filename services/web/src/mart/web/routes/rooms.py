@@ -19,7 +19,8 @@ _OUTCOMES = {"success": OUTCOME_SUCCESS, "failure": OUTCOME_FAILURE, "discard": 
 
 
 class Take(BaseModel):
-    operator: Literal["human", "script", "hold"]
+    operator: Literal["human", "policy", "script", "hold"]
+    policy: str = ""  # a promoted one, where the operator is policy
 
 
 class Act(BaseModel):
@@ -37,13 +38,19 @@ async def take_seat(room: str, arm: str, body: Take, site: TheSite, person: Join
     if body.operator == "human":
         seat = await site.rooms.claim(room, arm, person)
     else:
-        seat = await site.rooms.assign(room, arm, operator_from_word(body.operator))
+        seat = await site.rooms.assign(room, arm, operator_from_word(body.operator), body.policy)
     return {"seat": seat_json(seat, person.holder_id)}
 
 
 @router.delete("/rooms/{room}/seats/{arm}")
 async def leave_seat(room: str, arm: str, site: TheSite, person: Joined) -> Json:
     return {"seat": seat_json(await site.rooms.release(room, arm, person), person.holder_id)}
+
+
+@router.post("/rooms/{room}/seats/{arm}/hand-back")
+async def hand_back(room: str, arm: str, site: TheSite, person: Joined) -> Json:
+    """To the machine from which this person took over."""
+    return {"seat": seat_json(await site.rooms.hand_back(room, arm, person), person.holder_id)}
 
 
 @router.post("/rooms/{room}/episode")

@@ -31,8 +31,9 @@ const seat = (room, arm) => `/rooms/${encodeURIComponent(room)}/seats/${encodeUR
 export const join = (code, name) => request("POST", "/join", { code, name });
 export const me = () => request("GET", "/me");
 export const rooms = () => request("GET", "/rooms");
-export const takeSeat = (room, arm, operator = "human") => request("POST", seat(room, arm), { operator });
+export const takeSeat = (room, arm, operator = "human", policy = "") => request("POST", seat(room, arm), { operator, policy });
 export const leaveSeat = (room, arm) => request("DELETE", seat(room, arm));
+export const handBack = (room, arm) => request("POST", `${seat(room, arm)}/hand-back`);
 export const seatToken = (room, arm) => request("GET", `${seat(room, arm)}/token`);
 export const pairPhone = (room, arm) => request("POST", `${seat(room, arm)}/pair`);
 export const redeemPairing = (code) => request("POST", "/pair", { code });
@@ -40,3 +41,16 @@ export const act = (room, action, arm) =>
   request("POST", `/rooms/${encodeURIComponent(room)}/episode`, { action, arm });
 export const sendOffer = (room, arm, token, sdp) =>
   request("POST", `${seat(room, arm)}/offer`, { sdp }, { Authorization: `Bearer ${token}` });
+
+const job = (id) => `/training/jobs/${encodeURIComponent(id)}`;
+
+export const trainingChoices = () => request("GET", "/training/choices");
+export const trainingJobs = () => request("GET", "/training/jobs");
+export const trainingJob = (id) => request("GET", job(id));
+export const trainingLog = (id) => request("GET", `${job(id)}/log`);
+export const train = (order) => request("POST", "/training/jobs", order);
+export const actOnJob = (id, action) => request("POST", job(id), { action });
+export const policies = (task = "") => request("GET", `/training/policies?task=${encodeURIComponent(task)}`);
+export const promote = (promotion) => request("POST", "/training/policies", promotion);
+export const withdraw = (policy) => request("DELETE", `/training/policies/${encodeURIComponent(policy)}`);
+export const videoOf = (id, rollout) => `/api${job(id)}/videos/${encodeURIComponent(rollout)}`;

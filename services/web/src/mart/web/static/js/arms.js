@@ -10,7 +10,14 @@ export const armNumber = (arm) => arm.replace("arm", "");
 
 export const badge = (arm) => element("span", { class: "badge", dataset: { arm }, title: arm }, armNumber(arm));
 
+/** Nobody in particular is meant to drive it. */
 export const isFree = (seat) => seat.operator === "hold" || seat.operator === "script";
+
+/** Whoever claims it takes over from a machine. */
+export const isMachine = (seat) => seat.operator === "script" || seat.operator === "policy";
+
+/** There is a picture from this arm's side. */
+export const isSeen = (seat) => seat.operator === "human" || seat.operator === "policy";
 
 /** Who sits there, in one or two words. */
 export function holder(seat) {
@@ -22,5 +29,5 @@ export function holder(seat) {
 export function lateName(seats, { arm, name }) {
   const seat = seats.find((one) => one.arm === arm);
   if (seat?.mine) return "you";
-  return seat?.operator === "human" && name ? name : `the ${armName(arm).toLowerCase()}`;
+  return ["human", "policy"].includes(seat?.operator) && name ? name : `the ${armName(arm).toLowerCase()}`;
 }

@@ -7,8 +7,10 @@ import { followRooms } from "./live.js";
 import { roomCard } from "./room-card.js";
 
 const NAME_KEY = "mart.name";
+const POLICIES_MS = 5000;
 const cards = new Map();
 let rooms = [];
+let policies = [];
 
 const form = byId("join");
 const tryButton = byId("try");
@@ -65,12 +67,21 @@ function enter(person) {
     onEnded: askToJoin,
     onConnection: (connected) => say(connected ? "" : "The connection to the server is lost; it comes back by itself."),
   });
+  followPolicies();
 }
+
+/** Promoted policies come from the trainer; without one there are none to seat. */
+async function followPolicies() {
+  ({ policies } = await api.policies().catch(() => ({ policies: [] })));
+  setTimeout(followPolicies, POLICIES_MS);
+}
+
+const policiesFor = (task) => policies.filter((policy) => policy.task === task);
 
 function show(latest) {
   rooms = latest;
   const names = rooms.map((room) => room.room);
-  keepChildren(byId("rooms"), names, cards, () => roomCard(attempt));
+  keepChildren(byId("rooms"), names, cards, () => roomCard(attempt, policiesFor));
   rooms.forEach((room) => cards.get(room.room).update(room));
   setShown(byId("empty"), rooms.length === 0);
   showNextAction();

@@ -1,7 +1,7 @@
 // The operator's page: the picture, the hand that drives, and what is going on.
 
 import * as api from "./api.js";
-import { armName, badge, isFree } from "./arms.js";
+import { armName, badge, isSeen } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { Driver } from "./drive/driver.js";
 import { Confirm } from "./hud/confirm.js";
@@ -74,13 +74,13 @@ function onRooms(rooms) {
   render();
 }
 
-/** Every holder of the seat is a connection of its own; a seat that nobody holds shows no picture. */
+/** Every holder of the seat is a connection of its own; a free seat shows no picture. */
 function follow(seat) {
   if (!seat || seat.epoch === followed) return;
   followed = seat.epoch;
   status = null;
-  if (isFree(seat)) link.close();
-  else link.connect();
+  if (isSeen(seat)) link.connect();
+  else link.close();
 }
 
 function onEvent(event) {
@@ -116,9 +116,9 @@ function render() {
 
 function showPicture(seat) {
   const seen = byId("video").videoWidth > 0;
-  const empty = seat && isFree(seat) ? "Nobody drives this arm, so there is no picture." : "Connecting to the scene…";
+  const empty = seat && !isSeen(seat) ? NO_PICTURE[seat.operator] : "Connecting to the scene…";
   setText(byId("no-picture"), empty);
-  setShown(byId("no-picture"), Boolean(seat) && (!seen || isFree(seat)));
+  setShown(byId("no-picture"), Boolean(seat) && (!seen || !isSeen(seat)));
   byId("picture").classList.toggle("live", seen && link.state === LinkState.LIVE);
 }
 
@@ -126,9 +126,14 @@ function showPicture(seat) {
 function byCommand(command) {
   const wanted = command === "next" ? strip.next() : command;
   if (!wanted) return;
-  if (["success", "failure", "discard"].includes(wanted) && !strip.offers(wanted)) return;
+  if (["success", "failure", "discard", "back"].includes(wanted) && !strip.offers(wanted)) return;
   if (confirm.press(wanted)) run(wanted);
 }
+
+const NO_PICTURE = {
+  hold: "Nobody drives this arm, so there is no picture.",
+  script: "A script drives this arm, so there is no picture until you take over.",
+};
 
 const DEEDS = {
   gripper: () => driver.switchGripper(),
@@ -137,6 +142,7 @@ const DEEDS = {
   lobby: () => location.assign("/"),
   here: () => link.connect(),
   take: () => api.takeSeat(roomName, armId),
+  back: () => api.handBack(roomName, armId),
   leave: async () => {
     if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);
     location.assign("/");

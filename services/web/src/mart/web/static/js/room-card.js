@@ -1,12 +1,16 @@
 // One room in the lobby: its task, its seats and what can be done with each.
 
 import * as api from "./api.js";
-import { armName, badge, holder, isFree } from "./arms.js";
+import { armName, badge, holder, isMachine, isSeen } from "./arms.js";
 import { element, keepChildren, setShown, setText } from "./dom.js";
+import { machineSelect } from "./machine-select.js";
 import { phaseText, waitingText } from "./words.js";
 
-/** `attempt(deed)` runs an action and shows its failure. Returns the card's node and what updates it. */
-export function roomCard(attempt) {
+/**
+ * `attempt(deed)` runs an action and shows its failure; `policies(task)` gives the promoted ones. Returns the card's node
+ * and what updates it.
+ */
+export function roomCard(attempt, policies) {
   const title = element("h2");
   const phase = element("span", { class: "soft" });
   const instruction = element("p");
@@ -32,7 +36,8 @@ export function roomCard(attempt) {
     const arms = room.seats.map((seat) => seat.arm);
     keepChildren(seats, arms, rows, (arm) => seatRow(room.room, arm, attempt));
     const holdsOne = room.seats.some((seat) => seat.mine);
-    room.seats.forEach((seat) => rows.get(seat.arm).update(seat, holdsOne));
+    const machines = policies(room.task);
+    room.seats.forEach((seat) => rows.get(seat.arm).update(seat, { room, holdsOne, machines }));
   }
 
   return { node, update };
@@ -51,16 +56,19 @@ function seatRow(room, arm, attempt) {
     return element("button", { type: "button", class: kind, "aria-label": label, on }, text);
   };
   const path = `/rooms/${room}/arms/${arm}`;
+  const drive = async () => {
+    await api.takeSeat(room, arm);
+    location.assign(path);
+  };
+  const machine = machineSelect(`Who drives the ${armName(arm).toLowerCase()} in ${room}`, attempt);
   const deeds = {
-    script: press("Use a script", () => api.takeSeat(room, arm, "script"), "quiet"),
-    hold: press("Stop the script", () => api.takeSeat(room, arm, "hold"), "quiet"),
+    machine: machine.node,
     watch: element("a", { class: "button quiet", href: path, "aria-label": `Watch: ${armName(arm)} in ${room}` }, "Watch"),
     leave: press("Leave", () => api.leaveSeat(room, arm), "quiet"),
+    back: press("Hand back", () => api.handBack(room, arm)),
     go: element("a", { class: "button", href: path }, "Drive"),
-    take: press("Take seat", async () => {
-      await api.takeSeat(room, arm);
-      location.assign(path);
-    }),
+    over: press("Take over", drive),
+    take: press("Take seat", drive),
   };
   const name = element("span", { class: "arm-name" }, armName(arm));
   const node = element(
@@ -71,14 +79,16 @@ function seatRow(room, arm, attempt) {
     element("span", { class: "deeds" }, ...Object.values(deeds)),
   );
 
-  function update(seat, holdsOne) {
+  function update(seat, { room: where, holdsOne, machines }) {
     setText(who, seatText(seat));
-    setShown(deeds.script, seat.operator === "hold");
-    setShown(deeds.hold, seat.operator === "script");
-    setShown(deeds.watch, !isFree(seat) && !seat.mine);
-    setShown(deeds.leave, seat.mine);
+    machine.update(seat, where, machines);
+    setShown(deeds.machine, seat.operator !== "human");
+    setShown(deeds.watch, isSeen(seat) && !seat.mine);
+    setShown(deeds.leave, seat.mine && !seat.relieved);
+    setShown(deeds.back, seat.mine && Boolean(seat.relieved));
     setShown(deeds.go, seat.mine);
-    setShown(deeds.take, isFree(seat) && !holdsOne);
+    setShown(deeds.over, isMachine(seat) && !holdsOne);
+    setShown(deeds.take, seat.operator === "hold" && !holdsOne);
   }
 
   return { node, update };
@@ -89,7 +99,9 @@ function seatText(seat) {
     case "hold":
       return "Free";
     case "script":
-      return "Free, script drives";
+      return "Script";
+    case "policy":
+      return `Policy ${seat.name}`;
     default:
       return seat.ready ? `${holder(seat)}, ready` : holder(seat);
   }

@@ -17,6 +17,7 @@ const MOTIONS = {
 
 const COMMANDS = {
   KeyN: "next",
+  KeyB: "back",
   KeyS: "success",
   KeyF: "failure",
   KeyR: "discard",

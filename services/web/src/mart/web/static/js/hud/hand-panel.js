@@ -15,6 +15,7 @@ const KEYS = [
   ["G", "Close or open the gripper"],
   ["N", "Next: ready, again"],
   ["S F R", "With space let go, twice: success, failed, discard"],
+  ["B", "Hand the arm back to the policy or script"],
   ["P", "Stop everything, and go on"],
   ["Q", "With space let go, twice: leave the seat"],
   ["?", "These keys"],

@@ -1,6 +1,6 @@
 // What the state strip says and offers, from what is known. Pure.
 
-import { armName, isFree } from "../arms.js";
+import { armName, holder, isMachine } from "../arms.js";
 import { LinkState } from "../link/seat-link.js";
 import { clockTime, fileSize, outcomeText } from "../words.js";
 
@@ -12,6 +12,9 @@ const ACTIONS = {
   failure: { command: "failure", text: "Failed", key: "F" },
   discard: { command: "discard", text: "Discard", key: "R" },
   take: { command: "take", text: "Take this seat", key: "N", primary: true },
+  over: { command: "take", text: "Take over", key: "N", primary: true },
+  back: { command: "back", text: "Hand back", key: "B" },
+  record: { command: "ready", text: "Record", key: "" },
   here: { command: "here", text: "Drive here", key: "N", primary: true },
   lobby: { command: "lobby", text: "Go to the lobby", key: "N", primary: true },
 };
@@ -32,9 +35,11 @@ export function stripView({ room, seat, link, saved, isNew = false }) {
   }
   if (link.state !== LinkState.LIVE) return offline(link);
   if (room.barrier === "stopped") return view("Stopped", "An emergency stop is on; whoever pressed it lets go.");
-  return PHASES[room.episode.phase](room, seat, saved, isNew);
+  const shown = PHASES[room.episode.phase](room, seat, saved, isNew);
+  return seat.relieved ? { ...shown, actions: [...shown.actions, ACTIONS.back] } : shown;
 }
 
+const RECORDING = [ACTIONS.success, ACTIONS.failure, ACTIONS.discard];
 const FIRST_MOVES = "Hold space; W A S D move the arm over the table, Q lifts, E lowers. G works the gripper.";
 
 const PHASES = {
@@ -55,9 +60,8 @@ const PHASES = {
     return { ...view("Starts in", room.instruction), figure: String(Math.max(1, Math.ceil(room.episode.remaining_s))) };
   },
   recording(room) {
-    const actions = [ACTIONS.success, ACTIONS.failure, ACTIONS.discard];
     const limit = room.time_limit_s ? `of ${clockTime(room.time_limit_s)}` : "";
-    return { ...view("Recording", "", actions), figure: clockTime(room.episode.elapsed_s), limit, recording: true };
+    return { ...view("Recording", "", RECORDING), figure: clockTime(room.episode.elapsed_s), limit, recording: true };
   },
   ended(room) {
     const reason = room.episode.reason ? `${room.episode.reason}. ` : "";
@@ -70,9 +74,22 @@ function view(label, detail, actions = []) {
 }
 
 function watching(room, seat) {
-  const holdsOther = room.seats.some((other) => other.mine);
-  if (isFree(seat) && !holdsOther) return view("Free seat", `Nobody drives the ${armName(seat.arm).toLowerCase()}.`, [ACTIONS.take]);
-  return view("Watching", isFree(seat) ? "You drive another arm." : `${seat.name || "A policy"} drives.`, [ACTIONS.lobby]);
+  if (room.seats.some((other) => other.mine)) return view("Watching", "You drive another arm.", [ACTIONS.lobby]);
+  if (seat.operator === "hold") {
+    return view("Free seat", `Nobody drives the ${armName(seat.arm).toLowerCase()}.`, [ACTIONS.take]);
+  }
+  if (isMachine(seat)) return besideMachine(room, seat);
+  return view("Watching", `${seat.name} drives.`, [ACTIONS.lobby]);
+}
+
+/** Where only machines drive, whoever watches also says when to record and how it went. */
+function besideMachine(room, seat) {
+  const { label, figure, limit, recording } = PHASES[room.episode.phase](room, seat, null, false);
+  const unattended = room.seats.every((one) => one.operator !== "human");
+  const deeds = { practice: [ACTIONS.record], recording: RECORDING.map((action) => ({ ...action, primary: false })) };
+  const actions = unattended ? (deeds[room.episode.phase] ?? []) : [];
+  const detail = `${seat.name ? `Policy ${holder(seat)}` : "A script"} drives. Take over at any time: the arm waits where it is.`;
+  return { ...view(label, detail, [ACTIONS.over, ...actions]), figure, limit, recording };
 }
 
 function offline({ state, problem }) {

@@ -58,6 +58,7 @@ export class Strip {
     const words = pending === command ? "Press again: " : "";
     const on = { click: () => this.onCommand(command) };
     const attributes = { type: "button", class: primary ? "primary" : "", dataset: { command }, on };
-    return element("button", attributes, `${words}${text}`, element("kbd", { "aria-hidden": "true" }, key));
+    const cap = key ? [element("kbd", { "aria-hidden": "true" }, key)] : [];
+    return element("button", attributes, `${words}${text}`, ...cap);
   }
 }

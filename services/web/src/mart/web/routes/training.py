@@ -1,0 +1,126 @@
+"""What is trained: orders, jobs with their curves, and policies that can take a seat."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+from starlette.responses import JSONResponse, Response, StreamingResponse
+
+from mart.protocol.messages import Order, TrainerReply, TrainerRequest
+from mart.web.lobby import Json
+from mart.web.routes.common import Joined, TheSite
+from mart.web.trainer import as_json
+from mart.web.video import pieces_of
+
+router = APIRouter(prefix="/api/training")
+
+
+class Submission(BaseModel):
+    """One job for each model and task."""
+
+    models: list[str] = Field(min_length=1, max_length=16)
+    tasks: list[str] = Field(min_length=1, max_length=16)
+    data: str = ""
+    preset: str = ""
+    seeds: list[int] = Field(default_factory=list, max_length=64)
+    evaluation_episodes: int = Field(0, ge=0, le=1000)
+    executor: str = ""
+
+    def request(self) -> TrainerRequest:
+        order = Order(
+            data=self.data,
+            preset=self.preset,
+            seeds=self.seeds,
+            evaluation_episodes=self.evaluation_episodes,
+        )
+        submit = TrainerRequest.Submit(
+            models=self.models, tasks=self.tasks, order=order, executor=self.executor
+        )
+        return TrainerRequest(submit=submit)
+
+
+class JobAct(BaseModel):
+    action: Literal["cancel", "retry"]
+
+
+class Promotion(BaseModel):
+    job: str
+    name: str
+    checkpoint: str = ""
+
+
+@router.get("/choices")
+async def choices(site: TheSite, _person: Joined) -> Json:
+    reply = await site.trainer.ask(TrainerRequest(choices=TrainerRequest.Choices()))
+    return {"choices": as_json(reply.choices)}
+
+
+@router.get("/jobs")
+async def jobs(site: TheSite, _person: Joined) -> Json:
+    reply = await site.trainer.ask(TrainerRequest(list=TrainerRequest.List()))
+    return {"jobs": [as_json(job) for job in reply.jobs]}
+
+
+@router.post("/jobs")
+async def submit(body: Submission, site: TheSite, _person: Joined) -> Json:
+    reply = await site.trainer.ask(body.request())
+    return {"jobs": [as_json(job) for job in reply.jobs]}
+
+
+@router.get("/jobs/{job}")
+async def show(job: str, site: TheSite, _person: Joined) -> Json:
+    reply = await site.trainer.ask(TrainerRequest(show=TrainerRequest.Show(job=job)))
+    return {"details": as_json(reply.details)}
+
+
+@router.get("/jobs/{job}/log")
+async def log(job: str, site: TheSite, _person: Joined) -> Json:
+    reply = await site.trainer.ask(TrainerRequest(logs=TrainerRequest.Logs(job=job)))
+    return {"log": reply.log.decode(errors="replace")}
+
+
+@router.post("/jobs/{job}")
+async def act(job: str, body: JobAct, site: TheSite, _person: Joined) -> Json:
+    request = TrainerRequest()
+    getattr(request, body.action).job = job
+    return {"jobs": [as_json(changed) for changed in (await site.trainer.ask(request)).jobs]}
+
+
+@router.get("/jobs/{job}/videos/{rollout}")
+async def video(job: str, rollout: str, site: TheSite, _person: Joined) -> Response:
+    """MP4; 202 while it is being rendered: ask again."""
+
+    async def piece(offset: int) -> TrainerReply.Video:
+        request = TrainerRequest.Video(job=job, rollout=rollout, offset=offset)
+        return (await site.trainer.ask(TrainerRequest(video=request))).video
+
+    first = await piece(0)
+    if not first.ready:
+        return JSONResponse({"ready": False}, 202)
+    return StreamingResponse(
+        pieces_of(first, piece),
+        media_type="video/mp4",
+        headers={"Content-Length": str(first.size_bytes)},
+    )
+
+
+@router.get("/policies")
+async def policies(site: TheSite, _person: Joined, task: str = Query("")) -> Json:
+    reply = await site.trainer.ask(TrainerRequest(policies=TrainerRequest.Policies(task=task)))
+    return {"policies": [as_json(policy) for policy in reply.policies]}
+
+
+@router.post("/policies")
+async def promote(body: Promotion, site: TheSite, _person: Joined) -> Json:
+    request = TrainerRequest.Promote(job=body.job, checkpoint=body.checkpoint, name=body.name)
+    reply = await site.trainer.ask(TrainerRequest(promote=request))
+    return {"policies": [as_json(policy) for policy in reply.policies]}
+
+
+@router.delete("/policies/{policy}")
+async def withdraw(policy: str, site: TheSite, _person: Joined) -> Json:
+    request = TrainerRequest.Withdraw(policy=policy)
+    reply = await site.trainer.ask(TrainerRequest(withdraw=request))
+    return {"policies": [as_json(removed) for removed in reply.policies]}
