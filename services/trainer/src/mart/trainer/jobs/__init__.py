@@ -1,0 +1,1 @@
+"""Trainings in a queue that survives whatever happens to the trainer."""

@@ -1,0 +1,54 @@
+"""Jobs on this machine: one process each, which dies with the trainer and is started anew by the next one."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+from mart.trainer import leash
+from mart.trainer.jobs.executors.executor import Ended, OnEnded
+from mart.trainer.jobs.job import End
+from mart.trainer.jobs.order import LOG, why_ended
+
+_STOP_TIMEOUT_S = 30.0
+
+
+class LocalExecutor:
+    """Its methods are called from one thread that lives as long as the trainer: see mart.trainer.leash."""
+
+    def __init__(self, slots: int, ended: OnEnded) -> None:
+        self.slots = slots
+        self._ended = ended
+        self._processes: dict[int, subprocess.Popen[bytes]] = {}
+        self._waiters: list[threading.Thread] = []
+
+    def start(self, job: int, run: Path) -> None:
+        run.mkdir(parents=True, exist_ok=True)
+        with (run / LOG).open("ab") as log:
+            process = leash.start((sys.executable, "-m", "mart.trainer.jobs.work", run), log, {})
+        self._processes[job] = process
+        waiter = threading.Thread(target=self._wait, args=(job, run, process), daemon=True)
+        self._waiters = [thread for thread in self._waiters if thread.is_alive()] + [waiter]
+        waiter.start()
+
+    def stop(self, job: int) -> None:
+        process = self._processes.get(job)
+        if process is not None:
+            process.terminate()
+            killer = threading.Timer(_STOP_TIMEOUT_S, process.kill)
+            killer.daemon = True
+            killer.start()
+
+    def close(self) -> None:
+        for process in self._processes.values():
+            process.terminate()
+        for process in self._processes.values():
+            leash.stop(process)
+        for waiter in self._waiters:
+            waiter.join()
+
+    def _wait(self, job: int, run: Path, process: subprocess.Popen[bytes]) -> None:
+        code = process.wait()
+        self._ended(Ended(job, code, "" if code == End.DONE else why_ended(run, code)))

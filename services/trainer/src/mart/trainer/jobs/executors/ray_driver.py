@@ -1,0 +1,101 @@
+"""Ray's side of the executor, in a process of its own: Ray ends its driver where the cluster's head is lost.
+
+`python -m mart.trainer.jobs.executors.ray_driver ADDRESS`. Lines of JSON: in {"start": 7, "run": "/…/job-0007"} and
+{"stop": 7}; out {"slots": 8} once it is connected and {"ended": 7, "code": 0}. It ends with its input.
+
+Every job runs as `mart.trainer.jobs.work` in a process of its own on a node of the cluster, which must have MART
+installed and see the run's folder under the same path.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import queue
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import ray
+
+from mart.trainer import leash
+from mart.trainer.jobs.job import End
+from mart.trainer.jobs.order import LOG
+
+_POLL_S = 0.5
+
+
+@ray.remote(num_cpus=1, max_retries=0, scheduling_strategy="SPREAD")
+def _work(run: str) -> int:
+    """On a node. Killing this task kills the job's process with it."""
+    with (Path(run) / LOG).open("ab") as log:
+        process = leash.start((sys.executable, "-m", "mart.trainer.jobs.work", run), log, {})
+    return process.wait()
+
+
+class _Tasks:
+    """Tasks that are not over."""
+
+    def __init__(self) -> None:
+        self._jobs: dict[ray.ObjectRef[int], int] = {}
+
+    def obey(self, order: dict[str, Any]) -> None:
+        if "start" in order:
+            self._jobs[_work.remote(order["run"])] = order["start"]
+        else:
+            for task, job in self._jobs.items():
+                if job == order["stop"]:
+                    ray.cancel(task, force=True)
+
+    def tell_ended(self) -> None:
+        ended, _ = (
+            ray.wait(list(self._jobs), num_returns=len(self._jobs), timeout=0) if self._jobs else ([], [])
+        )
+        for task in ended:
+            _tell(ended=self._jobs.pop(task), code=_code(task))
+
+
+def _code(task: ray.ObjectRef[int]) -> int:
+    try:
+        code: int = ray.get(task)
+    except (ray.exceptions.TaskCancelledError, ray.exceptions.WorkerCrashedError):
+        return End.STOPPED
+    except ray.exceptions.RayError:
+        return End.LOST
+    return code
+
+
+def _cluster_resources() -> dict[str, float]:
+    found: dict[str, float] = ray.cluster_resources()  # type: ignore[no-untyped-call]
+    return found
+
+
+def _tell(**fields: int) -> None:
+    print(json.dumps(fields), flush=True)  # noqa: T201 - standard output is the wire here
+
+
+def _read_orders(orders: queue.SimpleQueue[dict[str, Any] | None]) -> None:
+    for line in sys.stdin:
+        orders.put(json.loads(line))
+    orders.put(None)
+
+
+def main() -> None:
+    ray.init(address=sys.argv[1], log_to_driver=False, logging_level=logging.ERROR, namespace="mart")
+    _tell(slots=max(1, int(_cluster_resources().get("CPU", 1))))
+    orders: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
+    threading.Thread(target=_read_orders, args=(orders,), daemon=True).start()
+    tasks = _Tasks()
+    while True:
+        try:
+            order = orders.get(timeout=_POLL_S)
+            if order is None:
+                return
+            tasks.obey(order)
+        except queue.Empty:
+            tasks.tell_ended()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,109 @@
+"""The job table: SQLite in write-ahead mode, so that what was accepted is there after a power cut."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from mart.protocol.errors import Corrupt, NotFound
+from mart.trainer.jobs.job import Job, Judging, State
+from mart.trainer.request import TrainRequest
+
+_VERSION = 1
+_SCHEMA = """
+CREATE TABLE jobs (
+    number INTEGER PRIMARY KEY,
+    sweep INTEGER NOT NULL,
+    request TEXT NOT NULL,
+    judging TEXT NOT NULL,
+    executor TEXT NOT NULL,
+    run TEXT NOT NULL,
+    state TEXT NOT NULL,
+    attempt INTEGER NOT NULL,
+    detail TEXT NOT NULL,
+    submitted_ns INTEGER NOT NULL,
+    started_ns INTEGER NOT NULL,
+    ended_ns INTEGER NOT NULL
+) STRICT;
+CREATE INDEX by_state ON jobs (state);
+"""
+_COLUMNS = (
+    "number", "sweep", "request", "judging", "executor", "run", "state", "attempt", "detail", "submitted_ns",
+    "started_ns", "ended_ns",
+)  # fmt: skip
+_NAMES, _PLACES = ", ".join(_COLUMNS), ", ".join("?" * len(_COLUMNS))
+_PUT = f"INSERT OR REPLACE INTO jobs ({_NAMES}) VALUES ({_PLACES})"  # noqa: S608 - our own names
+
+
+class JobTable:
+    """For one thread. Raises Corrupt where the file is no job table of this version."""
+
+    def __init__(self, path: Path) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._connection = sqlite3.connect(path)
+        try:
+            self._connection.execute("PRAGMA journal_mode = WAL")
+            self._connection.execute("PRAGMA synchronous = FULL")
+            (version,) = self._connection.execute("PRAGMA user_version").fetchone()
+            if version == 0:
+                self._connection.executescript(f"BEGIN; {_SCHEMA} PRAGMA user_version = {_VERSION}; COMMIT;")
+                version = _VERSION
+        except sqlite3.DatabaseError as error:
+            raise Corrupt(f"{path} is no job table: {error}; move it away to begin a new one.") from error
+        if version != _VERSION:
+            raise Corrupt(f"{path} is of version {version}; this trainer reads {_VERSION}: move it away.")
+
+    def close(self) -> None:
+        self._connection.close()
+
+    def put(self, jobs: Sequence[Job]) -> None:
+        """All of them or none, on the disk when this returns."""
+        with self._connection:
+            self._connection.executemany(_PUT, [_row(job) for job in jobs])
+
+    def get(self, number: int) -> Job:
+        """Raises NotFound."""
+        found = self._select("WHERE number = ?", number)
+        if not found:
+            raise NotFound(f"There is no job {f'job-{number:04}'!r}; `mart jobs list` tells which there are.")
+        return found[0]
+
+    def newest(self, limit: int, sweep: int | None = None) -> list[Job]:
+        if sweep is None:
+            return self._select("ORDER BY number DESC LIMIT ?", limit)
+        return self._select("WHERE sweep = ? ORDER BY number DESC LIMIT ?", sweep, limit)
+
+    def in_state(self, state: State) -> list[Job]:
+        """The oldest first."""
+        return self._select("WHERE state = ? ORDER BY number", state)
+
+    def last(self) -> tuple[int, int]:
+        """The highest numbers of a job and of a sweep so far."""
+        job, sweep = self._connection.execute("SELECT max(number), max(sweep) FROM jobs").fetchone()
+        return job or 0, sweep or 0
+
+    def _select(self, clause: str, *values: int | str) -> list[Job]:
+        rows = self._connection.execute(f"SELECT {_NAMES} FROM jobs {clause}", values)  # noqa: S608
+        return [_job(dict(zip(_COLUMNS, row, strict=True))) for row in rows]
+
+
+def _row(job: Job) -> tuple[int | str, ...]:
+    text = {
+        "request": job.request.model_dump_json(),
+        "judging": job.judging.model_dump_json(),
+        "state": str(job.state),
+    }
+    return tuple(text[name] if name in text else getattr(job, name) for name in _COLUMNS)
+
+
+def _job(values: dict[str, Any]) -> Job:
+    return Job(
+        **values
+        | {
+            "request": TrainRequest.model_validate_json(values["request"]),
+            "judging": Judging.model_validate_json(values["judging"]),
+            "state": State(values["state"]),
+        }
+    )
