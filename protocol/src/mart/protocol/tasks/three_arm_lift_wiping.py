@@ -12,7 +12,12 @@ DEFAULT_ARMS = 3
 ARM_COUNTS = (3,)
 
 WIPER = "arm2"
-SPOTS_X, SPOTS_Y = 6, 4
+
+# What operators know beside what they observe. The tray is to stand on the rack, or beyond, to be out of the way.
+RACK_TOP_M = (0.0, -0.35, 0.05)  # middle of its top, in the world frame
+ASIDE_Y_M = -0.27  # of the tray's middle
+# Centres of the spots of dirt in the world frame, on the table, in the order of the observation `dirt/wiped`.
+SPOTS_M = tuple((x / 100, y / 100) for x in range(-10, 11, 4) for y in range(-6, 7, 4))
 
 # The carriers stand a little towards the rack, so that the tray is before them at both of its places.
 _CARRIER_X_M, _CARRIER_Y_M, _WIPER_Y_M = 0.72, -0.14, 0.62
@@ -42,7 +47,7 @@ def task(arms: int) -> Task:
             *tray_observations(names),
             Observation("sponge/position_in_world", (3,), "m", (WIPER,)),
             Observation("sponge/quaternion_in_world", (4,), "wxyz", (WIPER,)),
-            Observation("dirt/wiped", (SPOTS_X * SPOTS_Y,), "0 dirty, 1 wiped", (WIPER,)),
+            Observation("dirt/wiped", (len(SPOTS_M),), "0 dirty, 1 wiped", (WIPER,)),
         ),
         horizon_ticks=2400,  # two minutes: scripts need 12 s
         trial_ticks=840,

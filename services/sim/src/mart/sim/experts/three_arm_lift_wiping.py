@@ -7,21 +7,23 @@ from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.protocol.tasks.three_arm_lift_wiping import WIPER
+from mart.protocol.tasks.three_arm_lift_wiping import ASIDE_Y_M, RACK_TOP_M, SPOTS_M, WIPER
 from mart.sim.experts.carrying import Carrier, raised
 from mart.sim.experts.person import Person
 from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, pick, stay, wait
-from mart.sim.tasks.dirt import spots
-from mart.sim.tasks.three_arm_lift_wiping import ASIDE_Y_M, BLOCK_M, RACK_HALF_M, RACK_M, SPONGE_HALF_M
 
-_CARRY_Z_M = 0.13  # of the tray over the table, on its way; 5 cm is the rack's
+_RACK_TRAY_M = np.array(RACK_TOP_M) + np.array([0.0, 0.0, 0.005])  # of the tray's plate that stands on it
+_CARRY_Z_M = 0.13  # of the tray, on its way
 _NEAR_M = 0.02
-_RACK_TRAY_Z_M = 2 * RACK_HALF_M[2] + 0.005
 
+_SPONGE_Z_M, _SPONGE_LENGTH_M = 0.015, 0.09  # of its middle when it lies on the table
+_BLOCK_Z_M = 0.035  # of the middle of the block to hold it by, over the sponge's
 _LOST_M = 0.04  # a sponge further from the tool than it was gripped is not in the hand
 _OVER_M = 0.10
 _PRESS_M, _PRESS_MORE_M_PER_S, _PRESS_MOST_M = 0.004, 0.003, 0.010
 _PACE = 0.8
+
+_SPOTS_M = np.array([(x, y, 0.0) for x, y in SPOTS_M])
 
 Vector = NDArray[np.float64]
 
@@ -37,7 +39,7 @@ def carry(arm: Arm, person: Person, sight: Sight) -> Plan:
         return now.observations["tray/position_in_world"]
 
     def beside(now: Sight) -> Vector:
-        return np.array([*RACK_M, 0.0]) - tray(now) * (1, 1, 0)
+        return (_RACK_TRAY_M - tray(now)) * (1, 1, 0)
 
     def is_up(now: Sight) -> bool:
         return bool(tray(now)[2] > _CARRY_Z_M - _NEAR_M)
@@ -52,7 +54,7 @@ def carry(arm: Arm, person: Person, sight: Sight) -> Plan:
             up = np.array([0.0, 0.0, _CARRY_Z_M - tray(sight)[2]])
             sight = yield from carrier.along(sight, up, is_up)
             sight = yield from carrier.along(sight, beside(sight), is_over_rack)
-        down = np.array([0.0, 0.0, _RACK_TRAY_Z_M - tray(sight)[2]])
+        down = np.array([0.0, 0.0, _RACK_TRAY_M[2] - tray(sight)[2]])
         sight = yield from carrier.along(sight, down, lambda _: False)
 
 
@@ -73,7 +75,7 @@ class _Wiper:
         self._base_from_world = arm.pose_base_in_world.inverse()
 
     def grip(self, now: Sight) -> Pose:
-        return self._sponge(now) @ Pose(np.array(BLOCK_M), Pose.identity().quaternion_wxyz)
+        return self._sponge(now) @ Pose(np.array([0.0, 0.0, _BLOCK_Z_M]), Pose.identity().quaternion_wxyz)
 
     def wait_aside(self, sight: Sight) -> Step:
         """Holds the sponge up until the tray has left the dirt."""
@@ -90,7 +92,7 @@ class _Wiper:
         offset = sight.pose_tool_in_base.position - self._sponge(sight).position
         turn = sight.pose_tool_in_base.quaternion_wxyz
         while not self.has_lost(sight):
-            dirty = spots()[sight.observations["dirt/wiped"] < 1]
+            dirty = _SPOTS_M[sight.observations["dirt/wiped"] < 1]
             if len(dirty) != left:
                 begun_s, left = sight.sim_time_s, len(dirty)
             place = self._next_place(sight, dirty, sight.sim_time_s - begun_s)
@@ -105,14 +107,14 @@ class _Wiper:
         here = self._sponge(now).position
         if len(dirty) == 0:
             return np.array([*here[:2], _OVER_M])
-        in_base = self._base_from_world.transform_points(np.column_stack([dirty, np.zeros(len(dirty))]))
+        in_base = self._base_from_world.transform_points(dirty)
         nearest = in_base[np.argmin(np.hypot(*(in_base - here).T[:2]))]
         if not self._is_aside(now):
             return np.array([*here[:2], _OVER_M])
-        if float(np.hypot(*(nearest - here)[:2])) > 2 * SPONGE_HALF_M[0]:
+        if float(np.hypot(*(nearest - here)[:2])) > _SPONGE_LENGTH_M:
             return np.array([*nearest[:2], 0.5 * _OVER_M])
         press_m = min(_PRESS_M + _PRESS_MORE_M_PER_S * stuck_s, _PRESS_MOST_M)
-        return np.array([*nearest[:2], SPONGE_HALF_M[2] - press_m])
+        return np.array([*nearest[:2], _SPONGE_Z_M - press_m])
 
     def _sponge(self, now: Sight) -> Pose:
         return self._base_from_world @ Pose(

@@ -13,22 +13,15 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from mart.protocol.tasks.three_arm_lift_wiping import SPOTS_X, SPOTS_Y
+from mart.protocol.tasks.three_arm_lift_wiping import SPOTS_M
 from mart.sim.world.data import Array, Data, Flags
 from mart.sim.world.palette import MATERIALS, rgba
 
-_PITCH_M = 0.04
 _RADIUS_M = 0.046  # of what is painted
 _PIXELS = 64
 _ALPHA = 0.95
 _SHOWN_Z_M, _LAYER_M, _HIDDEN_Z_M = 0.0004, 0.00001, -0.02  # the table top is 4 cm thick
 _TOUCHING_M = 0.003  # sponges give
-
-
-def spots() -> Array:
-    """Centres on the table, shape (SPOTS_X * SPOTS_Y, 2), about the world's origin."""
-    x, y = ((np.arange(number) - (number - 1) / 2) * _PITCH_M for number in (SPOTS_X, SPOTS_Y))
-    return np.array([(x_m, y_m) for x_m in x for y_m in y])
 
 
 def add_dirt(spec: mujoco.MjSpec) -> None:
@@ -37,7 +30,7 @@ def add_dirt(spec: mujoco.MjSpec) -> None:
     )
     texture.data = _smudge().tobytes()
     spec.material("dirt").textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "dirt"
-    for index, (x, y) in enumerate(spots()):
+    for index, (x, y) in enumerate(SPOTS_M):
         turn = 2.4 * index  # the golden angle: no two neighbours look alike
         spot = spec.worldbody.add_body(
             name=f"dirt{index}",
@@ -61,19 +54,17 @@ def add_dirt(spec: mujoco.MjSpec) -> None:
 class Dirt:
     """The spots in a world's state, or in a batch's: shapes (...) are () or (worlds,)."""
 
-    SPOTS = SPOTS_X * SPOTS_Y
-
     def __init__(
         self, data: Data, wiped: Array, sponge: Any, sponge_half_m: tuple[float, float, float]
     ) -> None:
-        """wiped: 1 where it is, shape (..., SPOTS), in the state. sponge: a view of its body."""
+        """wiped: 1 where it is, shape (..., spots), in the state. sponge: a view of its body."""
         self.wiped = wiped
         self._position = sponge.xpos
         self._axes = [sponge.xmat[..., axis::3] for axis in range(3)]
         self._half_m = sponge_half_m
-        self._spots = np.column_stack([spots(), np.zeros(self.SPOTS)])
+        self._spots = np.array([(x, y, 0.0) for x, y in SPOTS_M])
         first = int(data.model.body("dirt0").mocapid[0])
-        self._heights = data.mocap_pos[..., first : first + self.SPOTS, 2]
+        self._heights = data.mocap_pos[..., first : first + len(SPOTS_M), 2]
 
     def wipe(self) -> None:
         np.maximum(self.wiped, self._touched(), out=self.wiped)
@@ -83,7 +74,7 @@ class Dirt:
         return np.logical_and.reduce(self.wiped > 0, axis=-1)
 
     def _touched(self) -> Flags:
-        """Which spots lie under the sponge's face and against it, shape (..., SPOTS)."""
+        """Which spots lie under the sponge's face and against it, shape (..., spots)."""
         from_sponge = self._spots - self._position[..., None, :]
         x, y, z = (np.sum(from_sponge * axis[..., None, :], axis=-1) for axis in self._axes)
         half_x, half_y, half_z = self._half_m

@@ -9,7 +9,7 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.protocol.tasks.three_arm_lift_wiping import WIPER
+from mart.protocol.tasks.three_arm_lift_wiping import ASIDE_Y_M, RACK_TOP_M, SPOTS_M, WIPER
 from mart.protocol.tasks.tray import CARRIERS
 from mart.sim.tasks.dirt import Dirt, add_dirt
 from mart.sim.tasks.scene import Judgement, Scene
@@ -20,10 +20,8 @@ from mart.sim.world.palette import rgba
 from mart.sim.world.shadows import add_shadow
 from mart.sim.world.symbols import add_tile
 
-RACK_M = (0.0, -0.35)  # its middle
-RACK_HALF_M = (0.13, 0.07, 0.025)
+_RACK_HALF_M = (0.13, 0.07, RACK_TOP_M[2] / 2)
 LIFTED_M = 0.04  # of the tray's lowest corner: a tray that is dragged over the table stays under it
-ASIDE_Y_M = -0.27  # of the tray's middle: from here on it leaves the dirt free
 FALLEN_Z_M = -0.05
 
 SPONGE_HALF_M = (
@@ -42,13 +40,14 @@ _BOX = mujoco.mjtGeom.mjGEOM_BOX
 
 
 class LiftWiping(Scene):
-    memory_size = Dirt.SPOTS
+    memory_size = len(SPOTS_M)
 
     def add_objects(self, spec: mujoco.MjSpec) -> None:
         add_tray(spec, [self.task.arm(name) for name in CARRIERS])
         _add_sponge(spec, self.task.arm(WIPER))
+        x, y, top = RACK_TOP_M
         spec.worldbody.add_geom(
-            name="rack", type=_BOX, size=RACK_HALF_M, pos=(*RACK_M, RACK_HALF_M[2]), material="slate"
+            name="rack", type=_BOX, size=_RACK_HALF_M, pos=(x, y, top / 2), material="slate"
         )
         add_dirt(spec)
 
