@@ -116,7 +116,16 @@ def _rollouts() -> tuple[Message, ...]:
     resimulate = m.RolloutRequest.Resimulate(
         model_sha256="ab", task="t", control_hz=20.0, first_state=b"\x01", actions=b"\x02" * 8
     )
-    reply = m.RolloutReply(state_digests=b"\x03" * 16)
+    worlds = m.WorldArrays(
+        observations=b"\x04" * 16,
+        subtasks=b"\x01\x00",
+        success_ticks=b"\x05\x00\x00\x00",
+        success=b"\x00",
+        failed=["Cube 0 fell off the table."],
+        sim_time_s=b"\x06" * 8,
+        integration_states=b"\x07" * 8,
+    )
+    reply = m.RolloutReply(session="12ab34cd-1", worlds=worlds, state_digests=b"\x03" * 16)
     return model, m.RolloutRequest(resimulate=resimulate), reply
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -11,18 +10,18 @@ from numpy.typing import NDArray
 
 from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest
+from mart.protocol.tasks import get_task
+from mart.protocol.worlds import Worlds, unpack
 from mart.sim.lockstep import IDLE_S, MAX_SESSIONS, MAX_WORLDS, Lockstep
-from mart.sim.world import Diverged, World
+from mart.sim.world import World
 
 TASK = "two_arm_multi_cube_lifting"
 SEEDS = (11, 12, 13)
 
 
 @pytest.fixture(scope="module")
-def lockstep() -> Iterator[Lockstep]:
-    lockstep = Lockstep(workers=2)
-    yield lockstep
-    lockstep.close()
+def lockstep() -> Lockstep:
+    return Lockstep(threads=2)
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +30,9 @@ def world() -> World:
 
 
 def reset(lockstep: Lockstep, seeds: tuple[int, ...] = SEEDS, now_s: float = 0.0) -> RolloutReply:
-    request = RolloutRequest(reset=RolloutRequest.Reset(task=TASK, control_hz=20.0, seeds=seeds))
+    request = RolloutRequest(
+        reset=RolloutRequest.Reset(task=TASK, control_hz=20.0, seeds=seeds, integration_states=True)
+    )
     return lockstep.answer(request, now_s)
 
 
@@ -50,23 +51,70 @@ def some_actions(ticks: int, worlds: int = len(SEEDS)) -> NDArray[np.float64]:
     return np.random.default_rng(3).uniform(-1, 1, (ticks, worlds, 2, 7))
 
 
+def worlds_of(reply: RolloutReply) -> Worlds:
+    return unpack(get_task(TASK), reply.worlds, len(reply.worlds.failed))
+
+
 def test_a_batch_goes_as_its_worlds_would_alone(lockstep: Lockstep, world: World) -> None:
     actions = some_actions(15)
     begun = reset(lockstep)
-    replies = [step(lockstep, begun.session, action) for action in actions]
+    stood = [worlds_of(reply) for reply in (begun, *(step(lockstep, begun.session, a) for a in actions))]
     close(lockstep, begun.session)
     for number, seed in enumerate(SEEDS):
         world.reset(seed)
-        assert begun.worlds[number].integration_state == world.integration_state()
-        for action, reply in zip(actions, replies, strict=True):
+        assert_same(stood[0], number, world)
+        for action, worlds in zip(actions, stood[1:], strict=True):
             world.step(action[number])
-            stepped = reply.worlds[number]
-            assert stepped.integration_state == world.integration_state()
-            assert {seen.name: list(seen.value) for seen in stepped.observations} == {
-                name: value.tolist() for name, value in world.observations().items()
-            }
-            assert stepped.sim_time_s == world.sim_time_s
-            assert stepped.progress.success_ticks == world.progress().success_ticks
+            assert_same(worlds, number, world)
+
+
+def assert_same(worlds: Worlds, number: int, world: World) -> None:
+    assert worlds.integration_states is not None
+    assert worlds.integration_states[number].tobytes() == world.integration_state()
+    seen, progress = world.observations(), world.progress()
+    assert list(worlds.observations) == list(seen)
+    for name, value in seen.items():
+        assert worlds.observations[name][number].tobytes() == value.tobytes(), name
+    assert worlds.sim_time_s[number] == world.sim_time_s
+    assert worlds.subtasks[number].tolist() == list(progress.subtasks.values())
+    assert worlds.success_ticks[number] == progress.success_ticks
+    assert worlds.success[number] == progress.success
+    assert worlds.reasons[number] == (progress.failed or "")
+
+
+def test_worlds_that_do_not_run_stay_as_they_are(lockstep: Lockstep) -> None:
+    begun = reset(lockstep)
+    actions = some_actions(2)
+    first, both = (step_some(lockstep, begun.session, action, running=[1, 0, 1]) for action in actions)
+    last = worlds_of(step(lockstep, begun.session, actions[0]))
+    close(lockstep, begun.session)
+    alone = reset(lockstep)
+    all_run = [worlds_of(step(lockstep, alone.session, action)) for action in actions]
+    close(lockstep, alone.session)
+    for stopped in (first, both):
+        assert states(stopped)[1] == states(worlds_of(begun))[1]
+    assert states(first)[::2] == states(all_run[0])[::2]
+    assert states(both)[::2] == states(all_run[1])[::2]
+    assert states(last)[1] == states(all_run[0])[1]
+
+
+def step_some(lockstep: Lockstep, session: str, actions: NDArray[np.float64], running: list[int]) -> Worlds:
+    message = RolloutRequest.Step(session=session, actions=actions.tobytes(), running=bytes(running))
+    return worlds_of(lockstep.answer(RolloutRequest(step=message), 0.0))
+
+
+def states(worlds: Worlds) -> list[bytes]:
+    assert worlds.integration_states is not None
+    return [state.tobytes() for state in worlds.integration_states]
+
+
+def test_states_travel_only_where_asked_for(lockstep: Lockstep) -> None:
+    request = RolloutRequest(reset=RolloutRequest.Reset(task=TASK, control_hz=20.0, seeds=SEEDS))
+    begun = lockstep.answer(request, 0.0)
+    stepped = step(lockstep, begun.session, some_actions(1)[0])
+    close(lockstep, begun.session)
+    assert worlds_of(begun).integration_states is None
+    assert worlds_of(stepped).integration_states is None
 
 
 def test_sessions_do_not_disturb_each_other(lockstep: Lockstep) -> None:
@@ -113,28 +161,6 @@ def test_a_recording_of_another_model_is_a_conflict(lockstep: Lockstep, world: W
         lockstep.answer(request, 0.0)
 
 
-def test_a_world_that_diverges_stays_and_the_others_go_on(
-    lockstep: Lockstep, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    begun = reset(lockstep)
-    honest_step = World.step
-
-    def diverge_on_request(world: World, action: NDArray[np.float64]) -> None:
-        if action[0, 0] == 0.5:
-            raise Diverged(world.sim_time_s)
-        honest_step(world, action)
-
-    actions = np.zeros((3, 2, 7))
-    actions[1, 0, 0] = 0.5
-    with monkeypatch.context() as broken:
-        broken.setattr(World, "step", diverge_on_request)
-        worlds = step(lockstep, begun.session, actions).worlds
-    assert [bool(world.progress.failed) for world in worlds] == [False, True, False]
-    assert worlds[1].integration_state == begun.worlds[1].integration_state
-    assert worlds[0].integration_state != begun.worlds[0].integration_state
-    close(lockstep, begun.session)
-
-
 @pytest.mark.parametrize(
     ("request_", "error"),
     [
@@ -165,7 +191,13 @@ def test_bad_requests_are_refused(
 
 @pytest.mark.parametrize(
     "actions",
-    [np.zeros((2, 2, 7)), np.zeros((3, 2, 6)), np.full((3, 2, 7), np.nan), np.full((3, 2, 7), np.inf)],
+    [
+        np.zeros((2, 2, 7)),
+        np.zeros((3, 2, 6)),
+        np.full((3, 2, 7), np.nan),
+        np.full((3, 2, 7), np.inf),
+        np.full((3, 2, 7), -1.01),
+    ],
 )
 def test_bad_actions_are_refused_and_nothing_moves(lockstep: Lockstep, actions: NDArray[np.float64]) -> None:
     begun = reset(lockstep)
@@ -181,10 +213,29 @@ def test_bad_actions_are_refused_and_nothing_moves(lockstep: Lockstep, actions: 
 
 def test_sessions_are_bounded_and_idle_ones_make_room(lockstep: Lockstep) -> None:
     sessions = [reset(lockstep, (1,)).session for _ in range(MAX_SESSIONS)]
-    with pytest.raises(Unavailable):
+    with pytest.raises(Unavailable, match="sessions are open"):
         reset(lockstep, (1,), now_s=1.0)
     later_s = IDLE_S + 1.0
     kept = reset(lockstep, (1,), now_s=later_s).session
     with pytest.raises(NotFound):
         close(lockstep, sessions[0], later_s)
     close(lockstep, kept, later_s)
+
+
+def test_worlds_are_bounded_over_all_sessions(lockstep: Lockstep, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mart.sim.lockstep.MAX_WORLDS", 4)
+    held = reset(lockstep)
+    with pytest.raises(Unavailable, match="3 of 4 are held"):
+        reset(lockstep, (1, 2))
+    step(lockstep, held.session, some_actions(1)[0])
+    close(lockstep, held.session)
+    close(lockstep, reset(lockstep, (1, 2)).session)
+
+
+def test_a_session_of_an_earlier_run_is_told_from_one_that_was_closed(lockstep: Lockstep) -> None:
+    session = reset(lockstep, (1,)).session
+    close(lockstep, session)
+    with pytest.raises(NotFound, match="closed, or idle"):
+        close(lockstep, session)
+    with pytest.raises(NotFound, match="restarted"):
+        close(Lockstep(threads=1), session)

@@ -19,7 +19,7 @@ from mart.v1.command_pb2 import (
     Operator,
 )
 from mart.v1.pose_pb2 import Pose as PoseMessage
-from mart.v1.rollout_pb2 import RolloutReply, RolloutRequest, WorldState
+from mart.v1.rollout_pb2 import RolloutReply, RolloutRequest, WorldArrays
 from mart.v1.room_pb2 import (
     BARRIER_PHASE_PAUSED,
     BARRIER_PHASE_RUNNING,
@@ -132,7 +132,7 @@ __all__ = [
     "TrainerReply",
     "TrainerRequest",
     "Waiting",
-    "WorldState",
+    "WorldArrays",
     "barrier_word",
     "error_message",
     "job_state_word",

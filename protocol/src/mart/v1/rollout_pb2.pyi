@@ -1,5 +1,4 @@
 from mart.v1 import room_pb2 as _room_pb2
-from mart.v1 import state_pb2 as _state_pb2
 from google.protobuf.internal import containers as _containers
 from google.protobuf import descriptor as _descriptor
 from google.protobuf import message as _message
@@ -11,23 +10,27 @@ DESCRIPTOR: _descriptor.FileDescriptor
 class RolloutRequest(_message.Message):
     __slots__ = ("reset", "step", "close", "resimulate")
     class Reset(_message.Message):
-        __slots__ = ("task", "control_hz", "arms", "seeds")
+        __slots__ = ("task", "control_hz", "arms", "seeds", "integration_states")
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
         ARMS_FIELD_NUMBER: _ClassVar[int]
         SEEDS_FIELD_NUMBER: _ClassVar[int]
+        INTEGRATION_STATES_FIELD_NUMBER: _ClassVar[int]
         task: str
         control_hz: float
         arms: int
         seeds: _containers.RepeatedScalarFieldContainer[int]
-        def __init__(self, task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., seeds: _Optional[_Iterable[int]] = ...) -> None: ...
+        integration_states: bool
+        def __init__(self, task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., seeds: _Optional[_Iterable[int]] = ..., integration_states: _Optional[bool] = ...) -> None: ...
     class Step(_message.Message):
-        __slots__ = ("session", "actions")
+        __slots__ = ("session", "actions", "running")
         SESSION_FIELD_NUMBER: _ClassVar[int]
         ACTIONS_FIELD_NUMBER: _ClassVar[int]
+        RUNNING_FIELD_NUMBER: _ClassVar[int]
         session: str
         actions: bytes
-        def __init__(self, session: _Optional[str] = ..., actions: _Optional[bytes] = ...) -> None: ...
+        running: bytes
+        def __init__(self, session: _Optional[str] = ..., actions: _Optional[bytes] = ..., running: _Optional[bytes] = ...) -> None: ...
     class Close(_message.Message):
         __slots__ = ("session",)
         SESSION_FIELD_NUMBER: _ClassVar[int]
@@ -58,19 +61,23 @@ class RolloutRequest(_message.Message):
     resimulate: RolloutRequest.Resimulate
     def __init__(self, reset: _Optional[_Union[RolloutRequest.Reset, _Mapping]] = ..., step: _Optional[_Union[RolloutRequest.Step, _Mapping]] = ..., close: _Optional[_Union[RolloutRequest.Close, _Mapping]] = ..., resimulate: _Optional[_Union[RolloutRequest.Resimulate, _Mapping]] = ...) -> None: ...
 
-class WorldState(_message.Message):
-    __slots__ = ("observations", "progress", "integration_state", "arms", "sim_time_s")
+class WorldArrays(_message.Message):
+    __slots__ = ("observations", "subtasks", "success_ticks", "success", "failed", "sim_time_s", "integration_states")
     OBSERVATIONS_FIELD_NUMBER: _ClassVar[int]
-    PROGRESS_FIELD_NUMBER: _ClassVar[int]
-    INTEGRATION_STATE_FIELD_NUMBER: _ClassVar[int]
-    ARMS_FIELD_NUMBER: _ClassVar[int]
+    SUBTASKS_FIELD_NUMBER: _ClassVar[int]
+    SUCCESS_TICKS_FIELD_NUMBER: _ClassVar[int]
+    SUCCESS_FIELD_NUMBER: _ClassVar[int]
+    FAILED_FIELD_NUMBER: _ClassVar[int]
     SIM_TIME_S_FIELD_NUMBER: _ClassVar[int]
-    observations: _containers.RepeatedCompositeFieldContainer[_state_pb2.Observation]
-    progress: _state_pb2.Progress
-    integration_state: bytes
-    arms: _containers.RepeatedCompositeFieldContainer[_state_pb2.ArmState]
-    sim_time_s: float
-    def __init__(self, observations: _Optional[_Iterable[_Union[_state_pb2.Observation, _Mapping]]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., integration_state: _Optional[bytes] = ..., arms: _Optional[_Iterable[_Union[_state_pb2.ArmState, _Mapping]]] = ..., sim_time_s: _Optional[float] = ...) -> None: ...
+    INTEGRATION_STATES_FIELD_NUMBER: _ClassVar[int]
+    observations: bytes
+    subtasks: bytes
+    success_ticks: bytes
+    success: bytes
+    failed: _containers.RepeatedScalarFieldContainer[str]
+    sim_time_s: bytes
+    integration_states: bytes
+    def __init__(self, observations: _Optional[bytes] = ..., subtasks: _Optional[bytes] = ..., success_ticks: _Optional[bytes] = ..., success: _Optional[bytes] = ..., failed: _Optional[_Iterable[str]] = ..., sim_time_s: _Optional[bytes] = ..., integration_states: _Optional[bytes] = ...) -> None: ...
 
 class RolloutReply(_message.Message):
     __slots__ = ("error", "session", "worlds", "state_digests")
@@ -80,6 +87,6 @@ class RolloutReply(_message.Message):
     STATE_DIGESTS_FIELD_NUMBER: _ClassVar[int]
     error: _room_pb2.Error
     session: str
-    worlds: _containers.RepeatedCompositeFieldContainer[WorldState]
+    worlds: WorldArrays
     state_digests: bytes
-    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., session: _Optional[str] = ..., worlds: _Optional[_Iterable[_Union[WorldState, _Mapping]]] = ..., state_digests: _Optional[bytes] = ...) -> None: ...
+    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., session: _Optional[str] = ..., worlds: _Optional[_Union[WorldArrays, _Mapping]] = ..., state_digests: _Optional[bytes] = ...) -> None: ...

@@ -17,7 +17,6 @@ from mart.protocol.messages import (
     Seat,
     Subtask,
     Waiting,
-    WorldState,
 )
 from mart.sim.admission import Arrival
 from mart.sim.episode import EpisodeCourse
@@ -38,8 +37,17 @@ def arm_state(seen: Seen, seat: SeatHolder, arrival: Arrival | None, action: Seq
 
     arrival: the command that moved it, None for a held arm. action: empty after a reset.
     """
-    state = measured_arm(seen, seat.arm, action)
-    state.update(source=seat.operator, seat_epoch=seat.epoch)
+    x, y, z = seen[f"{seat.arm}/tool_position_in_base"].tolist()
+    qw, qx, qy, qz = seen[f"{seat.arm}/tool_quaternion_in_base"].tolist()
+    (gripper,) = seen[f"{seat.arm}/gripper"].tolist()
+    state: Fields = {
+        "arm": seat.arm,
+        "tool_in_base": {"x": x, "y": y, "z": z, "qw": qw, "qx": qx, "qy": qy, "qz": qz},
+        "gripper": gripper,
+        "action": action,
+        "source": seat.operator,
+        "seat_epoch": seat.epoch,
+    }
     if arrival is not None:
         state.update(
             sequence=arrival.sequence,
@@ -49,15 +57,6 @@ def arm_state(seen: Seen, seat: SeatHolder, arrival: Arrival | None, action: Seq
             fresh=True,
         )
     return state
-
-
-def measured_arm(seen: Seen, arm: str, action: Sequence[float]) -> Fields:
-    """What can be known of an arm without a seat: where it is and what was done; an ArmState."""
-    x, y, z = seen[f"{arm}/tool_position_in_base"].tolist()
-    qw, qx, qy, qz = seen[f"{arm}/tool_quaternion_in_base"].tolist()
-    (gripper,) = seen[f"{arm}/gripper"].tolist()
-    pose = {"x": x, "y": y, "z": z, "qw": qw, "qx": qx, "qy": qy, "qz": qz}
-    return {"arm": arm, "tool_in_base": pose, "gripper": gripper, "action": action}
 
 
 def observations(seen: Seen) -> list[Fields]:
@@ -72,21 +71,6 @@ def progress(progress: WorldProgress) -> Progress:
         success_ticks=progress.success_ticks,
         success=progress.success,
         failed=progress.failed or "",
-    )
-
-
-def world_state(world: World, actions: NDArray[np.float64] | None) -> WorldState:
-    """A world of a rollout. `actions`: shape (arms, 7), what was done in its last tick; None after a reset."""
-    seen = world.observations()
-    return WorldState(
-        observations=observations(seen),
-        progress=progress(world.progress()),
-        integration_state=world.integration_state(),
-        arms=[
-            measured_arm(seen, arm, () if actions is None else actions[index].tolist())
-            for index, arm in enumerate(world.arms)
-        ],
-        sim_time_s=world.sim_time_s,
     )
 
 

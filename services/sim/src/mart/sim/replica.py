@@ -25,12 +25,11 @@ def serve_replica(settings: ReplicaSettings) -> None:
     os.nice(settings.niceness)
     requests: queue.SimpleQueue[Request] = queue.SimpleQueue()
     with (
-        contextlib.closing(Lockstep()) as lockstep,
         connected(settings, "replica", settings.name) as service,
         contextlib.closing(service.bus.serve(keys.rollout(settings.name), requests.put)),
         announced(service),
     ):
-        _answer_all(lockstep, requests, service.stop)
+        _answer_all(Lockstep(), requests, service.stop)
 
 
 def _answer_all(lockstep: Lockstep, requests: queue.SimpleQueue[Request], stop: threading.Event) -> None:

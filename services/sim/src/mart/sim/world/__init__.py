@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from mart.sim.world.batch import WorldBatch
 from mart.sim.world.progress import Progress
 from mart.sim.world.surface import ACTION_SIZE
 from mart.sim.world.world import Diverged, World
 
-__all__ = ["ACTION_SIZE", "Diverged", "Progress", "World"]
+__all__ = ["ACTION_SIZE", "Diverged", "Progress", "World", "WorldBatch"]

@@ -21,7 +21,7 @@ from mart.protocol.tasks import Task, get_task
 from mart.sim.tasks import Scene, scene_of
 from mart.sim.world import kinematics, model, osc, panda
 from mart.sim.world.arm import MeasuredArm
-from mart.sim.world.data import Array
+from mart.sim.world.data import Array, Flags
 from mart.sim.world.meshes import Detail
 from mart.sim.world.progress import Progress, first_reasons
 from mart.sim.world.surface import ACTION_SIZE, Surface
@@ -56,7 +56,7 @@ class World:
         osc.install()
         mujoco.set_mju_user_warning(_log_warning)
         self._scene = scene
-        self._substeps, timestep_s = model.substeps(control_hz)
+        self.substeps, timestep_s = model.substeps(control_hz)
         self.control_period_s = 1.0 / control_hz
         self.model = model.build(scene, timestep_s, detail)
         self.data = mujoco.MjData(self.model)
@@ -151,10 +151,10 @@ class World:
             raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
         self._surface.command(actions)
         begun_s = self.sim_time_s
-        mujoco.mj_step(self.model, self.data, self._substeps)
+        mujoco.mj_step(self.model, self.data, self.substeps)
         # Poses of the new state: mj_step leaves those of its last substep's beginning.
         mujoco.mj_kinematics(self.model, self.data)
-        if self._fatal_warnings.any():
+        if self._fatal_warnings.any() or not bounded(self.data.qvel):
             raise Diverged(begun_s)
         self._surface.settle()
 
@@ -200,6 +200,11 @@ class World:
 
     def _arm(self, name: str) -> MeasuredArm:
         return self._surface.arms[self.task.arm(name).name]
+
+
+def bounded(velocities: Array) -> Flags:
+    """Whether MuJoCo will go on from these, shape (..., nv): what it would find bad next time is told this time."""
+    return (np.abs(velocities) < mujoco.mjMAXVAL).all(axis=-1)
 
 
 def _within_unit(vector: Array) -> Array:

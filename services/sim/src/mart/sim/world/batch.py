@@ -1,0 +1,102 @@
+"""Many worlds of one kind, stepped together on several threads.
+
+The same physics, controller and lines of Python as in `World`: a batch gives the same bits as its worlds alone. What
+they are between two steps is one integration state each; positions are worked out anew after every step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+from mujoco.batch import Batch, SimulationError
+from numpy.typing import NDArray
+
+from mart.protocol.worlds import Worlds
+from mart.sim.tasks import scene_of
+from mart.sim.world.data import Array, Flags
+from mart.sim.world.progress import first_reasons
+from mart.sim.world.surface import Surface
+from mart.sim.world.world import FATAL_WARNINGS, Diverged, World, bounded
+
+_NOTHING, _POSITIONS = int(mujoco.mjtStage.mjSTAGE_NONE), int(mujoco.mjtStage.mjSTAGE_POS)
+
+
+class WorldBatch:
+    """`size` worlds like `world`, which stays in use: it makes the states of resets. Reset before anything else."""
+
+    def __init__(self, world: World, size: int, threads: int) -> None:
+        self._world = world
+        self._batch = Batch(world.model, size, threads)
+        self._surface = Surface(scene_of(world.task), world.model, self._batch)
+        self._fatal_warnings = self._batch.warning[:, FATAL_WARNINGS, 1]
+        self._diverged: dict[int, str] = {}
+
+    def __len__(self) -> int:
+        return int(self._batch.nsim)
+
+    def reset(self, seeds: Sequence[int]) -> None:
+        """Begins an episode in every world, as `World.reset` does."""
+        self._batch.reset(stage=_NOTHING)
+        for row, seed in zip(self._batch.state, seeds, strict=True):
+            self._world.reset(seed)
+            row[:] = np.frombuffer(self._world.integration_state(), "<f8")
+        self._diverged.clear()
+        self._batch.forward(stage=_POSITIONS)
+
+    def step(self, actions: Array, running: Flags) -> dict[int, str]:
+        """Advances the running worlds by one control period; actions: shape (worlds, arms, 7), finite.
+
+        A world whose physics leaves its bounds stays as it was, for good, and has failed; the answer says which have
+        now, and why.
+        """
+        going = running.copy()
+        going[list(self._diverged)] = False
+        before = self._batch.state.copy()
+        self._surface.command(actions)
+        diverged = self._advance(np.flatnonzero(going))
+        self._surface.settle()
+        going[diverged] = False
+        self._batch.state[~going] = before[~going]
+        if len(diverged):
+            self._batch.forward(diverged, stage=_POSITIONS)
+        now = {int(world): str(Diverged(self._batch.time[world])) for world in diverged}
+        self._diverged |= now
+        return now
+
+    def _advance(self, going: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Which of them left their bounds."""
+        if not len(going):
+            return going
+        try:
+            self._batch.step(going, nstep=self._world.substeps, stage=_POSITIONS)
+        except SimulationError as error:
+            broken = error.ids
+        else:
+            broken = going[:0]
+        unstable = self._fatal_warnings[going].any(axis=1) | ~bounded(self._batch.qvel[going])
+        return np.union1d(going[unstable], broken)
+
+    def integration_states(self) -> Array:
+        """Shape (worlds, size): what `World.integration_state` gives. A copy."""
+        self._surface.cast_shadows()
+        return self._batch.state.copy()
+
+    def standing(self, *, integration_states: bool = False) -> Worlds:
+        """How every world stands."""
+        judgement = self._surface.judge()
+        reasons = first_reasons(judgement.failed, len(self))
+        for world, reason in self._diverged.items():
+            reasons[world] = reason
+        ticks = self._surface.success_ticks
+        return Worlds(
+            observations=self._surface.observations(),
+            subtasks=np.stack([judgement.subtasks[s.name] for s in self._world.task.subtasks], axis=-1),
+            success=ticks >= self._world.task.success_hold_ticks,
+            failed=np.array([bool(reason) for reason in reasons]),
+            sim_time_s=self._batch.time.copy(),
+            success_ticks=ticks.astype(np.uint32),
+            reasons=tuple(reasons),
+            integration_states=self.integration_states() if integration_states else None,
+        )
