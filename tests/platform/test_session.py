@@ -52,7 +52,7 @@ def test_an_episode_is_what_its_events_say() -> None:
 
 
 def test_without_a_page_there_is_no_motion_to_photon() -> None:
-    episode = Episode(1, "a", "success", 10, 1.0, True, "", ())
+    episode = Episode(1, 5, "", "a", "success", "done", 10, 0.5, 1.0, True, "", ())
     assert episode.as_json()["motion_to_photon_p50_ms"] is None
 
 

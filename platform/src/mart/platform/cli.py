@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import json
 import logging
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from mart.platform.plan import DEFAULT_TASK
+from mart.protocol import clock
 from mart.protocol.cli import json_option, print_result
 from mart.protocol.errors import InvalidInput, NotFound
 
 if TYPE_CHECKING:
     from mart.platform.collection import Order
+    from mart.platform.session import Episode
 
 _SKILLS = click.Choice(["expert", "average", "novice"])
+_TIME_LIMIT = click.FloatRange(0.0, 3600.0, min_open=True)
 
 
 @click.command()
@@ -65,9 +69,10 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
 
     Prints one JSON line per episode, with or without --json.
     """
-    from mart.platform.collection import Order
+    from mart.platform.collection import Order, collect_episodes
 
-    _print_episodes(Order(task, episodes, "expert", seed, control_hz, out, browsers=True))
+    order = Order(task, episodes, "expert", seed, control_hz, out, browsers=True)
+    _print_collected(order, collect_episodes(order), as_json=False)
 
 
 @click.command()
@@ -77,8 +82,12 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
     "--operators", help="Who drives each arm, separated by commas.  [default: script for every arm]"
 )
 @click.option("--skill", default="expert", show_default=True, type=_SKILLS, help="Of the scripted experts.")
-@click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0))
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(0, 2**32 - 1))
+@click.option(
+    "--time-limit", type=_TIME_LIMIT, help="Of an episode, seconds simulated.  [default: the task's trial]"
+)
 @click.option("--control-hz", default=20.0, show_default=True, help="Ticks a second, at most.")
+@click.option("--lockstep", is_flag=True, help="As fast as the machine allows, without phones and video.")
 @click.option("--out", default=Path("data/collected"), show_default=True, type=click.Path(path_type=Path))
 @json_option
 def collect(
@@ -88,18 +97,21 @@ def collect(
     operators: str | None,
     skill: str,
     seed: int,
+    time_limit: float | None,
     control_hz: float,
+    lockstep: bool,
     out: Path,
     as_json: bool,
 ) -> None:
     """Collect episodes without people: scripted experts hold emulated phones, in real time, over WebRTC.
 
-    Prints one JSON line per episode, with or without --json.
+    Prints one JSON line per episode as it is saved and a summary on standard error; with --json one object with both.
     """
-    from mart.platform.collection import Order
+    from mart.platform.collection import Order, collect_episodes, collect_in_lockstep
 
     _require_scripts(task, operators)
-    _print_episodes(Order(task, episodes, skill, seed, control_hz, out, browsers=False))
+    order = Order(task, episodes, skill, seed, control_hz, out, time_limit)
+    _print_collected(order, (collect_in_lockstep if lockstep else collect_episodes)(order), as_json)
 
 
 @click.command()
@@ -133,19 +145,23 @@ def doctor(as_json: bool) -> None:
     click.get_current_context().exit(0 if ok else 1)
 
 
-def _print_episodes(order: Order) -> None:
-    """One JSON line per episode as it is saved; for people, the count on standard error."""
-    from mart.platform.collection import collect_episodes
+def _print_collected(order: Order, episodes: Iterator[Episode], as_json: bool) -> None:
+    """Each episode as it is saved and, for people, the summary on standard error; or one object with both."""
+    from mart.platform.summary import Summary
 
     logging.getLogger("httpx").setLevel(logging.WARNING)
-    good = 0
-    for episode in collect_episodes(order):
-        good += episode.outcome == "success"
+    summary, lines = Summary(clock.monotonic_s()), []
+    for episode in episodes:
+        summary.add(episode)
         line = episode.as_json()
-        click.echo(json.dumps({**line, "path": str(order.out / line["path"])}))
-    click.echo(
-        f"{good} of {order.episodes} episodes succeeded; they are in {order.out / 'episodes'}.", err=True
-    )
+        lines.append({**line, "path": str(order.out / line["path"])})
+        if not as_json:
+            click.echo(json.dumps(lines[-1]))
+    told = summary.as_json(clock.monotonic_s())
+    if as_json:
+        click.echo(json.dumps({"episodes": lines, **told}))
+    else:
+        click.echo(f"{summary.in_words(told)} They are in {order.out / 'episodes'}.", err=True)
 
 
 def _require_scripts(task: str, operators: str | None) -> None:

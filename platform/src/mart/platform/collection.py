@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from mart.platform.browser import running_browser
 from mart.platform.crew import Crew
-from mart.platform.plan import Options
+from mart.platform.lockstep import LockstepSession
+from mart.platform.plan import Options, lockstep_processes
 from mart.platform.ports import free_port
 from mart.platform.session import Episode, Session
 from mart.platform.supervise import running_platform
@@ -18,7 +20,10 @@ from mart.protocol.tasks import get_task
 
 @dataclass(frozen=True)
 class Order:
-    """What to collect. `browsers` opens a real operator page per person, which also measures motion to photon."""
+    """What to collect. `browsers` opens a real operator page per person, which also measures motion to photon.
+
+    time_limit_s: of an episode, simulated; None: the task's trial.
+    """
 
     task: str
     episodes: int
@@ -26,7 +31,8 @@ class Order:
     seed: int
     control_hz: float
     out: Path
-    browsers: bool
+    time_limit_s: float | None = None
+    browsers: bool = False
 
 
 def collect_episodes(order: Order) -> Iterator[Episode]:
@@ -42,6 +48,18 @@ def collect_episodes(order: Order) -> Iterator[Episode]:
             yield session.run_episode(people)
 
 
+def collect_in_lockstep(order: Order) -> Iterator[Episode]:
+    """The same people without phones, video and clocks: one room per core, as fast as the machine allows."""
+    options = _private_options(order)
+    plan = lockstep_processes(options, rooms=min(os.cpu_count() or 1, order.episodes))
+    rooms = [process.id for process in plan if process.kind == "sim"]
+    with (
+        running_platform(options, plan) as platform,
+        contextlib.closing(LockstepSession(platform.bus, rooms, order.episodes)) as session,
+    ):
+        yield from session.run()
+
+
 def _private_options(order: Order) -> Options:
     """On free ports, beside any other platform that runs here."""
     return Options(
@@ -50,5 +68,7 @@ def _private_options(order: Order) -> Options:
         port=free_port(),
         task=order.task,
         seed=order.seed,
+        skill=order.skill,
+        time_limit_s=get_task(order.task).trial_limit_s if order.time_limit_s is None else order.time_limit_s,
         control_hz=order.control_hz,
     )

@@ -35,26 +35,44 @@ class Options:
     task: str = DEFAULT_TASK
     control_hz: float = 20.0
     seed: int | None = None
+    skill: str | None = None
+    time_limit_s: float | None = None
     environment: Mapping[str, str] = field(default_factory=dict)
 
 
 def processes(options: Options) -> tuple[Process, ...]:
     """The router first, the pages last: who can see a page can use it."""
-    sim = ["sim", "--room", options.room, "--task", options.task, "--control-hz", f"{options.control_hz:g}"]
-    if options.seed is not None:
-        sim += ["--seed", str(options.seed)]
     web = ["web", "--host", options.host, "--port", str(options.port)]
     if options.public_host:
         web += ["--public-host", options.public_host]
     return (
-        Process(("router",), "router", "router"),
-        Process(tuple(sim), "sim", options.room),
-        Process(("replica", "--name", "replica-1"), "replica", "replica-1"),
+        _ROUTER,
+        _sim(options, options.room),
+        _REPLICA,
         Process(("experts",), "experts", "experts"),
         Process(("gateway", "--name", "gateway-1"), "gateway", "gateway-1"),
-        Process(("recorder", "--name", "recorder-1"), "recorder", "recorder-1"),
+        _RECORDER,
         Process(tuple(web), "web", "web"),
     )
+
+
+def lockstep_processes(options: Options, rooms: int) -> tuple[Process, ...]:
+    """What episodes need that nobody watches: rooms that drive themselves, and who records and verifies."""
+    names = [f"room-{number + 1}" for number in range(rooms)]
+    return (_ROUTER, _REPLICA, _RECORDER, *(_sim(options, name, "--lockstep") for name in names))
+
+
+_ROUTER = Process(("router",), "router", "router")
+_REPLICA = Process(("replica", "--name", "replica-1"), "replica", "replica-1")
+_RECORDER = Process(("recorder", "--name", "recorder-1"), "recorder", "recorder-1")
+
+
+def _sim(options: Options, room: str, *more: str) -> Process:
+    command = ["sim", "--room", room, "--task", options.task, "--control-hz", f"{options.control_hz:g}"]
+    chosen = {"--seed": options.seed, "--skill": options.skill, "--time-limit-s": options.time_limit_s}
+    for option, value in chosen.items():
+        command += [] if value is None else [option, str(value)]
+    return Process((*command, *more), "sim", room)
 
 
 def environment(options: Options) -> dict[str, str]:

@@ -25,9 +25,13 @@ class Episode:
     """One recorded episode. Motion to photon is None where no page was watching."""
 
     number: int
+    seed: int
+    skill: str
     path: str
     outcome: str
+    reason: str
     ticks: int
+    simulated_s: float
     real_time_factor: float
     verified: bool
     verdict: str
@@ -38,7 +42,11 @@ class Episode:
         return {
             "path": self.path,
             "outcome": self.outcome,
+            "reason": self.reason,
+            "skill": self.skill or None,
+            "seed": self.seed,
             "ticks": self.ticks,
+            "simulated_s": round(self.simulated_s, 3),
             "real_time_factor": round(self.real_time_factor, 4),
             "motion_to_photon_p50_ms": round(worst.p50_ms, 1) if worst else None,
             "motion_to_photon_p95_ms": round(worst.p95_ms, 1) if worst else None,
@@ -76,18 +84,8 @@ class Session:
         started = self._await("episode_started", _EPISODE_TIMEOUT_S)
         ended = self._await("episode_ended", _EPISODE_TIMEOUT_S)
         saved = self._await("episode_saved", _SAVE_TIMEOUT_S)
-        wall_s = (ended.wall_ns - started.wall_ns) / 1e9
-        return Episode(
-            number=ended.episode_ended.number,
-            path=saved.episode_saved.path,
-            outcome=outcome_word(ended.episode_ended.outcome),
-            ticks=ended.episode_ended.ticks,
-            # The first tick fires at once, so n ticks last n - 1 periods.
-            real_time_factor=(ended.episode_ended.ticks - 1) / started.episode_started.control_hz / wall_s,
-            verified=saved.episode_saved.verified,
-            verdict=saved.episode_saved.verdict,
-            latencies=tuple(latency for _, latency in sorted(self._latest_latency.items())),
-        )
+        latencies = tuple(latency for _, latency in sorted(self._latest_latency.items()))
+        return episode_of(started, ended, saved.episode_saved, latencies)
 
     def close(self) -> None:
         for subscription in self._subscriptions:
@@ -111,6 +109,29 @@ class Session:
         raise Unavailable(
             f"{self._room} sent no {what.replace('_', ' ')} within {timeout_s:g} s; `mart rooms` tells why."
         )
+
+
+def episode_of(
+    started: Event, ended: Event, saved: Event.EpisodeSaved, latencies: tuple[Event.Latency, ...] = ()
+) -> Episode:
+    """What three events tell together."""
+    began, over = started.episode_started, ended.episode_ended
+    wall_s = (ended.wall_ns - started.wall_ns) / 1e9
+    return Episode(
+        number=over.number,
+        seed=began.seed,
+        skill=began.skill,
+        path=saved.path,
+        outcome=outcome_word(over.outcome),
+        reason=over.reason,
+        ticks=over.ticks,
+        simulated_s=over.ticks / began.control_hz,
+        # The first tick fires at once, so n ticks last n - 1 periods.
+        real_time_factor=(over.ticks - 1) / began.control_hz / wall_s,
+        verified=saved.verified,
+        verdict=saved.verdict,
+        latencies=latencies,
+    )
 
 
 def _latency_json(latency: Event.Latency) -> dict[str, Any]:

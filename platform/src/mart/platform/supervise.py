@@ -54,19 +54,21 @@ class Platform:
 
 
 @contextlib.contextmanager
-def running_platform(options: Options) -> Iterator[Platform]:
-    """Starts everything and waits for every service's liveliness token; stops everything when the block ends.
+def running_platform(options: Options, plan: tuple[Process, ...] | None = None) -> Iterator[Platform]:
+    """Starts all services, or those of `plan`, and waits for every one's liveliness token; stops them when the block
+    ends.
 
     Raises Conflict where a port is taken and Unavailable where a service does not come up.
     """
     _require_free(options.host, options.port, "MART's pages", "--port")
     router_host, _, router_port = options.router.rpartition("/")[2].rpartition(":")
     _require_free(router_host, int(router_port), "a Zenoh router", "MART_ROUTER")
+    plan = plan or processes(options)
     run_dir = options.data_dir / "run"
     _logs_dir(options).mkdir(parents=True, exist_ok=True)
     run_dir.mkdir(parents=True, exist_ok=True)
     config = run_dir / "supervisord.conf"
-    config.write_text(configuration(options, processes(options)))
+    config.write_text(configuration(options, plan))
     supervisor = subprocess.Popen(  # noqa: S603 - our own command, from our own environment
         [str(_BIN / "supervisord"), "--nodaemon", "--silent", "--configuration", str(config)],
         env={**os.environ, **environment(options)},
@@ -77,7 +79,7 @@ def running_platform(options: Options) -> Iterator[Platform]:
     )
     try:
         with _connected(options.router, supervisor) as bus:
-            _await_alive(bus, options, supervisor)
+            _await_alive(bus, options, plan)
             yield Platform(options, bus)
     finally:
         supervisor.send_signal(signal.SIGTERM)
@@ -146,8 +148,8 @@ def _connected(endpoint: str, supervisor: subprocess.Popen[bytes]) -> Iterator[B
         yield bus
 
 
-def _await_alive(bus: Bus, options: Options, supervisor: subprocess.Popen[bytes]) -> None:
-    awaited = {keys.alive(process.kind, process.id) for process in processes(options)}
+def _await_alive(bus: Bus, options: Options, plan: tuple[Process, ...]) -> None:
+    awaited = {keys.alive(process.kind, process.id) for process in plan}
     present: set[str] = set()
     complete = threading.Event()
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import enum
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mart.protocol.errors import InvalidInput
 
@@ -44,6 +44,14 @@ def command(room: str, arm: str) -> Topic:
 def intent(room: str, arm: str) -> Topic:
     """Where a scripted expert wants an emulated phone to lead an arm; carries a Command, never reaches the sim."""
     return Topic(_key(room, "arm", arm, "intent"), Priority.NORMAL, express=True)
+
+
+def in_order(topic: Topic) -> Topic:
+    """For a lockstep room's states, commands and events: all arrive, in the order in which they were said.
+
+    Nothing there waits for a clock, so what is said may be more than what can be recorded: the room has to wait.
+    """
+    return replace(topic, priority=Priority.HIGH, express=False, must_arrive=True)
 
 
 def commands(room: str) -> str:

@@ -82,6 +82,9 @@ class EpisodeRecord(Record):
     control_hz: float | None = None
     arms: tuple[str, ...]
     seed: int | None = None
+    mode: str | None = None  # live (paced) or lockstep (as fast as the machine allowed; no video)
+    skill: str | None = None  # of the scripts that drove
+    time_limit_s: float | None = None  # simulated
     started_ns: int  # Unix time of the first and of the last state
     ended_ns: int
     ticks: int

@@ -181,14 +181,16 @@ class SeatRequest(_message.Message):
 class EpisodeRequest(_message.Message):
     __slots__ = ("ready", "finish", "reset")
     class Ready(_message.Message):
-        __slots__ = ("arm", "holder_id", "ready")
+        __slots__ = ("arm", "holder_id", "ready", "number")
         ARM_FIELD_NUMBER: _ClassVar[int]
         HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
         READY_FIELD_NUMBER: _ClassVar[int]
+        NUMBER_FIELD_NUMBER: _ClassVar[int]
         arm: str
         holder_id: str
         ready: bool
-        def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ..., ready: _Optional[bool] = ...) -> None: ...
+        number: int
+        def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ..., ready: _Optional[bool] = ..., number: _Optional[int] = ...) -> None: ...
     class Finish(_message.Message):
         __slots__ = ("holder_id", "outcome")
         HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
@@ -237,20 +239,26 @@ class Event(_message.Message):
         waiting_for: _containers.RepeatedCompositeFieldContainer[Waiting]
         def __init__(self, phase: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ...) -> None: ...
     class EpisodeStarted(_message.Message):
-        __slots__ = ("number", "seed", "seats", "task", "control_hz", "model_sha256")
+        __slots__ = ("number", "seed", "seats", "task", "control_hz", "model_sha256", "lockstep", "skill", "time_limit_s")
         NUMBER_FIELD_NUMBER: _ClassVar[int]
         SEED_FIELD_NUMBER: _ClassVar[int]
         SEATS_FIELD_NUMBER: _ClassVar[int]
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
         MODEL_SHA256_FIELD_NUMBER: _ClassVar[int]
+        LOCKSTEP_FIELD_NUMBER: _ClassVar[int]
+        SKILL_FIELD_NUMBER: _ClassVar[int]
+        TIME_LIMIT_S_FIELD_NUMBER: _ClassVar[int]
         number: int
         seed: int
         seats: _containers.RepeatedCompositeFieldContainer[Seat]
         task: str
         control_hz: float
         model_sha256: str
-        def __init__(self, number: _Optional[int] = ..., seed: _Optional[int] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., model_sha256: _Optional[str] = ...) -> None: ...
+        lockstep: bool
+        skill: str
+        time_limit_s: float
+        def __init__(self, number: _Optional[int] = ..., seed: _Optional[int] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., model_sha256: _Optional[str] = ..., lockstep: _Optional[bool] = ..., skill: _Optional[str] = ..., time_limit_s: _Optional[float] = ...) -> None: ...
     class EpisodeEnded(_message.Message):
         __slots__ = ("number", "outcome", "ticks", "reason", "last_tick")
         NUMBER_FIELD_NUMBER: _ClassVar[int]

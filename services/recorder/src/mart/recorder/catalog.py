@@ -23,7 +23,7 @@ from mart.protocol.recording import SUFFIX
 _log = logging.getLogger(__name__)
 
 FILE_NAME = "catalogue.sqlite"
-_VERSION = 1  # of Row: another one is thrown away and derived anew
+_VERSION = 2  # of Row: another one is thrown away and derived anew
 _SCHEMA = "CREATE TABLE episode (path TEXT PRIMARY KEY, size INTEGER, modified_ns INTEGER, row TEXT)"
 
 
@@ -38,7 +38,13 @@ class Row(BaseModel):
     control_hz: float | None = None
     outcome: str = "unspecified"
     verdict: str = "unverified"
+    reason: str = ""
     ticks: int = 0
+    simulated_s: float = 0.0
+    seed: int | None = None
+    mode: str | None = None
+    skill: str | None = None
+    time_limit_s: float | None = None
     real_time_factor: float | None = None
     missing_ticks: int = 0
     waited_s: float = 0.0
@@ -142,6 +148,7 @@ def describe(path: Path, root: Path) -> Row:
         | known
         | {"verdict": verdict, "operators": drivers, "real_time_factor": cadence.real_time_factor}
         | {"missing_ticks": cadence.missing_ticks, "waited_s": cadence.waited_s}
+        | {"simulated_s": episode.ticks / episode.control_hz if episode.control_hz else 0.0}
     )
 
 

@@ -104,6 +104,7 @@ class Episode:
         self.unfinished_reason = "the episode was not finished"
         self.interrupted = False
         self.seed: int | None = None
+        self.started: Event.EpisodeStarted | None = None
         self.states = 0
         self.missing_ticks = 0
         self.video_dropped = 0
@@ -152,7 +153,7 @@ class Episode:
 
     def add_event(self, event: Event) -> None:
         if event.HasField("episode_started") and event.episode_started.number == self.number:
-            self.seed = event.episode_started.seed
+            self.started, self.seed = event.episode_started, event.episode_started.seed
         elif event.HasField("episode_ended") and event.episode_ended.number == self.number:
             self.ended = event.episode_ended
         elif event.HasField("barrier_changed"):
@@ -166,7 +167,7 @@ class Episode:
             self.seed = status.episode.seed if self.seed is None else self.seed
 
     def record(self, facts: RoomFacts, repaired: bool = False) -> EpisodeRecord:
-        ended = self.ended
+        started, ended = self.started, self.ended
         return EpisodeRecord(
             room=self.room,
             number=self.number,
@@ -174,6 +175,9 @@ class Episode:
             control_hz=facts.control_hz,
             arms=self.arms,
             seed=self.seed,
+            mode=started and ("lockstep" if started.lockstep else "live"),
+            skill=(started and started.skill) or None,
+            time_limit_s=(started and started.time_limit_s) or None,
             started_ns=self._first.stamps.sent_ns,
             ended_ns=self._last.stamps.sent_ns,
             ticks=self.states - 1,

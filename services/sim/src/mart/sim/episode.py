@@ -38,6 +38,15 @@ ENDED_S = 2.0
 
 
 @dataclass(frozen=True)
+class Terms:
+    """What holds for every episode of a room, and is told when one starts. None: as long as the task allows."""
+
+    lockstep: bool = False
+    skill: str = ""
+    time_limit_s: float | None = None
+
+
+@dataclass(frozen=True)
 class ResetWorld:
     """The world is to be reset with `seed`."""
 
@@ -179,9 +188,13 @@ class EpisodeCourse:
             )
         if all(seat.operator == OPERATOR_HOLD for seat in seats):
             raise Conflict("An episode was asked for, but nobody drives; take a seat or set one to script.")
+        if ready.number and ready.number <= self.number:
+            raise Conflict(
+                f"Episode {ready.number} was asked for, but {self.number} was here already; give a later one or none."
+            )
         self._ready = self._ready | {seat.arm} if ready.ready else self._ready - {seat.arm}
         humans = {human.arm for human in seats.of_operator(OPERATOR_HUMAN)}
-        return self._count_down(now_s) if self._ready and humans <= self._ready else ()
+        return self._count_down(ready.number, now_s) if self._ready and humans <= self._ready else ()
 
     def _answer_finish(self, finish: EpisodeRequest.Finish, seats: SeatTable, now_s: float) -> Sequence[Step]:
         _require_say(seats, tuple(seats), finish.holder_id)
@@ -197,8 +210,8 @@ class EpisodeCourse:
         _require_say(seats, tuple(seats), reset.holder_id)
         return self.abandon(OUTCOME_DISCARDED, "reset by an operator", now_s)
 
-    def _count_down(self, now_s: float) -> Sequence[Step]:
-        self.number += 1
+    def _count_down(self, number: int, now_s: float) -> Sequence[Step]:
+        self.number = number or self.number + 1
         self._begin(EPISODE_PHASE_COUNTDOWN, seed_of(self._room_seed, "episode", self.number))
         self._until_s = now_s + COUNTDOWN_S
         return (ResetWorld(self.seed),)

@@ -89,18 +89,31 @@ class BusVoice:
 class Doorway:
     """Everything that comes in from the bus for one room."""
 
-    def __init__(self, bus: Bus, name: str, room: Room, world: World, mailbox: Mailbox) -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        name: str,
+        room: Room,
+        world: World,
+        mailbox: Mailbox,
+        *,
+        now_s: Callable[[], float] = clock.monotonic_s,
+    ) -> None:
         self.garbled: Counter[str] = Counter()  # undecodable payloads by where they came
+        self._bus, self._name, self._now_s = bus, name, now_s
         self._room = room
         self._mailbox = mailbox
         self._model = codec.encode(publish.model(world, mujoco.__version__))
         self._open: list[Closable] = [
-            bus.subscribe(keys.commands(name), self._on_command),
             bus.subscribe(keys.event(name).key, self._on_event),
             bus.serve(keys.seat(name), self._on_seat_request),
             bus.serve(keys.episode(name), self._on_episode_request),
             bus.serve(keys.model(name), self._on_model_request),
         ]
+
+    def hear_commands(self) -> None:
+        """Of operators that are elsewhere."""
+        self._open.append(self._bus.subscribe(keys.commands(self._name), self._on_command))
 
     def close(self) -> None:
         for declared in self._open:
@@ -108,7 +121,7 @@ class Doorway:
 
     def _on_command(self, sample: Sample) -> None:
         hear = partial(
-            self._room.hear, sample.payload, keys.arm_of(sample.key), clock.monotonic_s(), clock.wall_ns()
+            self._room.hear, sample.payload, keys.arm_of(sample.key), self._now_s(), clock.wall_ns()
         )
         self._mailbox.put(hear)
 
@@ -132,7 +145,7 @@ class Doorway:
 
     def _answer(self, request: Request, kind: type[R], answer: Callable[[R, float], RoomReply]) -> None:
         try:
-            reply = answer(codec.decode(kind, request.payload, MAX_REQUEST_BYTES), clock.monotonic_s())
+            reply = answer(codec.decode(kind, request.payload, MAX_REQUEST_BYTES), self._now_s())
         except MartError as error:
             self.garbled["request"] += 1
             reply = RoomReply(error=error_message(error))

@@ -16,6 +16,7 @@ from mart.protocol.messages import (
     BARRIER_PHASE_PAUSED,
     BARRIER_PHASE_RUNNING,
     BARRIER_PHASE_STOPPED,
+    EPISODE_PHASE_PRACTICE,
     OPERATOR_HOLD,
     OUTCOME_FAILURE,
     OUTCOME_SUCCESS,
@@ -31,7 +32,7 @@ from mart.protocol.messages import (
 from mart.sim import publish
 from mart.sim.admission import Rejected, Rejection, admit
 from mart.sim.barrier import FREED_AFTER_S, Barrier, Decision, Firing
-from mart.sim.episode import Ended, EpisodeCourse, ResetWorld, Started, Step
+from mart.sim.episode import Ended, EpisodeCourse, ResetWorld, Started, Step, Terms
 from mart.sim.room_record import RoomRecord
 from mart.sim.seats import SeatHolder, SeatTable
 from mart.sim.ticker import Ticker
@@ -64,6 +65,7 @@ class Room:
         *,
         now_s: float,
         pace: float = 1.0,
+        terms: Terms = Terms(),  # noqa: B008 - frozen
     ) -> None:
         self._name, self._world, self._voice, self._keep, self._record = name, world, voice, keep, record
         self._boot_ns = clock.wall_ns()
@@ -72,9 +74,10 @@ class Room:
         self._barrier = Barrier(world.arms, world.control_period_s / pace, now_s)
         for seat in self._seats:
             self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
-        self._course = EpisodeCourse(
-            record.seed, world.task.horizon_at(publish.control_hz(world)), record.episodes
-        )
+        self._terms = terms
+        self._time_limit_s = terms.time_limit_s or world.task.time_limit_s
+        horizon_ticks = round(self._time_limit_s / world.control_period_s)
+        self._course = EpisodeCourse(record.seed, horizon_ticks, record.episodes)
         self._ticker = Ticker(name, world, self._boot_ns, now_s)
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
@@ -87,6 +90,11 @@ class Room:
     def rejected(self) -> Counter[Rejection]:
         """Commands that were not used, by reason, since the room opened."""
         return self._barrier.rejected
+
+    @property
+    def in_practice(self) -> bool:
+        """No episode is under way."""
+        return self._course.phase == EPISODE_PHASE_PRACTICE
 
     def hear(self, payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> None:
         """A command came on the key of `arm`."""
@@ -191,6 +199,9 @@ class Room:
                     task=self._world.task.name,
                     control_hz=publish.control_hz(self._world),
                     model_sha256=self._world.model_sha256,
+                    lockstep=self._terms.lockstep,
+                    skill=self._terms.skill,
+                    time_limit_s=self._time_limit_s,
                 )
             )
         )

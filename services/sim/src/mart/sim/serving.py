@@ -10,17 +10,28 @@ from collections.abc import Callable
 from mart.protocol import clock
 from mart.protocol.service import announced, connected
 from mart.sim import loop, room_record
+from mart.sim.episode import Terms
+from mart.sim.experts import Skill, get_skill
+from mart.sim.lockstep_room import LockstepRoom, OrderedVoice, SimulatedTime
 from mart.sim.room import Room
 from mart.sim.room_record import RoomRecord
 from mart.sim.settings import SimSettings
 from mart.sim.world import World
 
 _SEED_BITS = 32
+DEFAULT_SKILL = "expert"
 
 
 def serve_room(settings: SimSettings) -> None:
-    """Raises what building a world raises, Corrupt where the room's record cannot be read."""
-    serve_world(settings, World.build(settings.task, settings.control_hz, settings.arms))
+    """Raises what building a world raises, NotFound for an unknown skill, Corrupt where the room's record cannot be
+    read.
+    """
+    skill = get_skill(settings.skill) if settings.skill else None
+    world = World.build(settings.task, settings.control_hz, settings.arms)
+    if settings.lockstep:
+        serve_lockstep(settings, world, skill or get_skill(DEFAULT_SKILL))
+    else:
+        serve_world(settings, world)
 
 
 def serve_world(settings: SimSettings, world: World) -> None:
@@ -36,13 +47,34 @@ def serve_world(settings: SimSettings, world: World) -> None:
             _keeper(settings),
             now_s=clock.monotonic_s(),
             pace=settings.pace,
+            terms=Terms(skill=settings.skill or "", time_limit_s=settings.time_limit_s),
         )
         doorway = opened.enter_context(
             contextlib.closing(loop.Doorway(service.bus, settings.room, room, world, mailbox))
         )
+        doorway.hear_commands()
         opened.enter_context(announced(service))
         gc.freeze()  # what is here now stays: later collections need not look at it
         loop.run(room, doorway, mailbox, service.stop)
+
+
+def serve_lockstep(settings: SimSettings, world: World, skill: Skill) -> None:
+    """The same room on simulated time, with its scripts."""
+    with connected(settings, "sim", settings.room) as service, contextlib.ExitStack() as opened:
+        mailbox, time = loop.Mailbox(), SimulatedTime()
+        voice = OrderedVoice(service.bus, settings.room, world.arms)
+        opened.enter_context(contextlib.closing(voice))
+        terms = Terms(lockstep=True, skill=skill.name, time_limit_s=settings.time_limit_s)
+        room = Room(
+            settings.room, world, _record(settings), voice, _keeper(settings), now_s=time.now_s(), terms=terms
+        )
+        doorway = loop.Doorway(service.bus, settings.room, room, world, mailbox, now_s=time.now_s)
+        opened.enter_context(contextlib.closing(doorway))
+        lockstep = LockstepRoom(room, voice, time)
+        lockstep.seat_scripts(world.task, skill, settings.seed or 0)
+        opened.enter_context(announced(service))
+        gc.freeze()
+        lockstep.run(mailbox, service.stop)
 
 
 def _keeper(settings: SimSettings) -> Callable[[RoomRecord], None]:

@@ -20,6 +20,16 @@ class SimSettings(Settings):
     arms: int | None = Field(None, ge=1, description="How many arms; default: the task's own number.")
     pace: float = Field(1.0, gt=0.0, le=1.0, description="Real-time factor that the world may reach at most.")
     seed: int | None = Field(None, ge=0, description="The room's seed; default: drawn once and kept.")
+    time_limit_s: float | None = Field(
+        None,
+        gt=0.0,
+        le=3600.0,
+        description="How long an episode may last, simulated; default: the task's horizon.",
+    )
+    lockstep: bool = Field(False, description="Scripts drive every arm, as fast as the machine allows.")
+    skill: str | None = Field(
+        None, description="Of the scripts that drive here, told in files: expert, average or novice."
+    )
 
     @property
     def room_path(self) -> Path:
