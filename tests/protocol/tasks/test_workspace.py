@@ -19,7 +19,7 @@ poses = st.builds(lambda *twist: Pose.exp(twist), *[numbers] * 6)
 def allowed_poses(draw: st.DrawFn) -> Pose:
     azimuth, radius, z = draw(st.floats(-1.19, 1.19)), draw(st.floats(0.29, 0.57)), draw(st.floats(0.0, 0.64))
     yaw, tilt, level = (
-        draw(st.floats(-1.89, 1.89)),
+        draw(st.floats(-1.89, 2.69)),
         draw(st.floats(0, 0.84)),
         draw(st.floats(-math.pi, math.pi)),
     )

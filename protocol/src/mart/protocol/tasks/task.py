@@ -80,7 +80,8 @@ class Workspace:
 
     Measured with the hand pointing down: nearer to the axis than `radius_min_m` joint 4 meets its limit; further than
     `reach_m` from the point at `reach_center_z_m` on the axis the arm is stretched; beside and behind its base it ties
-    itself up. The limits of tilt (from straight down) and yaw (from the direction of reach) keep the wrist off its own.
+    itself up. The limits of tilt (from straight down) and yaw (from the direction of reach) keep the wrist off its own;
+    the hand is mounted at 45 degrees, so its yaw has more room on one side.
     """
 
     radius_min_m: float = 0.28
@@ -90,7 +91,8 @@ class Workspace:
     z_min_m: float = 0.0
     z_max_m: float = 0.65
     tilt_max_rad: float = 0.85
-    yaw_max_rad: float = 1.9
+    yaw_min_rad: float = -1.9
+    yaw_max_rad: float = 2.7
 
     def clamp(self, pose_tool_in_base: Pose) -> Pose:
         """An allowed pose close to the given one; an allowed one is returned as it is, but for rounding."""
@@ -109,8 +111,9 @@ class Workspace:
         """Every rotation is a turn about the vertical axis and then a tilt about a level one: limits each by itself."""
         yaw, tilt = 2 * math.atan2(z, w), 2 * math.atan2(math.hypot(x, y), math.hypot(w, z))
         tilt_direction = math.atan2(y, x) + yaw / 2
-        beside = math.remainder(yaw - azimuth, math.tau)
-        yaw = azimuth + _clip(beside, -self.yaw_max_rad, self.yaw_max_rad)
+        middle = azimuth + (self.yaw_min_rad + self.yaw_max_rad) / 2
+        largest = (self.yaw_max_rad - self.yaw_min_rad) / 2
+        yaw = middle + _clip(math.remainder(yaw - middle, math.tau), -largest, largest)
         tilt = min(tilt, self.tilt_max_rad)
         level, lean = math.cos(tilt / 2), math.sin(tilt / 2)
         return np.array(
