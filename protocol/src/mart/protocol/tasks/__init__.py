@@ -5,7 +5,13 @@ from __future__ import annotations
 from types import ModuleType
 
 from mart.protocol.errors import InvalidInput, NotFound
-from mart.protocol.tasks import three_arm_lift_wiping, two_arm_drink_tray_lifting, two_arm_multi_cube_lifting
+from mart.protocol.tasks import (
+    three_arm_lift_wiping,
+    two_arm_drink_tray_lifting,
+    two_arm_multi_cube_lifting,
+    two_arm_pick_place_handover,
+    two_arm_table_assembly,
+)
 from mart.protocol.tasks.task import (
     MAX_ARMS,
     SHARED_VIEWPOINT,
@@ -35,7 +41,13 @@ __all__ = [
 
 _ENTRIES = {
     entry.NAME: entry
-    for entry in (two_arm_multi_cube_lifting, two_arm_drink_tray_lifting, three_arm_lift_wiping)
+    for entry in (
+        two_arm_multi_cube_lifting,
+        two_arm_drink_tray_lifting,
+        two_arm_table_assembly,
+        two_arm_pick_place_handover,
+        three_arm_lift_wiping,
+    )
 }
 
 

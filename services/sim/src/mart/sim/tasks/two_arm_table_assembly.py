@@ -22,12 +22,13 @@ from mart.sim.world.symbols import add_tile
 
 BASE_HALF_M = (0.18, 0.06, 0.01)
 SOCKET_X_M = 0.12  # of the sockets in the base, of the columns and of the tabletop's holes
-_SOCKET_HALF_M, _WALL_HALF_M, _WALL_HEIGHT_M = 0.025, 0.008, 0.04
+_SOCKET_HALF_M, _WALL_HALF_M, _WALL_HEIGHT_M = 0.033, 0.007, 0.03
 SEAT_Z_M = 2 * BASE_HALF_M[2]  # where a seated column's foot stands, in the base
 
-COLUMN_HALF_M, COLUMN_HEIGHT_M = 0.022, 0.14
-# Four balls instead of edges under a column: four contacts, and a chamfer that finds the socket.
-_FOOT_RADIUS_M = 0.009
+COLUMN_HALF_M, COLUMN_HEIGHT_M = 0.020, 0.14
+# A foot broad enough for a column to stay up when it is set down in a hurry. Under it four balls instead of edges: four
+# contacts, and a chamfer that finds the socket.
+_FOOT_HALF_M, _FOOT_HEIGHT_M, _BALL_RADIUS_M = 0.030, 0.018, 0.009
 _PEG_RADIUS_M, _PEG_HEIGHT_M = 0.010, 0.025  # the palm is 45 mm above the pads, so no peg may be higher
 
 TOP_HALF_M = (0.17, 0.10, 0.01)
@@ -178,29 +179,23 @@ def column_of(arm: str) -> str:
 def _add_column(spec: mujoco.MjSpec, arm: Arm, side: int) -> None:
     """Its frame is at its foot."""
     name = column_of(arm.name)
-    half, height, radius = COLUMN_HALF_M, COLUMN_HEIGHT_M, _FOOT_RADIUS_M
+    half, height, foot, radius = COLUMN_HALF_M, COLUMN_HEIGHT_M, _FOOT_HALF_M, _BALL_RADIUS_M
     column = spec.worldbody.add_body(name=name, pos=(0.20 * side, -0.25, 0))
     column.add_freejoint(name=name)
-    column.add_geom(
-        type=_BOX,
-        size=(half, half, height / 2),
-        pos=(0, 0, height / 2),
-        material="paint",
-        rgba=rgba(arm.color),
-        **_GHOST,
-    )
-    column.add_geom(
-        name=name,
-        type=_BOX,
-        size=(half, half, (height - radius) / 2),
-        pos=(0, 0, (height + radius) / 2),
-        density=_DENSITY["column"],
-        **_FIRM,
-        **_UNSEEN,
-    )
-    inset = half - radius
+    look = {"material": "paint", "rgba": rgba(arm.color)}
+    for size, bottom, top in ((half, _FOOT_HEIGHT_M, height), (foot, radius, _FOOT_HEIGHT_M)):
+        column.add_geom(
+            type=_BOX,
+            size=(size, size, (top - bottom) / 2),
+            pos=(0, 0, (bottom + top) / 2),
+            density=_DENSITY["column"],
+            **look,
+            **_FIRM,
+        )
+    inset = foot - radius
     for x, y in product((-inset, inset), repeat=2):
         column.add_geom(type=_SPHERE, size=(radius, 0, 0), pos=(x, y, radius), mass=0, **_FIRM, **_UNSEEN)
+    column.add_geom(type=_BOX, size=(foot, foot, radius / 2), pos=(0, 0, radius / 2), **look, **_GHOST)
     column.add_geom(
         type=_CAPSULE,
         size=(_PEG_RADIUS_M, 0, 0),
@@ -210,7 +205,7 @@ def _add_column(spec: mujoco.MjSpec, arm: Arm, side: int) -> None:
         **_SLIPPERY_PEG,
     )
     for normal in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)):
-        position = (half * normal[0], half * normal[1], 0.55 * height)
+        position = (half * normal[0], half * normal[1], 0.6 * height)
         add_tile(spec, column, arm.symbol, radius_m=0.012, position=position, normal=normal)
     add_shadow(spec, name, radius_m=0.055)
 

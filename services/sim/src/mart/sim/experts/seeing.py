@@ -1,0 +1,84 @@
+"""What plans make of what they see: where things are in the own arm's base frame, how a tool would grip them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Arm
+from mart.sim.experts.plan import Sight
+
+See = Callable[[Sight], Pose]
+
+_UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def seen(arm: Arm, thing: str) -> See:
+    """Where a thing is, in this arm's base frame; unturned in the world where only its position is seen."""
+    return _seen(arm, f"{thing}/position_in_world", f"{thing}/quaternion_in_world")
+
+
+def seen_tool(arm: Arm, partner: str) -> See:
+    """Where the partner's tool is, in this arm's base frame: its position alone."""
+    return _seen(arm, f"{partner}/tool_position_in_world", "")
+
+
+def _seen(arm: Arm, position: str, quaternion: str) -> See:
+    base_from_world = arm.pose_base_in_world.inverse()
+    return lambda now: (
+        base_from_world @ Pose(now.observations[position], now.observations.get(quaternion, _UNTURNED))
+    )
+
+
+def at(x: float, y: float, z: float) -> Pose:
+    """A place in a frame, unturned."""
+    return Pose(np.array([x, y, z]), _UNTURNED)
+
+
+def upright(position: ArrayLike, yaw_rad: float) -> Pose:
+    """A thing that stands, or a tool that points straight down."""
+    half = yaw_rad / 2
+    return Pose(np.asarray(position), np.array([math.cos(half), 0.0, 0.0, math.sin(half)]))
+
+
+def standing(place: Pose, like: Pose, symmetry_rad: float) -> Pose:
+    """Standing at a place, square to it, and turned from `like` as little as the symmetry allows."""
+    return upright(place.position, _yaw(place, _yaw(like), symmetry_rad))
+
+
+def across(thing: Pose, symmetry_rad: float = math.pi) -> Pose:
+    """The tool that grips a thing from above, with the fingers on either side of its x axis."""
+    return upright(thing.position, _yaw(thing, symmetry_rad=symmetry_rad))
+
+
+def apart_m(one: Pose, other: Pose) -> float:
+    return one.distance_to(other)[0]
+
+
+def uprightness(pose: Pose) -> float:
+    """Cosine of its tilt."""
+    return float(pose.rotation_matrix()[2, 2])
+
+
+def _yaw(pose: Pose, nearest_to_rad: float = 0.0, symmetry_rad: float = math.tau) -> float:
+    x, y, _ = pose.rotation_matrix()[:, 0]
+    return nearest_to_rad + math.remainder(math.atan2(y, x) - nearest_to_rad, symmetry_rad)
+
+
+class Still:
+    """Whether what is seen has stayed within `within_m` of one place for `for_s`; to be asked at every sight."""
+
+    def __init__(self, see: See, within_m: float, for_s: float) -> None:
+        self._see, self._within_m, self._for_s = see, within_m, for_s
+        self._place: Pose | None = None
+        self._since_s = 0.0
+
+    def __call__(self, now: Sight) -> bool:
+        here = self._see(now)
+        if self._place is None or apart_m(here, self._place) > self._within_m:
+            self._place, self._since_s = here, now.sim_time_s
+        return now.sim_time_s - self._since_s >= self._for_s

@@ -1,0 +1,161 @@
+"""Arm 0 opens the container and holds the hammer out; arm 1 clears the bin, takes the hammer over and lays it there.
+
+The two agree by what they see: arm 1 comes when the hammer hangs still in the air, arm 0 lets go when the other tool
+has rested at the far end of the handle for a while, arm 1 leaves when the other tool has gone.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Arm
+from mart.sim.experts.grip import Grip
+from mart.sim.experts.person import Person
+from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, go, wait
+from mart.sim.experts.seeing import Still, across, apart_m, at, seen, seen_tool, standing
+
+_LID_KNOB = at(0.0, 0.0, 0.024)
+_FETCHER_END, _RECEIVER_END = (
+    at(-0.055, 0.0, 0.0),
+    at(0.075, 0.0, 0.0),
+)  # where each grips the hammer's handle
+
+# In the world.
+_LID_PLACE = at(-0.27, -0.16, 0.075)
+_OFFER = at(0.0, 0.0, 0.30)  # of the hammer
+_AWAIT, _RETREAT = at(0.27, 0.0, 0.38), at(-0.30, 0.0, 0.35)  # of arm 1's tool and of arm 0's
+_NEAREST_REACHED = at(0.05, 0.0, 0.0)  # by arm 1, of what lies on a shelf
+_IN_THE_AIR_Z_M = 0.24
+
+_OPEN_M = 0.20  # of the lid from the container
+_TRAY_HALF_M, _BIN_HALF_M = (0.06, 0.06), (0.15, 0.08)  # inside, with something to spare
+_LOW_M = 0.045  # over a floor: what is that low lies there
+_ON_FLOOR = at(0.0, 0.0, 0.02)
+_CLEAR_M = 0.09
+_STILL_M, _STILL_S = 0.012, 0.3
+_PARTNER_M, _PARTNER_S, _PARTNER_GONE_M = 0.025, 0.7, 0.07
+
+
+def hand_over(arm: Arm, person: Person, sight: Sight) -> Plan:
+    if arm.name == "arm0":
+        fetcher = _Fetcher(arm, person)
+        while True:
+            while not fetcher.is_open(sight):
+                sight = yield from fetcher.remove_lid(sight)
+            while fetcher.has_to_fetch(sight):
+                sight = yield from fetcher.offer_hammer(sight)
+            sight = yield fetcher.retreat
+    receiver = _Receiver(arm, person)
+    while True:
+        while not receiver.is_clear(sight):
+            sight = yield from receiver.clear_trash(sight)
+        while not receiver.has_placed(sight):
+            sight = yield from receiver.take_hammer(sight)
+        sight = yield receiver.retreat
+
+
+class _Fetcher:
+    """Arm 0."""
+
+    def __init__(self, arm: Arm, person: Person) -> None:
+        self._person = person
+        to_base = arm.pose_base_in_world.inverse()
+        self._lid, self._container = seen(arm, "lid"), seen(arm, "container")
+        self._hammer, self._partner = seen(arm, "hammer"), seen_tool(arm, "arm1")
+        self._knob = Grip(person, self._lid, lambda now: across(self._lid(now) @ _LID_KNOB))
+        self._handle = Grip(person, self._hammer, lambda now: across(self._hammer(now) @ _FETCHER_END))
+        self._lid_place, self._offer = to_base @ _LID_PLACE, to_base @ _OFFER
+        self.retreat = Waypoint(to_base @ _RETREAT, OPEN)
+
+    def is_open(self, now: Sight) -> bool:
+        """The lid is away, and down."""
+        x, y, z = self._lid(now).position - self._container(now).position
+        return math.hypot(x, y) > _OPEN_M and z < _LOW_M
+
+    def remove_lid(self, sight: Sight) -> Step:
+        """One attempt."""
+        sight = yield from self._knob.pick(sight)
+        return (yield from self._knob.put(sight, self._place_of_lid, _CLEAR_M, self.is_open))
+
+    def has_to_fetch(self, now: Sight) -> bool:
+        """The hammer lies where this arm can reach it."""
+        x, _, z = self._hammer(now).position
+        return z < _IN_THE_AIR_Z_M and x < self._offer.position[0]
+
+    def offer_hammer(self, sight: Sight) -> Step:
+        """One attempt: out of the container, held out until the partner has it, let go."""
+        sight = yield from self._handle.pick(sight)
+        sight = yield from self._handle.raise_by(sight, _OFFER.position[2] - self._hammer(sight).position[2])
+        still = Still(self._partner, _STILL_M, _PARTNER_S)
+        sight = yield from self._handle.bring(
+            sight, self._place_of_offer, lambda now: still(now) and self._is_gripped_by_partner(now)
+        )
+        sight = yield from self._handle.let_go(sight, up_m=0.08)
+        return (yield from go(sight, lambda _: self.retreat, patience_s=2.0))
+
+    def _place_of_lid(self, now: Sight) -> Pose:
+        return standing(self._lid_place, self._lid(now), math.pi)
+
+    def _place_of_offer(self, now: Sight) -> Pose:
+        return standing(self._offer, self._hammer(now), math.tau)
+
+    def _is_gripped_by_partner(self, now: Sight) -> bool:
+        return apart_m(self._hammer(now) @ _RECEIVER_END, self._partner(now)) < _PARTNER_M
+
+
+class _Receiver:
+    """Arm 1."""
+
+    def __init__(self, arm: Arm, person: Person) -> None:
+        self._person = person
+        to_base = arm.pose_base_in_world.inverse()
+        self._trash, self._tray, self._bin = (seen(arm, name) for name in ("trash", "trash_tray", "bin"))
+        self._hammer, self._partner = seen(arm, "hammer"), seen_tool(arm, "arm0")
+        self._cube = Grip(person, self._trash, lambda now: across(self._trash(now), math.pi / 2))
+        self._handle = Grip(person, self._hammer, lambda now: across(self._hammer(now) @ _RECEIVER_END))
+        self._reach_x_m = float((to_base @ _NEAREST_REACHED).position[0])
+        self.retreat = Waypoint(to_base @ _AWAIT, OPEN)
+
+    def is_clear(self, now: Sight) -> bool:
+        return _lies_in(self._trash(now), self._tray(now), _TRAY_HALF_M)
+
+    def clear_trash(self, sight: Sight) -> Step:
+        """One attempt."""
+        sight = yield from self._cube.pick(sight)
+        return (yield from self._cube.put(sight, self._place_of_trash, _CLEAR_M, self.is_clear))
+
+    def has_placed(self, now: Sight) -> bool:
+        return _lies_in(self._hammer(now), self._bin(now), _BIN_HALF_M)
+
+    def take_hammer(self, sight: Sight) -> Step:
+        """One attempt: out of the partner's hand, or from where it fell on this arm's shelf, into the bin."""
+        still = Still(self._hammer, _STILL_M, _STILL_S)
+        sight = yield from wait(
+            sight, self.retreat, self._person, lambda now: still(now) and self._is_within_reach(now)
+        )
+        sight = yield from self._handle.pick(sight)
+        here = Waypoint(sight.pose_tool_in_base, CLOSED)
+        sight = yield from wait(
+            sight, here, self._person, lambda now: self._is_partner_gone(now) or self._handle.is_lost(now)
+        )
+        return (yield from self._handle.put(sight, self._place_of_hammer, _CLEAR_M, self.has_placed))
+
+    def _is_within_reach(self, now: Sight) -> bool:
+        """Held out, or on the own shelf."""
+        x, _, z = self._hammer(now).position
+        return z > _IN_THE_AIR_Z_M or x < self._reach_x_m
+
+    def _is_partner_gone(self, now: Sight) -> bool:
+        return apart_m(self._hammer(now) @ _FETCHER_END, self._partner(now)) > _PARTNER_GONE_M
+
+    def _place_of_trash(self, now: Sight) -> Pose:
+        return standing(self._tray(now) @ _ON_FLOOR, self._trash(now), math.pi / 2)
+
+    def _place_of_hammer(self, now: Sight) -> Pose:
+        return standing(self._bin(now) @ _ON_FLOOR, self._hammer(now), math.pi)
+
+
+def _lies_in(thing: Pose, box: Pose, half_m: tuple[float, float]) -> bool:
+    x, y, z = (box.inverse() @ thing).position
+    return abs(x) < half_m[0] and abs(y) < half_m[1] and z < _LOW_M

@@ -1,0 +1,134 @@
+"""Puts the own column into its socket, then carries the tabletop together with the partner, each by the own knob.
+
+The two agree by what they see: who has come to the own knob waits until the partner's tool rests at the other one, and
+whoever is ahead on the way waits for the other.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Arm
+from mart.sim.experts.grip import Grip, Until
+from mart.sim.experts.person import Person
+from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, wait
+from mart.sim.experts.seeing import See, Still, across, apart_m, at, seen, seen_tool, standing, uprightness
+
+_SOCKET_X_M, _KNOB_X_M = 0.12, 0.205
+_SEATED_Z_M, _TOP_SEATED_Z_M = 0.02, 0.17  # over the base
+_NECK = at(0.0, 0.0, 0.126)  # where a column is gripped, just under its shoulder
+_CLEAR_M = 0.06  # over the sockets, and over the pegs
+_PRESS_M = 0.004
+_SEEN_SEATED_M = 0.012
+
+_AHEAD_M = 0.010
+_PACE = 0.4  # of carrying together
+_LIFTED_M = 0.03
+_PARTNER_M = 0.045  # a partner whose tool stays this near to its knob has gripped it
+_STILL_M, _STILL_S = 0.015, 0.5
+_PATIENCE_S = 8.0
+
+
+def assemble_table(arm: Arm, person: Person, sight: Sight) -> Plan:
+    column, top = _Column(arm, person), _Tabletop(arm, person)
+    while True:
+        while not column.is_seated(sight):
+            sight = yield from column.place(sight)
+        while not top.is_seated(sight):
+            sight = yield from top.mount(sight)
+        sight = yield Waypoint(sight.pose_tool_in_base, OPEN, pace=0.0)
+
+
+class _Column:
+    def __init__(self, arm: Arm, person: Person) -> None:
+        self._base, self._column = seen(arm, "table_base"), seen(arm, arm.name.replace("arm", "column"))
+        self._seat = at(_side(arm) * _SOCKET_X_M, 0.0, _SEATED_Z_M)
+        self._grip = Grip(person, self._column, lambda now: across(self._column(now) @ _NECK, math.pi / 2))
+
+    def is_seated(self, now: Sight) -> bool:
+        column = self._column(now)
+        return apart_m(column, self._place(now)) < _SEEN_SEATED_M and uprightness(column) > 0.985
+
+    def place(self, sight: Sight) -> Step:
+        """One attempt."""
+        sight = yield from self._grip.pick(sight)
+        return (yield from self._grip.put(sight, self._place, _CLEAR_M, self.is_seated))
+
+    def _place(self, now: Sight) -> Pose:
+        return standing(self._base(now) @ self._seat, self._column(now), math.pi / 2)
+
+
+class _Tabletop:
+    def __init__(self, arm: Arm, person: Person) -> None:
+        self._person = person
+        self._base, self._top = seen(arm, "table_base"), seen(arm, "tabletop")
+        self._partner = seen_tool(arm, "arm1" if arm.name == "arm0" else "arm0")
+        self._own, self._other = (at(side * _KNOB_X_M, 0.0, 0.0) for side in (_side(arm), -_side(arm)))
+        self._grip = Grip(person, self._knob, self._knob)
+
+    def is_seated(self, now: Sight) -> bool:
+        top = self._top(now)
+        return apart_m(top, self._place(now)) < _SEEN_SEATED_M and uprightness(top) > 0.995
+
+    def mount(self, sight: Sight) -> Step:
+        """One attempt: the own knob in the hand, then up, over the pegs and down together."""
+        sight = yield from self._grip.pick(sight)
+        here, still = Waypoint(sight.pose_tool_in_base, CLOSED), Still(self._partner, _STILL_M, _STILL_S)
+        sight = yield from wait(
+            sight,
+            here,
+            self._person,
+            lambda now: (still(now) and self._is_gripped_by_partner(now)) or self._grip.is_lost(now),
+        )
+        up = self._raised(sight)
+        sight = yield from self._carry(
+            sight, lambda _: up, lambda now: apart_m(self._top(now), up) < _LIFTED_M
+        )
+        while not (self.is_seated(sight) or self._grip.is_lost(sight)):
+            sight = yield from self._carry(sight, self._over_pegs, self._is_over_pegs)
+            sight = yield from self._carry(
+                sight, lambda now: at(0.0, 0.0, -_PRESS_M) @ self._place(now), self.is_seated
+            )
+        return (yield from self._grip.let_go(sight))
+
+    def _carry(self, sight: Sight, goal: See, until: Until) -> Step:
+        """The tabletop towards its goal by the own knob, waiting while the own end is ahead of the other."""
+
+        def pace(now: Sight) -> float:
+            top, end = self._top(now), goal(now)
+            own_left_m, other_left_m = (apart_m(top @ knob, end @ knob) for knob in (self._own, self._other))
+            return 0.0 if own_left_m < other_left_m - _AHEAD_M else _PACE
+
+        def knob_goal(now: Sight) -> Pose:
+            return across(goal(now) @ self._own)
+
+        return (yield from self._grip.bring(sight, knob_goal, until, pace=pace, patience_s=_PATIENCE_S))
+
+    def _knob(self, now: Sight) -> Pose:
+        """With the tool that grips it: round as it is, that need not lean when the tabletop does."""
+        return across(self._top(now) @ self._own)
+
+    def _place(self, now: Sight) -> Pose:
+        return standing(self._base(now) @ at(0.0, 0.0, _TOP_SEATED_Z_M), self._top(now), math.tau)
+
+    def _over_pegs(self, now: Sight) -> Pose:
+        return at(0.0, 0.0, _CLEAR_M) @ self._place(now)
+
+    def _is_over_pegs(self, now: Sight) -> bool:
+        return self._grip.is_over(now, lambda now: across(self._place(now) @ self._own))
+
+    def _raised(self, now: Sight) -> Pose:
+        """Where it is, but level and as high as over the pegs."""
+        top = self._top(now)
+        place = np.array([*top.position[:2], self._over_pegs(now).position[2]])
+        return standing(Pose(place, top.quaternion_wxyz), top, math.tau)
+
+    def _is_gripped_by_partner(self, now: Sight) -> bool:
+        return apart_m(self._top(now) @ self._other, self._partner(now)) < _PARTNER_M
+
+
+def _side(arm: Arm) -> float:
+    return -1.0 if arm.name == "arm0" else 1.0
