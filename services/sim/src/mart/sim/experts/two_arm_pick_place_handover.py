@@ -23,10 +23,10 @@ _FETCHER_END, _RECEIVER_END = (
 
 # In the world.
 _LID_PLACE = at(-0.27, -0.16, 0.075)
-_OFFER = at(0.0, 0.0, 0.30)  # of the hammer
-_AWAIT, _RETREAT = at(0.27, 0.0, 0.38), at(-0.30, 0.0, 0.35)  # of arm 1's tool and of arm 0's
+_OFFER = at(0.0, 0.0, 0.25)  # of the hammer
+_AWAIT, _RETREAT = at(0.25, 0.0, 0.34), at(-0.25, 0.0, 0.34)  # of arm 1's tool and of arm 0's
 _NEAREST_REACHED = at(0.05, 0.0, 0.0)  # by arm 1, of what lies on a shelf
-_IN_THE_AIR_Z_M = 0.24
+_IN_THE_AIR_Z_M = 0.19
 
 _OPEN_M = 0.20  # of the lid from the container
 _TRAY_HALF_M, _BIN_HALF_M = (0.06, 0.06), (0.15, 0.08)  # inside, with something to spare
@@ -66,7 +66,7 @@ class _Fetcher:
         self._knob = Grip(person, self._lid, lambda now: across(self._lid(now) @ _LID_KNOB))
         self._handle = Grip(person, self._hammer, lambda now: across(self._hammer(now) @ _FETCHER_END))
         self._lid_place, self._offer = to_base @ _LID_PLACE, to_base @ _OFFER
-        self.retreat = Waypoint(to_base @ _RETREAT, OPEN)
+        self.retreat = Waypoint(across(to_base @ _RETREAT), OPEN)
 
     def is_open(self, now: Sight) -> bool:
         """The lid is away, and down."""
@@ -115,7 +115,7 @@ class _Receiver:
         self._cube = Grip(person, self._trash, lambda now: across(self._trash(now), math.pi / 2))
         self._handle = Grip(person, self._hammer, lambda now: across(self._hammer(now) @ _RECEIVER_END))
         self._reach_x_m = float((to_base @ _NEAREST_REACHED).position[0])
-        self.retreat = Waypoint(to_base @ _AWAIT, OPEN)
+        self.retreat = Waypoint(across(to_base @ _AWAIT), OPEN)
 
     def is_clear(self, now: Sight) -> bool:
         return _lies_in(self._trash(now), self._tray(now), _TRAY_HALF_M)
