@@ -28,7 +28,7 @@ class Request(Protocol):
     def reply(self, payload: bytes) -> None: ...
 
 
-# Handlers run on the bus's own threads: they may only hand over (store, enqueue, notify), never wait.
+# Handlers run on threads of the bus, one for each subscription: they hand over or do short work, and never wait.
 Handler = Callable[[Sample], None]
 RequestHandler = Callable[[Request], None]
 AliveHandler = Callable[[str, bool], None]  # (liveliness key, alive)

@@ -14,7 +14,7 @@ from mart.protocol.bus import Bus
 from mart.protocol.messages import OPERATOR_SCRIPT, Event, RoomStatus, SeatRequest, State, raise_error
 from mart.protocol.tasks import Task
 from mart.sim.experts import Skill
-from mart.sim.loop import Mailbox
+from mart.sim.mailbox import Mailbox
 from mart.sim.operate import REPEAT_S, ScriptedOperator
 from mart.sim.room import REPEAT_S as STATUS_S
 from mart.sim.room import Room

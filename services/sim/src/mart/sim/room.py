@@ -1,4 +1,4 @@
-"""One room: seats, barrier, episode and world, put together. Owned by one thread, which says what time it is
+"""One room: seats, barrier, episode and world, put together. Used by one thread at a time, which says what time it is
 (`now_s`, monotonic seconds).
 
 What it has to say goes to a `Voice`, what must survive a crash to `keep`, which may raise OSError.

@@ -5,17 +5,23 @@ from __future__ import annotations
 import contextlib
 import gc
 import secrets
+from collections import Counter
 from collections.abc import Callable
 
 from mart.protocol import clock
+from mart.protocol.complaints import Complaints
 from mart.protocol.service import announced, connected
-from mart.sim import loop, room_record
+from mart.sim import room_record
+from mart.sim.bus_voice import BusVoice
+from mart.sim.doorway import Doorway
 from mart.sim.episode import Terms
 from mart.sim.experts import Skill, get_skill
 from mart.sim.lockstep_room import LockstepRoom, OrderedVoice, SimulatedTime
+from mart.sim.mailbox import Mailbox
 from mart.sim.room import Room
 from mart.sim.room_record import RoomRecord
 from mart.sim.settings import SimSettings
+from mart.sim.turns import Turns
 from mart.sim.world import World
 
 _SEED_BITS = 32
@@ -37,8 +43,7 @@ def serve_room(settings: SimSettings) -> None:
 def serve_world(settings: SimSettings, world: World) -> None:
     """The room of `settings` around a world that exists already."""
     with connected(settings, "sim", settings.room) as service, contextlib.ExitStack() as opened:
-        mailbox = loop.Mailbox()
-        voice = opened.enter_context(contextlib.closing(loop.BusVoice(service.bus, settings.room)))
+        voice = opened.enter_context(contextlib.closing(BusVoice(service.bus, settings.room)))
         room = Room(
             settings.room,
             world,
@@ -49,26 +54,35 @@ def serve_world(settings: SimSettings, world: World) -> None:
             pace=settings.pace,
             terms=Terms(skill=settings.skill or "", time_limit_s=settings.time_limit_s),
         )
-        doorway = opened.enter_context(
-            contextlib.closing(loop.Doorway(service.bus, settings.room, room, world, mailbox))
-        )
+        complaints, garbled = Complaints(), Counter[str]()
+
+        def advance(now_s: float) -> float:
+            next_s = room.advance(now_s)
+            complaints.say(Counter(room.rejected) + garbled, now_s)
+            return next_s
+
+        turns = Turns(advance)
+        doorway = Doorway(service.bus, settings.room, room, world, do=turns.do, garbled=garbled)
+        opened.enter_context(contextlib.closing(doorway))
         doorway.hear_commands()
         opened.enter_context(announced(service))
         gc.freeze()  # what is here now stays: later collections need not look at it
-        loop.run(room, doorway, mailbox, service.stop)
+        turns.run(service.stop)
 
 
 def serve_lockstep(settings: SimSettings, world: World, skill: Skill) -> None:
     """The same room on simulated time, with its scripts."""
     with connected(settings, "sim", settings.room) as service, contextlib.ExitStack() as opened:
-        mailbox, time = loop.Mailbox(), SimulatedTime()
+        mailbox, time = Mailbox(), SimulatedTime()
         voice = OrderedVoice(service.bus, settings.room, world.arms)
         opened.enter_context(contextlib.closing(voice))
         terms = Terms(lockstep=True, skill=skill.name, time_limit_s=settings.time_limit_s)
         room = Room(
             settings.room, world, _record(settings), voice, _keeper(settings), now_s=time.now_s(), terms=terms
         )
-        doorway = loop.Doorway(service.bus, settings.room, room, world, mailbox, now_s=time.now_s)
+        doorway = Doorway(
+            service.bus, settings.room, room, world, do=mailbox.put, garbled=Counter(), now_s=time.now_s
+        )
         opened.enter_context(contextlib.closing(doorway))
         lockstep = LockstepRoom(room, voice, time)
         lockstep.seat_scripts(world.task, skill, settings.seed or 0)

@@ -1,4 +1,4 @@
-"""The mailbox between the bus's threads and the room's, and the log that cannot be flooded."""
+"""Work that waits, and the log that cannot be flooded."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections import Counter
 import pytest
 
 from mart.protocol.complaints import Complaints
-from mart.sim.loop import Mailbox
+from mart.sim.mailbox import Mailbox
 
 
 def test_work_is_done_in_the_order_in_which_it_came() -> None:
