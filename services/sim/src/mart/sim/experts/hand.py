@@ -9,7 +9,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mart.protocol.pose import Pose
+from mart.protocol.pose import (
+    Pose,
+    quaternion_conjugate,
+    quaternion_exp,
+    quaternion_log,
+    quaternion_multiply,
+)
 from mart.sim.experts.person import Person
 
 _TREMOR_TIME_S = 0.4  # how long the tremor takes to wander off
@@ -100,14 +106,13 @@ class Hand:
 
 def difference(goal: Pose, start: Pose) -> tuple[Vector, Vector]:
     """Translation (metres) and rotation vector (radians), both along the parent's axes, from `start` to `goal`."""
-    turn = Pose(np.zeros(3), goal.quaternion_wxyz) @ Pose(np.zeros(3), start.quaternion_wxyz).inverse()
-    return goal.position - start.position, turn.log()[3:]
+    turn = quaternion_multiply(goal.quaternion_wxyz, quaternion_conjugate(start.quaternion_wxyz))
+    return goal.position - start.position, quaternion_log(turn)
 
 
 def moved(start: Pose, shift: Vector, turn: Vector) -> Pose:
     """The inverse of `difference`."""
-    turned = Pose.exp(np.concatenate([np.zeros(3), turn])) @ Pose(np.zeros(3), start.quaternion_wxyz)
-    return Pose(start.position + shift, turned.quaternion_wxyz)
+    return Pose(start.position + shift, quaternion_multiply(quaternion_exp(turn), start.quaternion_wxyz))
 
 
 def _leashed(reference: Pose, measured: Pose) -> Pose:
