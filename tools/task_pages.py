@@ -45,8 +45,8 @@ def sheet() -> Image.Image:
 def _overview(tasks: list[Task]) -> Iterator[str]:
     yield "# What tasks are there?"
     yield ""
-    yield "Made by `make task-pages` from the catalogue and the scenes. A subtask in *italics* takes more than one arm at the"
-    yield "same time. How to use a task from your own code:"
+    yield "Made by `make task-pages` from the catalogue and the scenes. A subtask in *italics* takes more than one"
+    yield "arm at the same time. How to use a task from your own code:"
     yield "[how-to-use-the-environments.md](how-to-use-the-environments.md)."
     yield ""
     yield f"![Every task from every viewpoint: one for each seat, and the shared one]({SHEET})"

@@ -1,17 +1,16 @@
-"""The task catalogue: pure data, shared by every service."""
+"""The task catalogue: pure data, shared by every service.
+
+A row is a file in this folder that says NAME (its own), DEFAULT_ARMS, ARM_COUNTS and `task(arms)`; no list names it.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from importlib import import_module
+from pkgutil import iter_modules
 from types import ModuleType
 
 from mart.protocol.errors import InvalidInput, NotFound
-from mart.protocol.tasks import (
-    three_arm_lift_wiping,
-    two_arm_drink_tray_lifting,
-    two_arm_multi_cube_lifting,
-    two_arm_pick_place_handover,
-    two_arm_table_assembly,
-)
 from mart.protocol.tasks.task import (
     MAX_ARMS,
     SHARED_VIEWPOINT,
@@ -39,16 +38,16 @@ __all__ = [
     "task_names",
 ]
 
-_ENTRIES = {
-    entry.NAME: entry
-    for entry in (
-        two_arm_multi_cube_lifting,
-        two_arm_drink_tray_lifting,
-        two_arm_table_assembly,
-        two_arm_pick_place_handover,
-        three_arm_lift_wiping,
-    )
-}
+
+def _rows() -> Iterator[ModuleType]:
+    for file in iter_modules(__path__):
+        module = import_module(f"{__name__}.{file.name}")
+        if hasattr(module, "NAME"):
+            yield module
+
+
+# Fewer arms first.
+_ENTRIES = {row.NAME: row for row in sorted(_rows(), key=lambda row: (row.DEFAULT_ARMS, row.NAME))}
 
 
 def task_names() -> tuple[str, ...]:

@@ -28,7 +28,7 @@ _SPOTS_M = np.array([(x, y, 0.0) for x, y in SPOTS_M])
 Vector = NDArray[np.float64]
 
 
-def lift_and_wipe(arm: Arm, person: Person, sight: Sight) -> Plan:
+def plan(arm: Arm, person: Person, sight: Sight) -> Plan:
     return wipe(arm, person, sight) if arm.name == WIPER else carry(arm, person, sight)
 
 

@@ -12,7 +12,7 @@ from mart.sim.experts.plan import Plan, Sight
 _LIFT_M = 0.14  # 10 cm would do; a loaded arm sags by 1 cm
 
 
-def lift_tray(arm: Arm, person: Person, sight: Sight) -> Plan:
+def plan(arm: Arm, person: Person, sight: Sight) -> Plan:
     carrier = Carrier(arm, person)
     up = np.array([0.0, 0.0, _LIFT_M])
     while True:

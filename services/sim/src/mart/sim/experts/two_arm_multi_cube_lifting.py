@@ -15,7 +15,7 @@ _LIFT_Z_M = 0.17  # of the cube's centre; 12 cm would do
 _LOST_M = 0.05  # a cube further from the tool than this is not in the hand
 
 
-def lift_cube(arm: Arm, person: Person, sight: Sight) -> Plan:
+def plan(arm: Arm, person: Person, sight: Sight) -> Plan:
     cube = arm.name.replace("arm", "cube")
     base_from_world = arm.pose_base_in_world.inverse()
 

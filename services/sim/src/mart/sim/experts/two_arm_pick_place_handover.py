@@ -37,7 +37,7 @@ _STILL_M, _STILL_S = 0.012, 0.3
 _PARTNER_M, _PARTNER_S, _PARTNER_GONE_M = 0.025, 0.7, 0.07
 
 
-def hand_over(arm: Arm, person: Person, sight: Sight) -> Plan:
+def plan(arm: Arm, person: Person, sight: Sight) -> Plan:
     if arm.name == "arm0":
         fetcher = _Fetcher(arm, person)
         while True:

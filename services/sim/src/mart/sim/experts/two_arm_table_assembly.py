@@ -32,7 +32,7 @@ _STILL_M, _STILL_S = 0.015, 0.5
 _PATIENCE_S = 8.0
 
 
-def assemble_table(arm: Arm, person: Person, sight: Sight) -> Plan:
+def plan(arm: Arm, person: Person, sight: Sight) -> Plan:
     column, top = _Column(arm, person), _Tabletop(arm, person)
     while True:
         while not column.is_seated(sight):

@@ -1,25 +1,17 @@
-"""One file per task: geometry, resets, observations, success."""
+"""Scenes: geometry, resets, observations and success. One file for each task, found by the task's name."""
 
 from __future__ import annotations
 
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from mart.protocol.tasks import Task
-from mart.sim.tasks.scene import Judgement, Scene
-from mart.sim.tasks.three_arm_lift_wiping import LiftWiping
-from mart.sim.tasks.two_arm_drink_tray_lifting import DrinkTrayLifting
-from mart.sim.tasks.two_arm_multi_cube_lifting import MultiCubeLifting
-from mart.sim.tasks.two_arm_pick_place_handover import PickPlaceHandover
-from mart.sim.tasks.two_arm_table_assembly import TableAssembly
 
-__all__ = ["Judgement", "Scene", "scene_of"]
-
-_SCENES: dict[str, type[Scene]] = {
-    "two_arm_multi_cube_lifting": MultiCubeLifting,
-    "two_arm_drink_tray_lifting": DrinkTrayLifting,
-    "two_arm_table_assembly": TableAssembly,
-    "two_arm_pick_place_handover": PickPlaceHandover,
-    "three_arm_lift_wiping": LiftWiping,
-}
+if TYPE_CHECKING:  # scenes are built from parts of mart.sim.world, which asks here for scenes
+    from mart.sim.tasks.scene import Scene
 
 
 def scene_of(task: Task) -> Scene:
-    return _SCENES[task.name](task)
+    """A new one, of the class that the file `<task.name>.py` beside this one names as its `SCENE`."""
+    scene: Scene = import_module(f"{__name__}.{task.name}").SCENE(task)
+    return scene

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -13,6 +14,9 @@ from mart.protocol.pose import Pose
 from mart.protocol.tasks import SHARED_VIEWPOINT, Arm, Task
 from mart.sim.world.data import Array, Data, Flags
 from mart.sim.world.scenery import Camera
+
+_SAME_GAP_RAD = 0.05
+_NARROW_GAP_RAD = 2.0
 
 
 @dataclass(frozen=True)
@@ -80,7 +84,7 @@ class Scene(ABC):
     def cameras(self) -> tuple[Camera, ...]:
         """One for each seat, named like its arm, and the shared one."""
         seats = tuple(seat_camera(arm, side=-1 if i % 2 == 0 else 1) for i, arm in enumerate(self.task.arms))
-        return (*seats, Camera(SHARED_VIEWPOINT, (0.0, -1.05, 1.15), (0.0, 0.02, 0.05), 44.0))
+        return (*seats, shared_camera(self.task.arms))
 
 
 def seat_camera(arm: Arm, side: int) -> Camera:
@@ -92,3 +96,22 @@ def seat_camera(arm: Arm, side: int) -> Camera:
     x, y, z = base.transform_points((-0.08, 0.70 * side, 0.85))
     target_x, target_y, target_z = base.transform_points((0.67, 0.03 * side, 0.05))
     return Camera(arm.name, (x, y, z), (target_x, target_y, target_z), 40.0)
+
+
+def shared_camera(arms: Sequence[Arm]) -> Camera:
+    """Looks at the middle of the table through the widest gap between the arms, from the front where it can.
+
+    Where four arms leave no gap of more than a right angle, from higher up and further away, over their shoulders.
+    """
+    bases = [arm.pose_base_in_world.position for arm in arms]
+    azimuths = sorted(math.atan2(y, x) for x, y, _ in bases)
+    following = [*azimuths[1:], azimuths[0] + math.tau]
+    gaps = [after - before for before, after in zip(azimuths, following, strict=True)]
+    widest = max(gaps)
+    middles = [
+        before + gap / 2 for before, gap in zip(azimuths, gaps, strict=True) if gap > widest - _SAME_GAP_RAD
+    ]
+    azimuth = min(middles, key=lambda middle: abs(math.remainder(middle + math.pi / 2, math.tau)))
+    distance_m, height_m = (1.05, 1.15) if widest > _NARROW_GAP_RAD else (1.20, 1.45)
+    position = (distance_m * math.cos(azimuth), distance_m * math.sin(azimuth), height_m)
+    return Camera(SHARED_VIEWPOINT, position, (0.0, 0.02, 0.05), 44.0)

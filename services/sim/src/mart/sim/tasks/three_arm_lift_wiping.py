@@ -99,6 +99,9 @@ class LiftWiping(Scene):
         )
 
 
+SCENE = LiftWiping
+
+
 def _add_sponge(spec: mujoco.MjSpec, wiper: Arm) -> None:
     """A sponge under a block to hold it by. Its own low friction counts (priority), or it would drag the hand back."""
     sponge = spec.worldbody.add_body(name="sponge", pos=(0.3, 0.24, SPONGE_HALF_M[2]))

@@ -36,3 +36,6 @@ class DrinkTrayLifting(Scene):
         spills = self._tray.spills()
         lifted = (self._tray.lowest_point_m() > LIFTED_M) & ~np.logical_or.reduce(list(spills.values()))
         return Judgement({"lift_tray": lifted}, lifted, spills)
+
+
+SCENE = DrinkTrayLifting

@@ -76,6 +76,9 @@ class MultiCubeLifting(Scene):
         return self._positions[index][..., 2] - CUBE_HALF_M * np.abs(self._upward[index]).sum(axis=-1)
 
 
+SCENE = MultiCubeLifting
+
+
 def cube_of(arm: str) -> str:
     return arm.replace("arm", "cube")
 

@@ -142,6 +142,9 @@ class PickPlaceHandover(Scene):
         }
 
 
+SCENE = PickPlaceHandover
+
+
 def _inside(thing: Thing, box: Thing, half_m: tuple[float, float]) -> Flags:
     within = np.all(np.abs(box.frame(thing.position)[..., :2]) < half_m, axis=-1)
     return within & (thing.position[..., 2] < _INSIDE_Z_M)

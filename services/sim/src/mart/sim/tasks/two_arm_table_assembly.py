@@ -172,6 +172,9 @@ class TableAssembly(Scene):
         return failures
 
 
+SCENE = TableAssembly
+
+
 def column_of(arm: str) -> str:
     return arm.replace("arm", "column")
 

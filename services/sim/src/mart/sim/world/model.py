@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import mujoco
 
 from mart.protocol.errors import InvalidInput
-from mart.sim.tasks.scene import Scene
 from mart.sim.world import osc, panda, scenery
 from mart.sim.world.meshes import Detail
+
+if TYPE_CHECKING:  # scenes are built from parts of this package
+    from mart.sim.tasks.scene import Scene
 
 _LARGEST_TIMESTEP_S = 0.002
 _CONTROL_HZ = (5.0, 100.0)

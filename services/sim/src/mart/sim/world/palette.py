@@ -29,10 +29,11 @@ class Material:
 
 MATERIALS: Mapping[str, Material] = {
     # The room and the arms.
-    "floor": Material("#AEB5BC"),
+    "floor": Material("#FFFFFF"),  # these three have pictures
+    "rug": Material("#FFFFFF"),
     "table": Material("#FFFFFF"),
-    "edge": Material("#8C8577"),
-    "metal": Material("#5B636B", gloss=0.3, shininess=0.3),
+    "edge": Material("#8A6B4C"),
+    "metal": Material("#4A525A", gloss=0.3, shininess=0.3),
     "shell": Material("#F1F2F3", gloss=0.35, shininess=0.5),
     "rubber": Material("#2E3236", gloss=0.1, shininess=0.1),
     # What things are made of. Paint and plastic are there to be given a colour.

@@ -9,15 +9,17 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from mart.protocol.tasks import Task
-from mart.sim.world import tabletop
+from mart.sim.world import floor, tabletop
 from mart.sim.world.palette import add_materials, rgba
 from mart.sim.world.shadows import add_shadow, add_shadow_material
 
 TABLE_HALF_M = (0.60, 0.55)
 _TABLE_THICKNESS_M = 0.04
 FLOOR_Z_M = -0.75
+_FLOOR_HALF_M = 8.0  # beyond what any camera that looks down can see
 _BOX, _PLANE, _CYLINDER = (
     mujoco.mjtGeom.mjGEOM_BOX,
     mujoco.mjtGeom.mjGEOM_PLANE,
@@ -88,18 +90,32 @@ def add_room(spec: mujoco.MjSpec, task: Task) -> None:
             **looks,
         )
         add_shadow(spec, arm.name, radius_m=0.065, tint=arm.color)
-    world.add_geom(type=_PLANE, size=(4, 4, 0.1), pos=(0, 0, FLOOR_Z_M), material="floor", **looks)
+    world.add_geom(
+        type=_PLANE, size=(*floor.RUG_HALF_M, 0.1), pos=(0, 0, FLOOR_Z_M + 0.004), material="rug", **looks
+    )
+    world.add_geom(
+        type=_PLANE,
+        size=(_FLOOR_HALF_M, _FLOOR_HALF_M, 0.1),
+        pos=(0, 0, FLOOR_Z_M),
+        material="floor",
+        **looks,
+    )
 
 
 def _add_light(spec: mujoco.MjSpec) -> None:
+    """A warm window at the front left, a cool sky at the back right, and a little from where one looks."""
     headlight = spec.visual.headlight
-    headlight.ambient, headlight.diffuse, headlight.specular = (0.42,) * 3, (0.18,) * 3, (0.0,) * 3
-    for direction, strength in (((-0.45, 0.55, -1.0), 0.42), ((0.6, -0.2, -0.7), 0.12)):
+    headlight.ambient, headlight.diffuse, headlight.specular = (0.36, 0.37, 0.39), (0.14,) * 3, (0.0,) * 3
+    for direction, strength, tint in (
+        ((0.50, 0.45, -1.0), 0.50, (1.0, 0.96, 0.90)),
+        ((-0.7, -0.35, -0.6), 0.20, (0.86, 0.93, 1.0)),
+    ):
+        diffuse = strength * np.array(tint)
         spec.worldbody.add_light(
             type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
             dir=direction,
-            diffuse=(strength,) * 3,
-            specular=(0.25 * strength,) * 3,
+            diffuse=diffuse,
+            specular=0.4 * diffuse,
             castshadow=False,
         )
 
@@ -126,10 +142,18 @@ def _add_materials(spec: mujoco.MjSpec, task: Task) -> None:
         width=64,
         height=384,
     )
-    art = tabletop.picture(task, *TABLE_HALF_M)
-    texture = spec.add_texture(
-        name="table", type=mujoco.mjtTexture.mjTEXTURE_2D, width=art.shape[1], height=art.shape[0], nchannel=3
-    )
-    texture.data = art.tobytes()
     add_materials(spec)
-    spec.material("table").textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "table"
+    _add_picture(spec, "table", tabletop.picture(task, *TABLE_HALF_M))
+    _add_picture(spec, "rug", floor.rug())
+    _add_picture(spec, "floor", floor.boards())
+    tiles = 2 * _FLOOR_HALF_M / floor.TILE_M
+    spec.material("floor").texrepeat = (tiles, tiles)
+
+
+def _add_picture(spec: mujoco.MjSpec, material: str, picture: NDArray[np.uint8]) -> None:
+    height, width, channels = picture.shape
+    texture = spec.add_texture(
+        name=material, type=mujoco.mjtTexture.mjTEXTURE_2D, width=width, height=height, nchannel=channels
+    )
+    texture.data = picture.tobytes()
+    spec.material(material).textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = material

@@ -6,16 +6,20 @@ controller lie below, in MuJoCo and osc.c.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import mujoco
 import numpy as np
 
-from mart.sim.tasks import Judgement, Scene
 from mart.sim.world import osc
 from mart.sim.world.arm import MeasuredArm
 from mart.sim.world.data import Array, Data
 from mart.sim.world.gripper import STROKE_M
 from mart.sim.world.progress import next_success_ticks
 from mart.sim.world.shadows import Shadows
+
+if TYPE_CHECKING:  # scenes are built from parts of this package
+    from mart.sim.tasks.scene import Judgement, Scene
 
 ACTION_SIZE = 7  # 6 of motion, 1 of gripper
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import logging
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -18,13 +19,16 @@ from numpy.typing import ArrayLike
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.pose import Pose, quaternion_conjugate, quaternion_log, quaternion_multiply
 from mart.protocol.tasks import Task, get_task
-from mart.sim.tasks import Scene, scene_of
+from mart.sim.tasks import scene_of
 from mart.sim.world import kinematics, model, osc, panda
 from mart.sim.world.arm import MeasuredArm
 from mart.sim.world.data import Array, Flags
 from mart.sim.world.meshes import Detail
 from mart.sim.world.progress import Progress, first_reasons
 from mart.sim.world.surface import ACTION_SIZE, Surface
+
+if TYPE_CHECKING:  # scenes are built from parts of this package
+    from mart.sim.tasks.scene import Scene
 
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 FATAL_WARNINGS = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
