@@ -26,6 +26,9 @@ class Hyperparameters(BaseModel):
     batch_size: int = Field(100, ge=1)
     learning_rate: float = Field(1e-3, gt=0)  # of Adam
     schedule: Literal["constant", "cosine"] = "constant"
+    precision: Literal["auto", "float32", "bfloat16"] = (
+        "auto"  # of matrix products; auto: what is faster here
+    )
     ema: float | None = Field(None, gt=0, lt=1)  # decay of the average of weights that acts, if any
 
     # Observations

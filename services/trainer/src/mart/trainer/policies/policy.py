@@ -8,7 +8,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-ACTION_SIZE = 7  # six of the step in [-1, 1] and the gripper, as in docs/protocol.md, section "Commands"
+from mart.trainer.data.layout import ACTION_SIZE
+
+__all__ = ["ACTION_SIZE", "Array", "Policy"]
 
 Array = NDArray[np.float64]
 

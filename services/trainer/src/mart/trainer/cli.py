@@ -1,0 +1,167 @@
+"""`mart train`. Heavy modules are imported inside: `mart --help` loads this file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from pydantic import ValidationError
+
+from mart.protocol.cli import json_option, print_result
+from mart.protocol.errors import InvalidInput
+from mart.trainer.grid import model_names
+from mart.trainer.presets import PRESETS
+from mart.trainer.request import TrainRequest
+
+if TYPE_CHECKING:
+    from mart.trainer.runs import RunDirectory
+    from mart.trainer.train import Progress
+
+_OUTCOMES = ("success", "failure", "discarded", "unspecified")
+_VERDICTS = ("verified", "diverged", "unverified")
+_OPERATORS = ("human", "policy", "script", "hold")
+_paths = click.Path(path_type=Path, exists=True)
+
+
+@click.command()
+@click.option(
+    "--model", help=f"{', '.join(model_names())}, or a point PLANNER/ACTOR/RESIDUAL[/NETWORK][/HEAD]."
+)
+@click.option("--data", type=_paths, multiple=True, help="Episode file or folder of them; may be repeated.")
+@click.option(
+    "--seeds",
+    type=click.IntRange(1, 64),
+    default=1,
+    show_default=True,
+    help="How many, from --first-seed on.",
+)
+@click.option(
+    "--first-seed", type=click.IntRange(0), default=0, show_default=True, help="The smallest of them."
+)
+@click.option("--preset", type=click.Choice(list(PRESETS)), default="fast", show_default=True)
+@click.option(
+    "--set", "changes", multiple=True, metavar="NAME=VALUE", help="Change one of the preset's numbers."
+)
+@click.option("--out", type=click.Path(path_type=Path), help="The run's folder; one that was begun goes on.")
+@click.option("--resume", type=_paths, help="Go on with this run; nothing else is asked then.")
+@click.option("--base", type=_paths, help="A run, or one of its checkpoints, that a residual corrects.")
+@click.option("--outcome", type=click.Choice([*_OUTCOMES, "any"]), multiple=True, help="[default: success]")
+@click.option("--verdict", type=click.Choice([*_VERDICTS, "any"]), multiple=True, help="[default: verified]")
+@click.option(
+    "--operator", type=click.Choice(_OPERATORS), multiple=True, help="Only episodes driven by these."
+)
+@click.option("--name", multiple=True, help="Only episodes driven by these people, skills or policies.")
+@click.option("--first", type=click.IntRange(1), help="Only the oldest so many of them.")
+@click.option("--last", type=click.IntRange(1), help="Only the newest so many of them.")
+@click.option(
+    "--weight",
+    multiple=True,
+    metavar="SOURCE=W",
+    help="How much ticks driven by a source count, e.g. human=3.",
+)
+@click.option("--device", default="cpu", show_default=True, help="cpu, cuda, cuda:N or auto.")
+@json_option
+def train(resume: Path | None, out: Path | None, as_json: bool, **options: Any) -> int:
+    """Fit a policy to episodes."""
+    from mart.protocol.service import stop_requested
+    from mart.trainer.runs import RunDirectory
+    from mart.trainer.train import train as train_run
+
+    run = RunDirectory(_folder(resume, out))
+    request = run.request if resume else _request(options)
+    with stop_requested() as stop:
+        train_run(request, run.path, stop, lambda progress: click.echo(_line(progress), err=True))
+    result = _result(run)
+    print_result(result, _words(result), as_json)
+    return 130 if stop.is_set() else 0
+
+
+def _folder(resume: Path | None, out: Path | None) -> Path:
+    if (resume is None) == (out is None):
+        raise InvalidInput("Give --out DIR for a new run, or --resume DIR for one that was begun.")
+    return resume or out or Path()
+
+
+def _request(options: dict[str, Any]) -> TrainRequest:
+    """Raises InvalidInput for what cannot be asked."""
+    if not options["model"] or not options["data"]:
+        raise InvalidInput("Give --model and --data, or --resume DIR to go on with a run.")
+    first, count = options["first_seed"], options["seeds"]
+    try:
+        return TrainRequest(
+            model=options["model"],
+            data=tuple(path.resolve() for path in options["data"]),
+            seeds=tuple(range(first, first + count)),
+            preset=options["preset"],
+            changes={name: _value(text) for name, text in _pairs(options["changes"])},
+            selection={
+                "outcomes": _any(options["outcome"], ("success",)),
+                "verdicts": _any(options["verdict"], ("verified",)),
+                "operators": options["operator"],
+                "names": options["name"],
+                "first": options["first"],
+                "last": options["last"],
+            },
+            weights={name: _value(text) for name, text in _pairs(options["weight"])},
+            base=options["base"].resolve() if options["base"] else None,
+            device=options["device"],
+        )
+    except ValidationError as error:
+        fault = error.errors()[0]
+        where = ".".join(map(str, fault["loc"]))
+        raise InvalidInput(f"{where} = {fault['input']!r} was given: {fault['msg']}; see --help.") from error
+
+
+def _any(given: tuple[str, ...], usual: tuple[str, ...]) -> tuple[str, ...]:
+    """What a selection takes: `any` is no limit."""
+    return () if "any" in given else given or usual
+
+
+def _pairs(given: tuple[str, ...]) -> list[tuple[str, str]]:
+    pairs = [tuple(text.split("=", 1)) for text in given]
+    wrong = [pair[0] for pair in pairs if len(pair) != 2]
+    if wrong:
+        raise InvalidInput(f"{wrong[0]!r} was given; write NAME=VALUE.")
+    return [(pair[0], pair[1]) for pair in pairs]
+
+
+def _value(text: str) -> Any:
+    """A number, a list or a word."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
+
+
+def _line(progress: Progress) -> str:
+    losses = "  ".join(f"{name} {value:.4g}" for name, value in progress.losses.items())
+    done = f"{progress.updates}/{progress.updates_in_all}"
+    return f"{progress.stage} {done}  {progress.updates_per_s:.1f}/s  {losses}"
+
+
+def _result(run: RunDirectory) -> dict[str, Any]:
+    checkpointed = run.checkpointed()
+    data = json.loads(run.data.read_bytes())
+    return {
+        "run": str(run.path),
+        "model": run.request.point.name,
+        "task": data["task"],
+        "episodes": len(data["episodes"]),
+        "ticks": data["ticks"],
+        "seeds": list(run.request.seeds),
+        "checkpoints": [
+            str(run.checkpoint(updates, seed)) for updates in checkpointed for seed in run.seeds(updates)
+        ],
+    }
+
+
+def _words(result: dict[str, Any]) -> str:
+    newest = result["checkpoints"][-len(result["seeds"]) :]
+    lines = [
+        f"{result['model']} for {result['task']}, from {result['episodes']} episodes ({result['ticks']} ticks)",
+        f"{len(result['checkpoints'])} checkpoints; the newest:",
+        *newest,
+    ]
+    return "\n".join(lines)

@@ -1,0 +1,60 @@
+"""Episodes that were read before, by the hash of their file: reading again costs a hash and one small file.
+
+What is in the cache is derived: it can be deleted at any time, and a damaged entry is read anew.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import os
+from pathlib import Path
+
+import numpy as np
+from safetensors import SafetensorError
+from safetensors.numpy import load, save
+
+from mart.protocol.episodes.reader import EpisodeFile
+from mart.trainer.data.episode import EpisodeArrays, read_episode
+from mart.trainer.data.layout import Layout
+
+_log = logging.getLogger(__name__)
+
+_VERSION = 1  # of EpisodeArrays: another one is read anew
+
+
+def sha256_of(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def read_cached(file: EpisodeFile, layout: Layout, sha256: str, folder: Path | None) -> EpisodeArrays:
+    """Raises what `read_episode` raises. `folder`: of the cache; None reads the file itself."""
+    if folder is None:
+        return read_episode(file, layout)
+    entry = folder / f"{sha256}-{_VERSION}.safetensors"
+    known = _load(entry)
+    if known is not None and known.observations.shape[1] == layout.width:
+        return known
+    episode = read_episode(file, layout)
+    _save(entry, episode)
+    return episode
+
+
+def _load(entry: Path) -> EpisodeArrays | None:
+    if not entry.is_file():
+        return None
+    try:
+        return EpisodeArrays(**load(entry.read_bytes()))
+    except (SafetensorError, TypeError, OSError) as error:
+        _log.warning("%s is damaged (%s) and is made anew", entry, error)
+        return None
+
+
+def _save(entry: Path, episode: EpisodeArrays) -> None:
+    """Several trainings may do so at once: each writes a file of its own, and the last one holds."""
+    entry.parent.mkdir(parents=True, exist_ok=True)
+    arrays = {name: np.ascontiguousarray(array) for name, array in vars(episode).items()}
+    own = entry.with_suffix(f".{os.getpid()}")
+    own.write_bytes(save(arrays))
+    own.replace(entry)

@@ -1,0 +1,132 @@
+"""The data of one training: every selected episode in flat arrays, and a list of what they are."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict
+
+from mart.protocol.errors import InvalidInput
+from mart.trainer.data.cache import read_cached, sha256_of
+from mart.trainer.data.episode import EpisodeArrays
+from mart.trainer.data.layout import Layout
+from mart.trainer.data.select import Candidate, candidates, select
+from mart.trainer.request import Selection
+
+S = TypeVar("S", bound=np.generic)
+
+
+class Used(BaseModel):
+    """One episode that was learned from."""
+
+    model_config = ConfigDict(frozen=True)
+
+    path: str
+    sha256: str
+    ticks: int
+    outcome: str
+    verdict: str
+    operators: tuple[str, ...]
+
+
+class Digest(BaseModel):
+    """What a training learned from; `sha256` is over the files' hashes in their order."""
+
+    model_config = ConfigDict(frozen=True)
+
+    task: str
+    control_hz: float
+    arms: tuple[str, ...]
+    selection: Selection
+    episodes: tuple[Used, ...]
+    ticks: int
+    sha256: str
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """Episodes one after another. Row r is a state; the last row of an episode has no action (zeros stand there).
+
+    observations: float32[rows, layout.width], actions: float32[rows, arms, 7], sources: int8[rows, arms],
+    ends: int64[rows], the row of the last state of the same episode.
+    """
+
+    digest: Digest
+    layout: Layout
+    observations: NDArray[np.float32]
+    actions: NDArray[np.float32]
+    sources: NDArray[np.int8]
+    ends: NDArray[np.int64]
+
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """The rows that have an action: where a window may start."""
+        return np.flatnonzero(np.arange(len(self.ends)) < self.ends)
+
+
+def load_dataset(paths: Iterable[Path], selection: Selection, cache: Path | None = None) -> Dataset:
+    """Reads what `selection` takes of the episode files in `paths`.
+
+    cache: a folder of episodes that were read before; None reads every file.
+    Raises NotFound, Corrupt or InvalidInput: missing paths, damaged files, several tasks, rates or numbers of arms,
+    missing arms or observations, NaN, or nothing left to learn from.
+    """
+    chosen = select(candidates(paths), selection)
+    task, rate, arms = _facts(chosen[0])
+    layout = Layout.of_arms(task, len(arms))
+    hashes = [sha256_of(one.path) for one in chosen]
+    episodes = [
+        read_cached(one.file, layout, sha256, cache) for one, sha256 in zip(chosen, hashes, strict=True)
+    ]
+    digest = Digest(
+        task=task,
+        control_hz=rate,
+        arms=arms,
+        selection=selection,
+        episodes=tuple(map(_used, chosen, hashes, episodes)),
+        ticks=sum(len(episode.actions) for episode in episodes),
+        sha256=hashlib.sha256("".join(hashes).encode()).hexdigest(),
+    )
+    return join(digest, layout, episodes)
+
+
+def join(digest: Digest, layout: Layout, episodes: Iterable[EpisodeArrays]) -> Dataset:
+    """The episodes as one; each gets a row without action at its end."""
+    listed = list(episodes)
+    lengths = np.array([len(episode.observations) for episode in listed])
+    return Dataset(
+        digest=digest,
+        layout=layout,
+        observations=np.concatenate([episode.observations for episode in listed]),
+        actions=np.concatenate([_with_last_row(episode.actions) for episode in listed]),
+        sources=np.concatenate([_with_last_row(episode.sources) for episode in listed]),
+        ends=np.repeat(np.cumsum(lengths) - 1, lengths),
+    )
+
+
+def _facts(first: Candidate) -> tuple[str, float, tuple[str, ...]]:
+    episode = first.episode
+    if episode.task is None or episode.control_hz is None:
+        raise InvalidInput(f"{first.path} does not say its task and control rate; leave it out.")
+    return episode.task, episode.control_hz, episode.arms
+
+
+def _used(one: Candidate, sha256: str, episode: EpisodeArrays) -> Used:
+    return Used(
+        path=str(one.path),
+        sha256=sha256,
+        ticks=len(episode.actions),
+        outcome=one.outcome,
+        verdict=one.verdict,
+        operators=tuple(sorted({f"{shift.operator} {shift.name}".rstrip() for shift in one.drivers})),
+    )
+
+
+def _with_last_row(array: NDArray[S]) -> NDArray[S]:
+    return np.concatenate([array, np.zeros_like(array[:1])])

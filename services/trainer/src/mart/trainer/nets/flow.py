@@ -1,0 +1,69 @@
+"""A chunk of actions at once, by flow matching: the baseline that one would pick today.
+
+Lipman et al. (2022) and Liu et al. (2022), rectified: from noise x_0 to the demonstrated chunk x_1 on a straight line,
+
+    x_t = (1 - t) x_0 + t x_1,    loss = |v(x_t, t, o) - (x_1 - x_0)|^2,    dx/dt = v at run time (Euler)
+
+Chunks as in Diffusion Policy (Chi et al., 2023): two observations in, `chunk` actions out, the first few are done.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import torch
+from torch import Tensor, nn
+
+from mart.trainer.nets.stack import MLP, Generators, full
+
+_TIME_FEATURES = 32
+_FASTEST = 100.0  # the highest frequency that t is told in
+
+
+class Flow(nn.Module):
+    def __init__(
+        self,
+        seen: Tensor,
+        generators: Generators,
+        *,
+        size: int,
+        chunk: int,
+        hidden: Sequence[int],
+        steps: int,
+    ) -> None:
+        """seen: bool[M, C], which columns of what it is conditioned on are real. size: of one tick's action."""
+        super().__init__()
+        models = len(seen)
+        self.chunk, self.size, self.steps = chunk, size, steps
+        actions = full(models, chunk * size)
+        inputs = torch.cat((seen, actions, full(models, _TIME_FEATURES)), 1)
+        self.net = MLP(inputs, hidden, actions, generators)
+
+    def forward(self, x: Tensor, t: Tensor, seen: Tensor) -> Tensor:
+        """The velocity. x: [M, B, chunk * size], t: [M, B, 1] in [0, 1], seen: [M, B, C] → like x."""
+        return self.net(torch.cat((seen, x, _waves(t)), -1)).float()
+
+    def loss(self, seen: Tensor, actions: Tensor, t: Tensor, noise: Tensor) -> Tensor:
+        """Squared error of the velocity, for each tick of the chunk: [M, B, chunk].
+
+        actions: [M, B, chunk * size]. t: [M, B] uniform. noise: like actions, standard normal.
+        """
+        t = t[..., None]
+        error = self((1 - t) * noise + t * actions, t, seen) - (actions - noise)
+        return (error * error).unflatten(-1, (self.chunk, self.size)).mean(-1)
+
+    def sample(self, seen: Tensor, noise: Tensor) -> Tensor:
+        """A chunk: [M, B, chunk, size] within [-1, 1]."""
+        x = noise
+        for step in range(self.steps):
+            t = torch.full_like(x[..., :1], step / self.steps)
+            x = x + self(x, t, seen) / self.steps
+        return x.unflatten(-1, (self.chunk, self.size)).clamp(-1, 1)
+
+
+def _waves(t: Tensor) -> Tensor:
+    """t: [M, B, 1] → [M, B, 32]: sines and cosines of it, slow to fast."""
+    half = _TIME_FEATURES // 2
+    speeds = torch.exp(torch.linspace(0, math.log(_FASTEST), half, device=t.device))
+    return torch.cat((torch.sin(t * speeds), torch.cos(t * speeds)), -1)

@@ -1,0 +1,119 @@
+"""A stacked LSTM with its backward pass written out.
+
+Hochreiter and Schmidhuber (1997) with forget gates (Gers et al., 2000), as torch.nn.LSTM defines it, but one bias:
+
+    z_t = x_t W_i + h_{t-1} W_h + b            columns of z: the gates i, f, o and the candidate u
+    c_t = f_t c_{t-1} + i_t u_t                i, f, o = sigmoid(z), u = tanh(z)
+    h_t = o_t tanh(c_t)
+
+torch.nn.LSTM has no model axis, and torch.func.vmap does not reach into it. Left to autograd, the loop would add up the
+gradient of W_h tick by tick; written out, it is one product over all ticks. Matrix products run in `dtype`, bfloat16
+where the processor has it; gates and cells stay in float32.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+from mart.trainer.nets.stack import Generators, full, uniform
+
+State = tuple[Tensor, Tensor]  # h and c, each float32[M, B, H]
+
+
+def tick(z: Tensor, c: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    """z: [M, B, 4 H], c: [M, B, H] → gates and candidate as in z, the next c, the next h; all float32."""
+    width = c.shape[-1]
+    gates = torch.cat((torch.sigmoid(z[..., : 3 * width]), torch.tanh(z[..., 3 * width :])), dim=-1)
+    i, f, o, u = gates.chunk(4, dim=-1)
+    c = torch.addcmul(f * c, i, u)
+    return gates, c, o * torch.tanh(c)
+
+
+def tick_backward(gates: Tensor, c: Tensor, c_before: Tensor, d_h: Tensor, d_c: Tensor) -> State:
+    """The gradients with respect to z and to the cell before, from those to h and to c; all float32."""
+    i, f, o, u = gates.chunk(4, dim=-1)
+    tanh_c = torch.tanh(c)
+    d_c = torch.addcmul(d_c, d_h * o, 1 - tanh_c * tanh_c)
+    d_gates = torch.cat((d_c * u, d_c * c_before, d_h * tanh_c, d_c * i), dim=-1)
+    width = c.shape[-1]
+    slope = torch.cat((gates[..., : 3 * width] * (1 - gates[..., : 3 * width]), 1 - u * u), dim=-1)
+    return d_gates * slope, d_c * f
+
+
+class _Layer(torch.autograd.Function):
+    """One layer over T ticks from a state of zeros. x: [M, T, B, I] → h: float32[M, T, B, H]."""
+
+    @staticmethod
+    def forward(  # noqa: PLR0917 -- autograd passes them by position
+        ctx: Any, x: Tensor, w_i: Tensor, w_h: Tensor, b: Tensor, dtype: torch.dtype
+    ) -> Tensor:
+        models, ticks, batch, _ = x.shape
+        width = w_h.shape[1]
+        x, w_i, w_h = x.to(dtype), w_i.to(dtype), w_h.to(dtype)
+        z = torch.bmm(x.flatten(1, 2), w_i).view(models, ticks, batch, 4 * width)
+        gates = x.new_empty(models, ticks, batch, 4 * width, dtype=torch.float32)
+        cells = x.new_zeros(models, ticks + 1, batch, width, dtype=torch.float32)  # the one before each tick
+        hidden = x.new_zeros(models, ticks + 1, batch, width)
+        out = torch.empty_like(cells[:, 1:])
+        for t in range(ticks):
+            z_t = torch.baddbmm(z[:, t], hidden[:, t], w_h) if t else z[:, t]
+            gates[:, t], cells[:, t + 1], out[:, t] = tick(z_t + b, cells[:, t])
+            hidden[:, t + 1] = out[:, t]
+        ctx.save_for_backward(x, w_i, w_h, gates, cells, hidden)
+        return out
+
+    @staticmethod
+    def backward(ctx: Any, *d_out: Tensor) -> tuple[Tensor | None, Tensor, Tensor, Tensor, None]:
+        x, w_i, w_h, gates, cells, hidden = ctx.saved_tensors
+        d_z = torch.empty_like(gates, dtype=x.dtype)
+        d_h, d_c = torch.zeros_like(cells[:, 0]), torch.zeros_like(cells[:, 0])
+        for t in reversed(range(x.shape[1])):
+            d_h = d_h + d_out[0][:, t]
+            d_z[:, t], d_c = tick_backward(gates[:, t], cells[:, t + 1], cells[:, t], d_h, d_c)
+            if t:
+                d_h = torch.bmm(d_z[:, t], w_h.mT).float()
+        flat = d_z.flatten(1, 2)
+        d_x = torch.bmm(flat, w_i.mT).view(x.shape).float() if ctx.needs_input_grad[0] else None
+        d_w_i = torch.bmm(x.flatten(1, 2).mT, flat).float()
+        d_w_h = torch.bmm(hidden[:, 1:-1].flatten(1, 2).mT, d_z[:, 1:].flatten(1, 2)).float()
+        return d_x, d_w_i, d_w_h, flat.float().sum(1, keepdim=True), None
+
+
+class LSTM(nn.Module):
+    """Layers of equal width. `dtype`: of the matrix products while training."""
+
+    def __init__(
+        self, inputs: Tensor, width: int, layers: int, generators: Generators, dtype: torch.dtype
+    ) -> None:
+        """inputs: bool[M, I], which columns are real."""
+        super().__init__()
+        self.width, self.dtype = width, dtype
+        models = len(inputs)
+        outputs, fan = full(models, 4 * width), torch.full((models,), width)
+        rows = [inputs, *(full(models, width) for _ in range(layers - 1))]
+        self.w_i = nn.ParameterList(uniform(real, outputs, fan, generators) for real in rows)
+        self.w_h = nn.ParameterList(uniform(full(models, width), outputs, fan, generators) for _ in rows)
+        self.b = nn.ParameterList(uniform(full(models, 1), outputs, fan, generators) for _ in rows)
+
+    def forward(self, x: Tensor) -> Tensor:
+        """From a state of zeros. x: [M, T, B, I] → [M, T, B, H]."""
+        for w_i, w_h, b in zip(self.w_i, self.w_h, self.b, strict=True):
+            x = _Layer.apply(x, w_i, w_h, b, self.dtype)  # type: ignore[no-untyped-call]
+        return x
+
+    def start(self, batch: int) -> list[State]:
+        """A state of zeros for each layer."""
+        zeros = self.b[0].new_zeros(len(self.b[0]), batch, self.width)
+        return [(zeros, zeros) for _ in self.w_h]
+
+    def step(self, x: Tensor, state: Sequence[State]) -> tuple[Tensor, list[State]]:
+        """One tick in float32. x: [M, B, I] → h of the last layer, and the next state."""
+        after = []
+        for w_i, w_h, b, (h, c) in zip(self.w_i, self.w_h, self.b, state, strict=True):
+            _, c_after, x = tick(torch.bmm(x, w_i) + torch.bmm(h, w_h) + b, c)
+            after.append((x, c_after))
+        return x, after

@@ -1,0 +1,140 @@
+"""Real episodes: the sim's world and its scripted experts, written by the recorder's writer. No bus, no time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from mart.protocol import codec
+from mart.protocol.episodes.reader import EpisodeFile
+from mart.protocol.messages import (
+    OPERATOR_SCRIPT,
+    OUTCOME_SUCCESS,
+    ArmState,
+    Event,
+    Observation,
+    Operator,
+    Outcome,
+    Seat,
+    State,
+    TickStamps,
+    pose_message,
+)
+from mart.protocol.recording import RoomRecord, Verdict, VerificationRecord
+from mart.recorder.entry import event_entry, state_entries
+from mart.recorder.episode import Episode, RoomFacts
+from mart.recorder.save import part_path, save
+from mart.recorder.writer import EpisodeWriter
+from mart.sim.experts import Expert, get_skill
+from mart.sim.world import World
+
+TASK = "two_arm_multi_cube_lifting"
+ROOM = "room-1"
+PERIOD_NS = 50_000_000
+START_NS = 1_790_000_000_000_000_000  # 2026-09-21, UTC
+_MOST_TICKS = 400
+
+Source = Callable[[int, int], Operator]  # of a tick and an arm's index
+
+
+def by_scripts(_tick: int, _arm: int) -> Operator:
+    return OPERATOR_SCRIPT
+
+
+def perform(world: World, seed: int, number: int = 1, source: Source = by_scripts) -> list[State]:
+    """The states of one episode, from the reset to success."""
+    world.reset(seed)
+    randoms = np.random.default_rng(seed).spawn(len(world.arms))
+    experts = {
+        arm: Expert(world.task, arm, get_skill("expert"), random)
+        for arm, random in zip(world.arms, randoms, strict=True)
+    }
+    targets = {arm: world.tool_pose_in_base(arm) for arm in world.arms}
+    states = [_state(world, number, 0, None, source)]
+    while not world.progress().success and len(states) <= _MOST_TICKS:
+        actions = []
+        for arm, expert in experts.items():
+            intent = expert.act(world.observations_for(arm), world.sim_time_s)
+            if intent.engaged:
+                targets[arm] = intent.target_tool_in_base
+            actions.append(world.action_for(arm, targets[arm], intent.gripper))
+        world.step(actions)
+        states.append(_state(world, number, len(states), np.array(actions), source))
+    return states
+
+
+def write(
+    root: Path,
+    world: World,
+    states: Sequence[State],
+    *,
+    task: str = TASK,
+    control_hz: float = 20.0,
+    outcome: Outcome = OUTCOME_SUCCESS,
+    verdict: Verdict = Verdict.VERIFIED,
+    name: str = "expert",
+) -> Path:
+    """An episode file as the recorder leaves it."""
+    first, last = states[0], states[-1]
+    seats = [
+        Seat(arm=arm.arm, operator=OPERATOR_SCRIPT, epoch=arm.seat_epoch, name=name) for arm in first.arms
+    ]
+    started = Event.EpisodeStarted(
+        number=first.episode, seats=seats, task=task, control_hz=control_hz, model_sha256=world.model_sha256
+    )
+    ended = Event.EpisodeEnded(
+        number=first.episode, outcome=outcome, ticks=last.episode_tick, last_tick=last.tick
+    )
+    events = (
+        Event(wall_ns=first.stamps.sent_ns, room=ROOM, tick=first.tick, episode_started=started),
+        Event(wall_ns=last.stamps.sent_ns, room=ROOM, tick=last.tick, episode_ended=ended),
+    )
+    facts, episode = RoomFacts(ROOM), Episode(first)
+    for event in events:
+        facts.learn_event(event)
+        episode.add_event(event)
+    file = EpisodeWriter(part_path(root, episode, facts))
+    for event in events:
+        file.add(event_entry(event, codec.encode(event), event.wall_ns))
+    for state in states:
+        episode.add_state(state)
+        for entry in state_entries(state, codec.encode(state), state.stamps.sent_ns, task):
+            file.add(entry)
+    said = VerificationRecord(verdict=verdict, detail="")
+
+    def verify(_file: EpisodeFile, _room: RoomRecord) -> VerificationRecord:
+        return said
+
+    return save(file, episode, facts, root, verify, repaired=False).path
+
+
+def _state(world: World, number: int, tick: int, actions: np.ndarray | None, source: Source) -> State:
+    seen = world.observations()
+    stamp_ns = START_NS + number * 10**12 + tick * PERIOD_NS
+    arms = [
+        ArmState(
+            arm=arm,
+            tool_in_base=pose_message(world.tool_pose_in_base(arm)),
+            gripper=world.gripper(arm),
+            action=[] if actions is None else actions[index].tolist(),
+            source=source(tick, index),
+            seat_epoch=1,
+            sequence=tick,
+            fresh=tick > 0,
+        )
+        for index, arm in enumerate(world.arms)
+    ]
+    return State(
+        room=ROOM,
+        tick=tick + 1,
+        sim_time_s=world.sim_time_s,
+        stamps=TickStamps(due_ns=stamp_ns, fired_ns=stamp_ns, stepped_ns=stamp_ns, sent_ns=stamp_ns),
+        integration_state=world.integration_state(),
+        arms=arms,
+        observations=[Observation(name=name, value=value.ravel()) for name, value in seen.items()],
+        episode=number,
+        episode_tick=tick,
+        boot=7,
+    )
