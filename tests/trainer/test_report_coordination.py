@@ -78,6 +78,12 @@ def test_what_is_lost_and_what_is_left_are_all(dones: list[set[str]]) -> None:
     assert all(stage.passed <= stage.entered for stage in found.stages)
 
 
+def test_what_was_reached_and_lost_again_is_lost_in_the_last_stage() -> None:
+    names = frozenset(subtask.name for subtask in WIPING.subtasks)
+    found = coordination(WIPING, [Attempt(names, success=True), Attempt(names, success=False)])
+    assert [(stage.entered, stage.passed) for stage in found.stages] == [(2, 2), (2, 1)]
+
+
 def test_a_subtask_out_of_order_does_not_count_as_a_stage() -> None:
     last: Subtask = ASSEMBLY.subtasks[-1]
     found = coordination(ASSEMBLY, [Attempt(frozenset({last.name}), success=False)])

@@ -24,20 +24,22 @@ JOB_STATE_FAILED: JobState
 JOB_STATE_CANCELLED: JobState
 
 class Order(_message.Message):
-    __slots__ = ("model", "task", "data", "preset", "seeds", "evaluation_episodes")
+    __slots__ = ("model", "task", "data", "preset", "seeds", "evaluation_episodes", "score_episodes")
     MODEL_FIELD_NUMBER: _ClassVar[int]
     TASK_FIELD_NUMBER: _ClassVar[int]
     DATA_FIELD_NUMBER: _ClassVar[int]
     PRESET_FIELD_NUMBER: _ClassVar[int]
     SEEDS_FIELD_NUMBER: _ClassVar[int]
     EVALUATION_EPISODES_FIELD_NUMBER: _ClassVar[int]
+    SCORE_EPISODES_FIELD_NUMBER: _ClassVar[int]
     model: str
     task: str
     data: str
     preset: str
     seeds: _containers.RepeatedScalarFieldContainer[int]
     evaluation_episodes: int
-    def __init__(self, model: _Optional[str] = ..., task: _Optional[str] = ..., data: _Optional[str] = ..., preset: _Optional[str] = ..., seeds: _Optional[_Iterable[int]] = ..., evaluation_episodes: _Optional[int] = ...) -> None: ...
+    score_episodes: int
+    def __init__(self, model: _Optional[str] = ..., task: _Optional[str] = ..., data: _Optional[str] = ..., preset: _Optional[str] = ..., seeds: _Optional[_Iterable[int]] = ..., evaluation_episodes: _Optional[int] = ..., score_episodes: _Optional[int] = ...) -> None: ...
 
 class Job(_message.Message):
     __slots__ = ("id", "sweep", "order", "state", "executor", "submitted_ns", "started_ns", "ended_ns", "attempt", "detail", "run", "progress")

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from mart.protocol.cli import json_option, print_result
 
+if TYPE_CHECKING:
+    from mart.trainer.report import paper
+
 _folder = click.argument("folder", type=click.Path(path_type=Path, exists=True, file_okay=False))
+_page = click.option(
+    "--html", type=click.Path(path_type=Path, dir_okay=False), help="Also write a page here."
+)
 
 
 @click.group()
@@ -26,3 +33,71 @@ def coordination(folder: Path, as_json: bool) -> None:
 
     rows = [degradation.row(attempts.task, attempts.attempts) for attempts in read_attempts(folder)]
     print_result({"tasks": rows}, degradation.text(rows), as_json)
+
+
+@report.command()
+@_folder
+@_page
+@json_option
+def table2(folder: Path, html: Path | None, as_json: bool) -> None:
+    """Table II: what the judged runs in FOLDER achieve, beside the paper's figures for experienced operators."""
+    from mart.trainer.report import paper
+
+    _table("Table II: experienced operators", folder, paper.EXPERIENCED, html, as_json=as_json)
+
+
+@report.command()
+@_folder
+@_page
+@json_option
+def table3(folder: Path, html: Path | None, as_json: bool) -> None:
+    """Table III: what the judged runs in FOLDER achieve, beside the paper's figures for the user study."""
+    from mart.trainer.report import paper
+
+    _table("Table III: user study", folder, paper.USER_STUDY, html, as_json=as_json)
+
+
+@report.command()
+@_folder
+@click.option(
+    "--checkpoint",
+    "checkpoints",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="A joint model whose reliance on the others is shown beside; may be repeated, one a task.",
+)
+@_page
+@json_option
+def dependence(folder: Path, checkpoints: tuple[Path, ...], html: Path | None, as_json: bool) -> None:
+    """How much each arm's next action depends on the other arms, over the successful episodes in FOLDER."""
+    from mart.trainer.checkpoint import read_record
+    from mart.trainer.policies import load_policy
+    from mart.trainer.report.coupling import read_couplings
+
+    names = sorted({read_record(path).name for path in checkpoints})
+    couplings = read_couplings(folder, [load_policy(path) for path in checkpoints])
+    lines = [
+        "Share of an arm's action error that knowing the other arms removes, held out, over whole episodes"
+    ]
+    for coupling in couplings:
+        arms = ", ".join(f"{arm.name} {100 * own.overall:.1f} %" for arm, own in coupling.found.items())
+        lines.append(f"{coupling.task.title}: {arms}  ({coupling.episodes} episodes)")
+    if html is not None:
+        from mart.trainer.report.html import dependence_page, save
+
+        save(html, dependence_page(couplings, " and ".join(names)))
+        lines.append(f"The page is {html}.")
+    print_result({"tasks": [coupling.as_json() for coupling in couplings]}, "\n".join(lines), as_json)
+
+
+def _table(title: str, folder: Path, reported: paper.Results, html: Path | None, *, as_json: bool) -> None:
+    from mart.trainer.report.results import as_rows, in_words, read_results
+
+    results = read_results(folder, title, reported)
+    text = in_words(results)
+    if html is not None:
+        from mart.trainer.report.html import results_page, save
+
+        save(html, results_page(results))
+        text += f"\n\nThe page is {html}."
+    print_result({"title": title, "rows": as_rows(results)}, text, as_json)

@@ -2,8 +2,9 @@
 
 The paper (section "System Analysis"): an episode passes through stages, and the marginal degradation of a stage is the
 best success rate that it could have had (100 % for the first, the rate of the stage before for the others) less the one
-that it had. That is the share of all episodes that got as far as this stage and no further, so the degradations and
-the rate of the last stage add up to 100 %.
+that it had. That is the share of all episodes that got as far as this stage and no further. Whoever has passed the last
+stage has succeeded (a tray that was up and then tipped over has not), so the degradations and the success rate add up
+to 100 %.
 
 Stages are the task catalogue's subtasks in order, neighbours of the same kind taken together: Table Assembly is
 uncoordinated and then coordinated, Lift Wiping the other way round.
@@ -53,11 +54,14 @@ class Coordination:
 
 
 def coordination(task: Task, attempts: Sequence[Attempt]) -> Coordination:
-    stages = []
+    kinds = groupby(task.subtasks, lambda subtask: subtask.coordinated)
+    planned = [(coordinated, tuple(subtask.name for subtask in group)) for coordinated, group in kinds]
+    stages: list[Stage] = []
     left: Sequence[Attempt] = attempts
-    for coordinated, group in groupby(task.subtasks, lambda subtask: subtask.coordinated):
-        names = tuple(subtask.name for subtask in group)
+    for number, (coordinated, names) in enumerate(planned, start=1):
         passed = [attempt for attempt in left if attempt.done.issuperset(names)]
+        if number == len(planned):
+            passed = [attempt for attempt in passed if attempt.success]
         stages.append(Stage(names, coordinated, len(left), len(passed)))
         left = passed
     return Coordination(task.name, tuple(stages), len(attempts), sum(attempt.success for attempt in attempts))

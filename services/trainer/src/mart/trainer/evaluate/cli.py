@@ -1,0 +1,112 @@
+"""`mart eval`. Heavy modules are imported inside: `mart --help` loads this file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from mart.protocol.cli import json_option, print_result
+
+if TYPE_CHECKING:
+    from mart.trainer.evaluate.judge import Judge
+    from mart.trainer.evaluate.result import Evaluation
+
+
+@click.command("eval")
+@click.option(
+    "--checkpoint",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="A checkpoint; or a run, whose checkpoints are all judged and the best ones scored in fresh worlds.",
+)
+@click.option("--task", help="Refuse checkpoints of another task.")
+@click.option(
+    "--episodes", default=30, show_default=True, type=click.IntRange(1, 10_000), help="Of a checkpoint."
+)
+@click.option(
+    "--score-episodes",
+    default=100,
+    show_default=True,
+    type=click.IntRange(0, 10_000),
+    help="Of a run's best checkpoints, in fresh worlds; 0: none.",
+)
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Decides the worlds.")
+@click.option("--time-limit", type=click.FloatRange(0, 3600, min_open=True), help="Seconds of an episode.")
+@click.option(
+    "--replicas", default="", help="Running replicas, separated by commas.  [default: one is started]"
+)
+@click.option(
+    "--keep", default=4, show_default=True, type=click.IntRange(0, 16), help="Failures that are kept."
+)
+@click.option("--device", default="cpu", show_default=True, help="Where the policy computes.")
+@json_option
+def evaluate(
+    *,
+    checkpoint: Path,
+    task: str | None,
+    episodes: int,
+    score_episodes: int,
+    seed: int,
+    time_limit: float | None,
+    replicas: str,
+    keep: int,
+    device: str,
+    as_json: bool,
+) -> None:
+    """Judge a checkpoint, or a whole run, by episodes in worlds that every model is judged in."""
+    from mart.trainer.evaluate import words
+    from mart.trainer.evaluate.judge import Judge, Rules
+    from mart.trainer.evaluate.replicas import worlds
+
+    rules = Rules(episodes, score_episodes, seed, time_limit, keep)
+    chosen = _chosen(checkpoint, task)
+    with worlds([name for name in replicas.split(",") if name]) as client:
+        judge = Judge(client, rules, device)
+        evaluations = _judged(judge, chosen, as_json=as_json)
+    result: dict[str, Any] = {"evaluations": [words.as_json(found) for found in evaluations]}
+    print_result(result, words.summary(evaluations), as_json)
+
+
+def _chosen(checkpoint: Path, task: str | None) -> Path:
+    """Looked at before worlds are started. Raises NotFound, Corrupt, InvalidInput."""
+    from mart.trainer.checkpoint import RECORD, read_record
+    from mart.trainer.evaluate.judge import require_task
+    from mart.trainer.runs import REQUEST, RunDirectory
+
+    if (checkpoint / REQUEST).is_file() and not (checkpoint / RECORD).is_file():
+        run = RunDirectory(checkpoint)
+        first = [
+            run.checkpoint(updates, seed)
+            for updates in run.checkpointed()[:1]
+            for seed in run.seeds(updates)[:1]
+        ]
+    else:
+        first = [checkpoint]
+    for path in first:
+        read_record(path)
+        if task is not None:
+            require_task(path, task)
+    return checkpoint
+
+
+def _judged(judge: Judge, chosen: Path, *, as_json: bool) -> list[Evaluation]:
+    from mart.trainer.checkpoint import RECORD
+    from mart.trainer.evaluate import words
+    from mart.trainer.evaluate.judge import run_of
+    from mart.trainer.evaluate.seeds import Purpose
+    from mart.trainer.runs import RunDirectory
+
+    def say(evaluation: Evaluation) -> None:
+        if not as_json:
+            click.echo(words.line(evaluation), err=True)
+
+    if not (chosen / RECORD).is_file():
+        run = RunDirectory(chosen)
+        judge.new(run, say)
+        judge.score(run, say)
+        return [*judge.known(run, Purpose.SELECTION), *judge.known(run, Purpose.SCORE)]
+    run_or_none = run_of(chosen)
+    kept_in = None if run_or_none is None else run_or_none.path / "rollouts"
+    return judge.checkpoints([chosen], Purpose.SELECTION, kept_in)

@@ -1,0 +1,89 @@
+"""Where worlds come from: replicas on the platform's bus, or a router and a replica of our own.
+
+The trainer never imports the sim. It starts `mart replica` as anybody would, where that command is installed.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import subprocess
+import tempfile
+import threading
+from collections.abc import Iterator, Sequence
+from importlib.metadata import entry_points
+from pathlib import Path
+
+from mart.protocol import clock, keys
+from mart.protocol.bus.base import Bus
+from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.errors import Unavailable
+from mart.protocol.rollout import RolloutClient
+from mart.protocol.settings import Settings
+from mart.trainer import leash
+
+_START_TIMEOUT_S = 60.0
+_NAME = "replica-1"
+
+
+@contextlib.contextmanager
+def worlds(replicas: Sequence[str]) -> Iterator[RolloutClient]:
+    """On these replicas of the bus; with none named, on one that is started for it.
+
+    Raises Unavailable where a replica does not answer, or none is named and the sim is not installed here.
+    """
+    with contextlib.ExitStack() as stack:
+        bus, names = stack.enter_context(_shared(replicas) if replicas else _private())
+        yield stack.enter_context(contextlib.closing(RolloutClient(bus, names)))
+
+
+@contextlib.contextmanager
+def _shared(replicas: Sequence[str]) -> Iterator[tuple[Bus, Sequence[str]]]:
+    with ZenohBus.connect(Settings().router, wait_for_router=False) as bus:
+        yield bus, replicas
+
+
+@contextlib.contextmanager
+def _private() -> Iterator[tuple[Bus, Sequence[str]]]:
+    if not entry_points(group="mart.commands", name="replica"):
+        raise Unavailable(
+            "No sim can be reached for rollouts: none is installed here; name running replicas with --replicas."
+        )
+    endpoint = f"tcp/127.0.0.1:{_free_port()}"
+    environment = {"MART_ROUTER": endpoint, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    with contextlib.ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        log = stack.enter_context((folder / "log").open("wb"))
+
+        def start(*command: str) -> subprocess.Popen[bytes]:
+            process = leash.start((leash.MART, *command), log, environment)
+            stack.callback(leash.stop, process)
+            return process
+
+        start("router")
+        replica = start("replica", "--name", _NAME)
+        with _connected(endpoint, replica, folder / "log") as bus:
+            yield bus, (_NAME,)
+
+
+@contextlib.contextmanager
+def _connected(endpoint: str, replica: subprocess.Popen[bytes], log: Path) -> Iterator[Bus]:
+    """When the replica's token is there."""
+    up = threading.Event()
+    deadline_s = clock.monotonic_s() + _START_TIMEOUT_S
+    with ZenohBus.connect(endpoint) as bus:
+        watch = bus.watch(keys.alive("replica", _NAME), lambda _key, alive: up.set() if alive else None)
+        with contextlib.closing(watch):
+            while not up.wait(0.5):
+                if replica.poll() is not None or clock.monotonic_s() > deadline_s:
+                    words = log.read_text(errors="replace").strip().rpartition("\n")[2]
+                    raise Unavailable(
+                        f"The replica for rollouts did not start: {words or 'it says nothing'}."
+                    )
+        yield bus
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

@@ -1,0 +1,154 @@
+"""Policies in worlds, in lockstep: everything that acts in one tick is one request."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.protocol.errors import InvalidInput
+from mart.protocol.rollout import ACTION_SIZE, RolloutClient, Worlds
+from mart.protocol.tasks import Task, get_task
+from mart.trainer.evaluate.result import Outcome, Played
+
+if TYPE_CHECKING:
+    from mart.trainer.policies.policy import Policy
+
+Array = NDArray[np.float64]
+
+# Fixed, so that an episode is the same however many policies are judged together: what a policy samples depends on the
+# number of the world in its batch.
+SEEDS_AT_ONCE = 50
+_WORLDS_AT_ONCE = 250
+
+
+@dataclass(frozen=True)
+class Course:
+    """One episode and what was done in it. actions: float64[ticks, arms, 7]."""
+
+    played: Played
+    actions: Array
+
+
+def play(
+    policies: Sequence[Policy],
+    client: RolloutClient,
+    seeds: Sequence[int],
+    policy_seed: int,
+    time_limit_s: float | None = None,
+) -> list[list[Course]]:
+    """One episode of every policy in every world; the courses by policy, in the order of `seeds`.
+
+    All policies are of one task and rate and drive all of its arms. An episode ends with success, with an irrecoverable
+    failure, or after `time_limit_s`, the length of the task's trials unless told.
+    Raises InvalidInput where the policies do not fit together.
+    """
+    task = _common_task(policies)
+    together = _WORLDS_AT_ONCE // min(len(seeds), SEEDS_AT_ONCE)
+    panels = [policies[first : first + together] for first in range(0, len(policies), together)]
+    limit_s = task.trial_limit_s if time_limit_s is None else time_limit_s
+    courses: list[list[Course]] = []
+    for panel in panels:
+        found: list[list[Course]] = [[] for _ in panel]
+        for first in range(0, len(seeds), SEEDS_AT_ONCE):
+            batch = _Batch(task, panel, seeds[first : first + SEEDS_AT_ONCE])
+            batch.play(client, policy_seed + first, limit_s)
+            for of_policy, more in zip(found, batch.courses(), strict=True):
+                of_policy.extend(more)
+        courses += found
+    return courses
+
+
+class _Batch:
+    """Worlds of several policies side by side: those of policy k are `slices[k]`."""
+
+    def __init__(self, task: Task, policies: Sequence[Policy], seeds: Sequence[int]) -> None:
+        number = len(policies) * len(seeds)
+        self._task = task
+        self._policies = policies
+        self._seeds = seeds
+        self._slices = [slice(k * len(seeds), (k + 1) * len(seeds)) for k in range(len(policies))]
+        self._done = np.zeros((number, len(task.subtasks)), bool)
+        self._success = np.zeros(number, bool)
+        self._failed = np.zeros(number, bool)
+        self._ticks = np.zeros(number, int)
+        self._actions: list[Array] = []
+
+    def play(self, client: RolloutClient, policy_seed: int, limit_s: float) -> None:
+        control_hz, arms = self._policies[0].control_hz, len(self._task.arms)
+        worlds = client.reset(self._task.name, list(self._seeds) * len(self._policies), control_hz, arms)
+        for policy in self._policies:
+            policy.begin(len(self._seeds), policy_seed)
+        self._look(worlds)
+        for _ in range(round(limit_s * control_hz)):
+            running = ~self._ended
+            if not running.any():
+                return
+            self._actions.append(self._act(worlds.observations))
+            self._ticks += running
+            worlds = client.step(self._actions[-1], running)
+            self._look(worlds)
+
+    @property
+    def _ended(self) -> NDArray[np.bool_]:
+        return self._success | self._failed
+
+    def _act(self, observations: Mapping[str, Array]) -> Array:
+        """float64[worlds, arms, 7]; zeros where a policy has nothing left to play."""
+        actions = np.zeros((len(self._ticks), len(self._task.arms), ACTION_SIZE))
+        for policy, own in zip(self._policies, self._slices, strict=True):
+            if not self._ended[own].all():
+                actions[own] = policy.act({name: observations[name][own] for name in policy.needs})
+        return actions
+
+    def _look(self, worlds: Worlds) -> None:
+        """Worlds that have ended stand still, so looking again changes nothing."""
+        self._done |= worlds.subtasks
+        self._success |= worlds.success
+        self._failed |= worlds.failed & ~worlds.success
+
+    def courses(self) -> list[list[Course]]:
+        actions = np.array(self._actions)
+        return [
+            [
+                self._course(world, seed, actions)
+                for world, seed in zip(range(own.start, own.stop), self._seeds, strict=True)
+            ]
+            for own in self._slices
+        ]
+
+    def _course(self, world: int, seed: int, actions: Array) -> Course:
+        ticks = int(self._ticks[world])
+        names = [subtask.name for subtask in self._task.subtasks]
+        played = Played(
+            seed=seed,
+            outcome=self._outcome(world),
+            time_s=ticks / self._policies[0].control_hz,
+            done=tuple(name for name, done in zip(names, self._done[world], strict=True) if done),
+        )
+        return Course(played, actions[:ticks, world])
+
+    def _outcome(self, world: int) -> Outcome:
+        if self._success[world]:
+            return "success"
+        return "failure" if self._failed[world] else "time"
+
+
+def _common_task(policies: Sequence[Policy]) -> Task:
+    kinds = {(policy.task, policy.control_hz) for policy in policies}
+    if len(kinds) != 1:
+        given = ", ".join(f"{task} at {control_hz:g} Hz" for task, control_hz in sorted(kinds))
+        raise InvalidInput(
+            f"Policies of {given or 'no task'} were given; judge those of one task and rate together."
+        )
+    task = get_task(policies[0].task, len(policies[0].arms))
+    needed = ", ".join(task.arm_names)
+    for policy in policies:
+        if policy.arms != task.arm_names:
+            raise InvalidInput(
+                f"A policy for {', '.join(policy.arms)} was given; {task.name} needs {needed}."
+            )
+    return task

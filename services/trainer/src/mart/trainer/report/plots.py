@@ -1,0 +1,134 @@
+"""Figures as SVG that takes the page's own font. None needs its colours to be read: shapes and labels say the same."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from mart.protocol.tasks import Arm
+from mart.trainer.report.dependence import BINS, Dependence
+from mart.trainer.report.results import Results
+
+_QUIET, _LINE, _ACCENT = "#6b7280", "#d8dbe0", "#0072B2"  # as in calm.mplstyle and the pages
+_STYLE = Path(__file__).with_name("calm.mplstyle")
+# Of lines that differ in kind: Okabe and Ito's colours, each with a dash of its own.
+_LINES = (
+    ("#0072B2", "-"), ("#D55E00", "-"), ("#009E73", "-"), ("#CC79A7", "-"), ("#0072B2", "--"), ("#D55E00", "--"),
+    ("#009E73", "--"), ("#CC79A7", "--"),
+)  # fmt: skip
+
+
+def success(results: Results, task: str) -> str:
+    """Ours in fresh worlds with its interval, ours by the paper's protocol, and the paper's; a row a model."""
+    models = results.models(task)
+    with _figure(6.4, 0.9 + 0.42 * len(models)) as (figure, axes):
+        for row, model in enumerate(models):
+            judged, reported = results.cells[task][model].judgement, results.paper(model, task)
+            if reported is not None:
+                _bar(axes, row + 0.16, reported.mean, (reported.deviation, reported.deviation), filled=False)
+            axes.plot(100 * judged.paper.mean, row, "|", color=_ACCENT, markersize=10, markeredgewidth=1.5)
+            if judged.honest is not None and judged.pooled is not None:
+                low, high = judged.pooled.interval
+                mean = judged.pooled.value
+                _bar(axes, row, 100 * mean, (100 * (mean - low), 100 * (high - mean)), filled=True)
+        _rows(axes, models)
+        axes.set_xlim(-3, 103)
+        axes.set_xlabel("success, %")
+        return _svg(figure, f"Success of each model on {task}")
+
+
+def learning(results: Results, task: str) -> str:
+    """Success of checkpoints over training, a line a model."""
+    with _figure(6.4, 2.8) as (figure, axes):
+        for (color, dash), model in zip(_LINES, results.models(task), strict=False):
+            course = results.cells[task][model].course
+            axes.plot(
+                [u for u, _ in course], [100 * rate for _, rate in course], dash, color=color, label=model
+            )
+        axes.set_ylim(-3, 103)
+        axes.set_xlabel("updates")
+        axes.set_ylabel("success, %")
+        axes.grid(axis="y")
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        return _svg(figure, f"Success over training on {task}")
+
+
+def dependences(
+    found: Mapping[Arm, Dependence],
+    reached: Sequence[tuple[str, float, bool]],
+    reliance: Mapping[Arm, Sequence[float]],
+) -> str:
+    """Dependence over an episode, a line an arm.
+
+    reached: subtask, the share of an episode when it is done, whether it is coordinated. reliance: of a model.
+    """
+    with _figure(6.4, 3.0) as (figure, axes):
+        middle = [100 * (i + 0.5) / BINS for i in range(BINS)]
+        for arm, own in found.items():
+            axes.fill_between(middle, 100 * own.low, 100 * own.high, color=arm.color, alpha=0.12, linewidth=0)
+            axes.plot(middle, 100 * own.score, color=arm.color)
+            axes.annotate(
+                arm.name,
+                (middle[-1], 100 * own.score[-1]),
+                (6, 0),
+                textcoords="offset points",
+                color=arm.color,
+            )
+        for arm, used in reliance.items():
+            axes.plot(middle, [100 * share for share in used], ":", color=arm.color)
+        axes.axhline(0, color=_LINE, linewidth=1, zorder=0)
+        for name, share, coordinated in reached:
+            axes.axvline(
+                100 * share, color=_QUIET, linewidth=0.8, linestyle="-" if coordinated else (0, (1, 3))
+            )
+            axes.annotate(
+                name,
+                (100 * share, 1.0),
+                (0, 3),
+                xycoords=("data", "axes fraction"),
+                textcoords="offset points",
+                rotation=35,
+                fontsize=8,
+                color=_QUIET,
+            )
+        axes.set_xlim(0, 100)
+        axes.set_xlabel("share of the episode, %")
+        axes.set_ylabel("error that knowing\nthe others removes, %")
+        return _svg(figure, "Dependence on the other arms over an episode")
+
+
+def _bar(axes: Axes, row: float, value: float, reach: tuple[float, float], *, filled: bool) -> None:
+    """A dot and how far it may be off, below and above: filled for ours, hollow for the paper's."""
+    color = _ACCENT if filled else _QUIET
+    axes.plot([value - reach[0], value + reach[1]], [row, row], color=color, linewidth=1.2)
+    axes.plot(value, row, "o", color=color, markerfacecolor=color if filled else "white", markersize=6)
+
+
+def _rows(axes: Axes, labels: Sequence[str]) -> None:
+    axes.set_yticks(range(len(labels)), labels)
+    axes.set_ylim(len(labels) - 0.4, -0.6)
+    axes.spines["left"].set_visible(False)
+    axes.grid(axis="x")
+    axes.set_axisbelow(True)
+
+
+@contextmanager
+def _figure(width_in: float, height_in: float) -> Iterator[tuple[Figure, Axes]]:
+    with mpl.rc_context(fname=_STYLE):
+        figure = Figure(figsize=(width_in, height_in), layout="constrained")
+        yield figure, figure.subplots()
+
+
+def _svg(figure: Figure, label: str) -> str:
+    """For use inside a page, with a name for those who do not see it."""
+    stream = io.StringIO()
+    figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+    text = stream.getvalue()
+    svg = text[text.index("<svg") :]
+    return svg.replace("<svg", f'<svg role="img" aria-label="{label}"', 1)

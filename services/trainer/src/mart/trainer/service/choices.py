@@ -1,0 +1,66 @@
+"""What can be ordered here."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+
+from mart.protocol.messages import DataSet, Order, TrainerReply
+from mart.protocol.recording import SUFFIX
+from mart.protocol.tasks import task_names
+from mart.trainer.grid import BASELINES, PAPER, Model
+from mart.trainer.presets import PRESETS
+from mart.trainer.service.orders import DEFAULT_DATA, DEFAULT_PRESET, SCORE_EPISODES
+from mart.trainer.service.settings import TrainerSettings
+
+_MAX_DATA_SETS = 200
+_NO_DATA = ("runs", "policies", "logs", "secrets", "certificates")
+_WORDS = {"none": "nobody", "joint": "one network for all arms", "per-arm": "one network an arm"}
+_DEFAULT_MODEL = "r-HBC"
+
+
+def choices(settings: TrainerSettings, executors: Iterable[str]) -> TrainerReply.Choices:
+    data = data_sets(settings.data_dir)
+    return TrainerReply.Choices(
+        models=[_model(name, model) for name, model in (PAPER | BASELINES).items()],
+        tasks=task_names(),
+        presets=sorted(PRESETS, key=lambda name: name != DEFAULT_PRESET),
+        data=data,
+        executors=list(executors),
+        device=settings.device,
+        order=Order(
+            model=_DEFAULT_MODEL,
+            task=task_names()[0],
+            data=data[0].path if data else DEFAULT_DATA,
+            preset=DEFAULT_PRESET,
+            seeds=[0, 1, 2],
+            evaluation_episodes=30,
+            score_episodes=SCORE_EPISODES,
+        ),
+    )
+
+
+def data_sets(data_dir: Path) -> list[DataSet]:
+    """Folders with episodes: `episodes` first, days of one recording taken together."""
+    counted: Counter[str] = Counter()
+    for path in data_dir.rglob(f"*{SUFFIX}"):
+        folder = path.parent.relative_to(data_dir)
+        if not folder.parts or folder.parts[0] in _NO_DATA:
+            continue
+        if folder.name.count("-") == 2 and folder.name.replace("-", "").isdigit():
+            folder = folder.parent
+        counted[folder.as_posix()] += 1
+    ordered = sorted(counted.items(), key=lambda item: (item[0] != DEFAULT_DATA, item[0]))
+    return [DataSet(path=path, episodes=episodes) for path, episodes in ordered[:_MAX_DATA_SETS]]
+
+
+def _model(name: str, model: Model) -> TrainerReply.Choices.Model:
+    about = f"{_WORDS[model.actor]} acts".capitalize()
+    if model.planner != "none":
+        about += f", {_WORDS[model.planner]} plans"
+    if model.residual != "none":
+        about += f", {_WORDS[model.residual]} corrects"
+    return TrainerReply.Choices.Model(
+        name=name, planner=model.planner, actor=model.actor, residual=model.residual, about=about
+    )

@@ -1,0 +1,89 @@
+"""From what was submitted to runs: a sweep is models x tasks (x groups of seeds)."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from mart.protocol.errors import InvalidInput, NotFound
+from mart.protocol.messages import Order, TrainerRequest
+from mart.protocol.recording import SUFFIX
+from mart.protocol.tasks import get_task
+from mart.trainer.grid import Model
+from mart.trainer.jobs.job import Judging
+from mart.trainer.jobs.queue import Wish
+from mart.trainer.presets import preset
+from mart.trainer.request import TrainRequest
+from mart.trainer.service.settings import TrainerSettings
+
+MAX_MODELS = 16
+MAX_TASKS = 16
+MAX_JOBS = 256
+MAX_EPISODES = 1000
+SCORE_EPISODES = 100
+DEFAULT_DATA = "episodes"
+DEFAULT_PRESET = "fast"
+
+
+def wishes(submit: TrainerRequest.Submit, settings: TrainerSettings) -> list[Wish]:
+    """Raises InvalidInput or NotFound, in words, where anything cannot be done: nothing is accepted then."""
+    _require_number("models", len(submit.models), MAX_MODELS)
+    _require_number("tasks", len(submit.tasks), MAX_TASKS)
+    order = submit.order
+    if max(order.evaluation_episodes, order.score_episodes) > MAX_EPISODES:
+        most = max(order.evaluation_episodes, order.score_episodes)
+        raise InvalidInput(f"{most} episodes were given; at most {MAX_EPISODES} judge a checkpoint.")
+    groups = _groups(tuple(order.seeds) or (0,), submit.seeds_per_job)
+    found = [
+        _wish(model, task, seeds, order, settings)
+        for task, model, seeds in itertools.product(submit.tasks, submit.models, groups)
+    ]
+    _require_number("jobs", len(found), MAX_JOBS)
+    return found
+
+
+def _wish(model: str, task: str, seeds: Sequence[int], order: Order, settings: TrainerSettings) -> Wish:
+    preset(order.preset or DEFAULT_PRESET)
+    try:
+        request = TrainRequest(
+            model=Model.parse(model).name,
+            data=_data(order.data or DEFAULT_DATA, task, settings.data_dir),
+            seeds=tuple(seeds),
+            preset=order.preset or DEFAULT_PRESET,
+            device=settings.device,
+        )
+    except ValidationError as error:
+        fault = error.errors()[0]
+        raise InvalidInput(f"{fault['loc'][0]} = {fault['input']!r} was given: {fault['msg']}.") from error
+    judging = Judging(
+        task=task,
+        episodes=order.evaluation_episodes,
+        score_episodes=order.score_episodes if order.HasField("score_episodes") else SCORE_EPISODES,
+        replicas=settings.replica_names,
+    )
+    return Wish(request, judging)
+
+
+def _data(given: str, task: str, data_dir: Path) -> tuple[Path, ...]:
+    """The task's files in a folder, by the names that episode files have. Raises NotFound where there is none."""
+    name = get_task(task).name
+    folder = (data_dir / given).resolve()
+    files = tuple(sorted(folder.rglob(f"*-{name}*{SUFFIX}"))) if folder.is_dir() else ()
+    if not files:
+        raise NotFound(
+            f"There are no episodes of {name} in {folder}; `mart collect --task {name}` records some."
+        )
+    return files
+
+
+def _groups(seeds: tuple[int, ...], together: int) -> list[tuple[int, ...]]:
+    size = together or len(seeds)
+    return [seeds[first : first + size] for first in range(0, len(seeds), size)]
+
+
+def _require_number(what: str, given: int, most: int) -> None:
+    if not 1 <= given <= most:
+        raise InvalidInput(f"{given} {what} were given; 1 to {most} are allowed at once.")

@@ -1,0 +1,72 @@
+"""`mart trainer`: the queue and the answers, put together."""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+from collections.abc import Iterator
+
+from mart.protocol import clock, codec, keys
+from mart.protocol.bus import Request
+from mart.protocol.errors import MartError
+from mart.protocol.messages import TrainerReply, TrainerRequest, error_message
+from mart.protocol.service import announced, connected
+from mart.trainer.jobs.executors.executor import Ended, Executor, OnEnded
+from mart.trainer.jobs.executors.local import LocalExecutor
+from mart.trainer.jobs.executors.ray import RayExecutor
+from mart.trainer.jobs.queue import Queue
+from mart.trainer.jobs.table import JobTable
+from mart.trainer.service.answers import Answers
+from mart.trainer.service.settings import TrainerSettings
+from mart.trainer.service.videos import Videos
+
+MAX_REQUEST_BYTES = 64 * 1024
+_LONGEST_WAIT_S = 0.5  # so that a stop is noticed, and a cluster that is back
+
+Inbox = queue.SimpleQueue[Request | Ended]
+
+
+def serve_trainer(settings: TrainerSettings) -> None:
+    """Until the process is asked to stop; jobs that run then are gone on with by the next trainer."""
+    inbox: Inbox = queue.SimpleQueue()
+    with contextlib.ExitStack() as stack:
+        service = stack.enter_context(connected(settings, "trainer", settings.trainer))
+        table = stack.enter_context(contextlib.closing(JobTable(settings.jobs_path)))
+        executors = stack.enter_context(_executors(settings, inbox.put))
+        jobs = Queue(table, executors, settings.data_dir)
+        videos = stack.enter_context(contextlib.closing(Videos(settings.data_dir / "logs" / "render.log")))
+        answers = Answers(settings, table, jobs, videos, executors=list(executors), now_ns=clock.wall_ns)
+        topic = keys.training(settings.trainer)
+        stack.enter_context(contextlib.closing(service.bus.serve(topic, inbox.put)))
+        stack.enter_context(announced(service))
+        while not service.stop.is_set():
+            jobs.advance(clock.wall_ns())
+            with contextlib.suppress(queue.Empty):
+                _take(inbox.get(timeout=_LONGEST_WAIT_S), answers, jobs)
+
+
+def _take(item: Request | Ended, answers: Answers, jobs: Queue) -> None:
+    if isinstance(item, Ended):
+        jobs.end(item, clock.wall_ns())
+    else:
+        item.reply(codec.encode(_answer(answers, item.payload)))
+
+
+def _answer(answers: Answers, payload: bytes) -> TrainerReply:
+    try:
+        request = codec.decode(TrainerRequest, payload, MAX_REQUEST_BYTES)
+        return answers.answer(request)
+    except MartError as error:
+        return TrainerReply(error=error_message(error))
+
+
+@contextlib.contextmanager
+def _executors(settings: TrainerSettings, ended: OnEnded) -> Iterator[dict[str, Executor]]:
+    with contextlib.ExitStack() as stack:
+        executors: dict[str, Executor] = {
+            "local": stack.enter_context(contextlib.closing(LocalExecutor(settings.slots, ended)))
+        }
+        if settings.ray:
+            ray = RayExecutor(settings.ray, settings.data_dir / "logs" / "ray.log", ended)
+            executors["ray"] = stack.enter_context(contextlib.closing(ray))
+        yield executors

@@ -1,0 +1,30 @@
+"""Settings of the trainer service; each is an option and an environment variable."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import Field
+
+from mart.protocol.settings import Settings
+
+
+class TrainerSettings(Settings):
+    trainer: str = Field("trainer-1", description="Id of the trainer service.")
+    slots: int = Field(1, ge=1, le=256, description="Jobs at a time on this machine.")
+    ray: str = Field("", description="Address of the head of a Ray cluster, like 10.0.0.5:6379.")
+    replicas: str = Field("", description="Running replicas to judge on; default: each job starts one.")
+    device: str = Field("cpu", description="What trains: cpu or cuda.")
+
+    @property
+    def jobs_path(self) -> Path:
+        return self.data_dir / "jobs.sqlite"
+
+    @property
+    def policies_dir(self) -> Path:
+        """Promoted policies, one folder each, by name."""
+        return self.data_dir / "policies"
+
+    @property
+    def replica_names(self) -> tuple[str, ...]:
+        return tuple(name for name in self.replicas.split(",") if name)
