@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
@@ -24,7 +24,7 @@ class Submission(BaseModel):
     tasks: list[str] = Field(min_length=1, max_length=16)
     data: str = ""
     preset: str = ""
-    seeds: list[int] = Field(default_factory=list, max_length=64)
+    seeds: list[Annotated[int, Field(ge=0, lt=2**31)]] = Field(default_factory=list, max_length=64)
     evaluation_episodes: int = Field(0, ge=0, le=1000)
     executor: str = ""
 

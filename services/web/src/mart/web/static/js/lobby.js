@@ -34,6 +34,7 @@ function askToJoin() {
   setShown(form, true);
   setShown(byId("go"), false);
   setShown(byId("rooms-section"), false);
+  setShown(byId("pages"), false);
   setText(byId("me"), "");
   (byId("name").value && !byId("code").value ? byId("code") : byId("name")).focus();
 }
@@ -61,6 +62,7 @@ function enter(person) {
   setShown(form, false);
   setShown(byId("go"), true);
   setShown(byId("rooms-section"), true);
+  setShown(byId("pages"), true);
   setText(byId("me"), person.name);
   followRooms({
     onRooms: show,

@@ -44,7 +44,7 @@ export function machineSelect(label, attempt) {
 function optionsFor(seat, policies) {
   const fitting = policies.filter((policy) => policy.arms.includes(seat.arm));
   const options = [
-    ["hold", "Nobody"],
+    ["hold", "Free"],
     ["script", "Script"],
     ...fitting.map((policy) => [`policy ${policy.name}`, policyText(policy)]),
   ];

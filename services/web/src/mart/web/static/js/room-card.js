@@ -18,7 +18,7 @@ export function roomCard(attempt, policies) {
   const facts = { id: element("span"), rate: element("span"), saved: element("span") };
   const node = element(
     "article",
-    { class: "room" },
+    { class: "room card" },
     element("header", {}, title, phase),
     instruction,
     seats,
@@ -62,7 +62,6 @@ function seatRow(room, arm, attempt) {
   };
   const machine = machineSelect(`Who drives the ${armName(arm).toLowerCase()} in ${room}`, attempt);
   const deeds = {
-    machine: machine.node,
     watch: element("a", { class: "button quiet", href: path, "aria-label": `Watch: ${armName(arm)} in ${room}` }, "Watch"),
     leave: press("Leave", () => api.leaveSeat(room, arm), "quiet"),
     back: press("Hand back", () => api.handBack(room, arm)),
@@ -75,14 +74,15 @@ function seatRow(room, arm, attempt) {
     "li",
     { class: "seat", dataset: { arm } },
     badge(arm),
-    element("span", { class: "who" }, name, who),
+    element("span", { class: "who" }, name, who, machine.node),
     element("span", { class: "deeds" }, ...Object.values(deeds)),
   );
 
   function update(seat, { room: where, holdsOne, machines }) {
     setText(who, seatText(seat));
     machine.update(seat, where, machines);
-    setShown(deeds.machine, seat.operator !== "human");
+    setShown(who, seat.operator === "human");
+    setShown(machine.node, seat.operator !== "human");
     setShown(deeds.watch, isSeen(seat) && !seat.mine);
     setShown(deeds.leave, seat.mine && !seat.relieved);
     setShown(deeds.back, seat.mine && Boolean(seat.relieved));
@@ -94,15 +94,4 @@ function seatRow(room, arm, attempt) {
   return { node, update };
 }
 
-function seatText(seat) {
-  switch (seat.operator) {
-    case "hold":
-      return "Free";
-    case "script":
-      return "Script";
-    case "policy":
-      return `Policy ${seat.name}`;
-    default:
-      return seat.ready ? `${holder(seat)}, ready` : holder(seat);
-  }
-}
+const seatText = (seat) => (seat.ready ? `${holder(seat)}, ready` : holder(seat));

@@ -1,0 +1,122 @@
+// The training page: order a run, watch its curves, promote the best checkpoint, seat it.
+
+import * as api from "./api.js";
+import { byId, setShown, setText } from "./dom.js";
+import { followRooms } from "./live.js";
+import { Comparison } from "./training/comparison.js";
+import { OrderForm } from "./training/order-form.js";
+import { PolicyList } from "./training/policy-list.js";
+import { RunList } from "./training/run-list.js";
+import { RunView } from "./training/run-view.js";
+
+const REFRESH_MS = 2000;
+
+const form = new OrderForm(byId("order"), submit);
+const comparison = new Comparison();
+const runs = new RunList(comparison, { onSelect: refresh, onAct: act });
+const view = new RunView({ onAct: act, onPromote: promote });
+const policies = new PolicyList({ onSeat: seat, onWithdraw: withdraw });
+
+let choices = null;
+let jobs = [];
+let timer = 0;
+let first = true;
+
+start();
+
+async function start() {
+  try {
+    setText(byId("me"), (await api.me()).name);
+  } catch {
+    location.assign("/");
+    return;
+  }
+  followRooms({ onRooms: (rooms) => policies.showRooms(rooms), onEnded: () => location.assign("/") });
+  document.addEventListener("visibilitychange", () => document.hidden || refresh());
+  refresh();
+}
+
+/** Everything anew, and again in a moment, while somebody looks. */
+async function refresh() {
+  clearTimeout(timer);
+  try {
+    await load();
+    show();
+  } catch (error) {
+    showAbsence(error);
+  }
+  if (!document.hidden) timer = setTimeout(refresh, REFRESH_MS);
+}
+
+async function load() {
+  ({ choices } = await api.trainingChoices());
+  ({ jobs } = await api.trainingJobs());
+  comparison.keep(jobs);
+  await comparison.load(async (id) => (await api.trainingJob(id)).details);
+  policies.show((await api.policies()).policies);
+}
+
+function show() {
+  say("");
+  setShown(byId("absent"), false);
+  setShown(byId("bench"), true);
+  setText(byId("page-text"), choices.device === "cpu" ? "Trains on the processor." : `Trains on ${choices.device}.`);
+  if (first) byId("new").open = jobs.length === 0 || matchMedia("(min-width: 64rem)").matches;
+  first = false;
+  form.show(choices);
+  runs.show(jobs);
+  comparison.show();
+  view.show(comparison.current);
+}
+
+/** Without a trainer there is nothing to show; a trainer that stumbles is told beside what was there. */
+function showAbsence(error) {
+  const absent = error.code === "Unavailable";
+  if (!absent) say(error.message);
+  setShown(byId("absent"), absent);
+  if (absent) setShown(byId("bench"), false);
+}
+
+async function submit(order) {
+  await attempt(async () => {
+    const { jobs: submitted } = await api.train(order);
+    comparison.select(submitted.slice(0, comparison.most).map((job) => job.id));
+    if (!matchMedia("(min-width: 64rem)").matches) byId("new").open = false;
+  });
+}
+
+function act(job, action) {
+  return attempt(() => api.actOnJob(job, action));
+}
+
+function promote(promotion) {
+  return attempt(() => api.promote(promotion));
+}
+
+function withdraw(policy) {
+  return attempt(() => api.withdraw(policy));
+}
+
+/** At one arm; a joint policy drives all its arms that no person holds. */
+function seat(policy, room, arms) {
+  return attempt(async () => {
+    for (const arm of arms) await api.takeSeat(room, arm, "policy", policy);
+  });
+}
+
+/** Runs what a press asked for, shows its failure, and then what holds; true where it worked. */
+async function attempt(deed) {
+  try {
+    await deed();
+  } catch (error) {
+    say(error.message);
+    byId("page-message").scrollIntoView({ block: "nearest" });
+    return false;
+  }
+  await refresh();
+  return true;
+}
+
+function say(text) {
+  setText(byId("page-message"), text);
+}
