@@ -26,6 +26,7 @@ class Submission(BaseModel):
     preset: str = ""
     seeds: list[Annotated[int, Field(ge=0, lt=2**31)]] = Field(default_factory=list, max_length=64)
     evaluation_episodes: int = Field(0, ge=0, le=1000)
+    score_episodes: int = Field(0, ge=0, le=1000)
     executor: str = ""
 
     def request(self) -> TrainerRequest:
@@ -34,6 +35,7 @@ class Submission(BaseModel):
             preset=self.preset,
             seeds=self.seeds,
             evaluation_episodes=self.evaluation_episodes,
+            score_episodes=self.score_episodes,
         )
         submit = TrainerRequest.Submit(
             models=self.models, tasks=self.tasks, order=order, executor=self.executor

@@ -119,6 +119,7 @@ export class OrderForm {
       preset: this.form.elements.preset.value,
       seeds: Array.from({ length: Number(this.seeds.value) }, (_, seed) => seed),
       evaluation_episodes: Number(this.episodes.value),
+      score_episodes: this.#choices.order.score_episodes,
       executor: this.executor.value,
     });
   }

@@ -1,0 +1,46 @@
+"""The commands that seat policies. Heavy modules are imported inside them: `mart --help` loads this file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from mart.protocol.cli import json_option, print_result
+
+
+@click.command()
+@click.option("--room", help="Only this room.  [default: every room]")
+def policies(room: str | None) -> None:
+    """Drive every seat that was given to a promoted policy, each from what its arm's operator sees."""
+    from mart.trainer.operate.service import serve_policies
+    from mart.trainer.operate.settings import PoliciesSettings
+    from mart.trainer.policies import load_policy
+
+    given: dict[str, Any] = {"room": room} if room else {}
+    serve_policies(PoliciesSettings(**given), load_policy)
+
+
+@click.command()
+@click.option(
+    "--checkpoint", required=True, type=click.Path(path_type=Path), help="Folder of the checkpoint."
+)
+@click.option("--room", default="room-1", show_default=True, help="Id of the room.")
+@click.option(
+    "--arm", "arms", multiple=True, help="Arm to drive; may be repeated.  [default: all of the policy's]"
+)
+@click.option("--name", default="", help="What others see.  [default: the folder's name]")
+@json_option
+def operate(*, checkpoint: Path, room: str, arms: tuple[str, ...], name: str, as_json: bool) -> None:
+    """Take seats for a policy and drive them until Ctrl-C, beside people who may take over and hand back."""
+    from mart.trainer.operate.service import operate as drive
+    from mart.trainer.operate.settings import OperateSettings
+    from mart.trainer.policies import load_policy
+
+    def seated(called: str, taken: tuple[str, ...]) -> None:
+        text = f"{called} drives {', '.join(taken)} in {room}. Ctrl-C leaves."
+        print_result({"room": room, "name": called, "arms": list(taken)}, text, as_json)
+
+    settings = OperateSettings(checkpoint=checkpoint, room=room, arms=arms, name=name)
+    drive(settings, load_policy, seated)
