@@ -26,7 +26,7 @@ class Submission(BaseModel):
     preset: str = ""
     seeds: list[Annotated[int, Field(ge=0, lt=2**31)]] = Field(default_factory=list, max_length=64)
     evaluation_episodes: int = Field(0, ge=0, le=1000)
-    score_episodes: int = Field(0, ge=0, le=1000)
+    score_episodes: int | None = Field(None, ge=0, le=1000)
     executor: str = ""
 
     def request(self) -> TrainerRequest:
