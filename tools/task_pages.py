@@ -6,13 +6,12 @@ from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
-import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from mart.protocol.tasks import Task, arm_counts, get_task, task_names
+from mart.protocol.tasks import SHARED_VIEWPOINT, Task, arm_counts, get_task, task_names
 from mart.sim.envs import gymnasium_id
 from mart.sim.envs.renderer import Renderer
-from mart.sim.experts import Expert, get_skill
+from mart.sim.experts.rehearsal import rehearse
 from mart.sim.world import World
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
@@ -22,7 +21,7 @@ _VIEW_PX = (480, 360)
 _MARGIN_PX, _TITLE_PX = 12, 40
 _PAPER, _INK, _SOFT_INK = "#FFFFFF", "#1F2428", "#6A737D"
 _SEED = 4
-_LONGEST_S = 20.0
+_MIDDLE = 0.55
 
 
 def page() -> str:
@@ -46,10 +45,10 @@ def _overview(tasks: list[Task]) -> Iterator[str]:
     yield "# What tasks are there?"
     yield ""
     yield "Made by `make task-pages` from the catalogue and the scenes. A subtask in *italics* takes more than one"
-    yield "arm at the same time. How to use a task from your own code:"
-    yield "[how-to-use-the-environments.md](how-to-use-the-environments.md)."
+    yield "arm at the same time. How to add one: [how-to-add-a-task.md](how-to-add-a-task.md)."
+    yield "How to use a task from your own code: [how-to-use-the-environments.md](how-to-use-the-environments.md)."
     yield ""
-    yield f"![Every task from every viewpoint: one for each seat, and the shared one]({SHEET})"
+    yield f"![Every task from every viewpoint: the shared one, and one for each seat]({SHEET})"
     yield ""
     yield "| task | arms | what everyone is told | subtasks | success holds | time limit |"
     yield "|---|---|---|---|---|---|"
@@ -83,7 +82,7 @@ def _row(task: Task) -> Image.Image:
     row = Image.new("RGB", size, _PAPER)
     draw = ImageDraw.Draw(row)
     draw.text((_MARGIN_PX, _MARGIN_PX), task.title, _INK, ImageFont.load_default(22))
-    for index, viewpoint in enumerate(task.viewpoints):
+    for index, viewpoint in enumerate((SHARED_VIEWPOINT, *task.arm_names)):
         left = _MARGIN_PX + index * step
         row.paste(_view(world, viewpoint), (left, _TITLE_PX + _MARGIN_PX))
         draw.text((left + width, _TITLE_PX), viewpoint, _SOFT_INK, ImageFont.load_default(16), anchor="rs")
@@ -99,29 +98,11 @@ def _view(world: World, viewpoint: str) -> Image.Image:
 
 
 def _in_the_middle(task: Task) -> World:
-    """The world when experts have done about half."""
-    length_s = _played(World.build(task.name), _LONGEST_S)
+    """The world when scripts have done about half."""
     world = World.build(task.name)
-    _played(world, 0.55 * length_s)
+    rehearse(world, _SEED)
+    rehearse(world, _SEED, until_s=_MIDDLE * world.sim_time_s)
     return world
-
-
-def _played(world: World, until_s: float) -> float:
-    """Seconds until success, or until told to stop."""
-    world.reset(_SEED)
-    skill = get_skill("expert")
-    experts = {
-        arm: Expert(world.task, arm, skill, np.random.default_rng(index))
-        for index, arm in enumerate(world.arms)
-    }
-    while world.sim_time_s < until_s and not world.progress().success:
-        intents = {
-            arm: expert.act(world.observations_for(arm), world.sim_time_s) for arm, expert in experts.items()
-        }
-        world.step(
-            [world.action_for(arm, one.target_tool_in_base, one.gripper) for arm, one in intents.items()]
-        )
-    return world.sim_time_s
 
 
 if __name__ == "__main__":

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import mujoco
 import numpy as np
 
-from mart.protocol.tasks import Arm
+from mart.protocol.tasks import Arm, Task
 from mart.sim.tasks.scene import Judgement, Scene
 from mart.sim.world.data import Array, Data
 from mart.sim.world.gripper import GRASPABLE
@@ -18,15 +20,30 @@ CUBE_MASS_KG = 0.1
 LIFTED_M = 0.10  # of the cube's underside over the table
 FALLEN_Z_M = -0.05
 
-# Around the point 0.54 m in front of the base: nearer to the middle of the table than 10 cm, two hands would meet.
-_CENTER_IN_BASE = (0.54, 0.0)
-_SPREAD_FORWARD_M, _SPREAD_SIDEWAYS_M = 0.08, 0.20
+
+@dataclass(frozen=True)
+class Area:
+    """Where a cube may lie, in its arm's base frame."""
+
+    center_x_m: float
+    forward_m: float  # to either side of the centre
+    sideways_m: float
+
+
+# Two hands must not meet: with two arms at the middle of the table, with more between neighbours as well.
+_FACING, _AROUND = Area(0.54, 0.08, 0.20), Area(0.47, 0.05, 0.05)
 
 
 class MultiCubeLifting(Scene):
+    def __init__(self, task: Task) -> None:
+        super().__init__(task)
+        self._area = _FACING if len(task.arms) == 2 else _AROUND
+
     def add_objects(self, spec: mujoco.MjSpec) -> None:
         for arm in self.task.arms:
-            cube = spec.worldbody.add_body(name=cube_of(arm.name), pos=(*_start(arm, 0.0, 0.0), CUBE_HALF_M))
+            cube = spec.worldbody.add_body(
+                name=cube_of(arm.name), pos=(*self._start(arm, 0.0, 0.0), CUBE_HALF_M)
+            )
             cube.add_freejoint(name=cube_of(arm.name))
             cube.add_geom(
                 name=cube_of(arm.name),
@@ -51,10 +68,10 @@ class MultiCubeLifting(Scene):
 
     def place_objects(self, random: np.random.Generator) -> None:
         for arm, joint in zip(self.task.arms, self._joints, strict=True):
-            forward = random.uniform(-_SPREAD_FORWARD_M, _SPREAD_FORWARD_M)
-            sideways = random.uniform(-_SPREAD_SIDEWAYS_M, _SPREAD_SIDEWAYS_M)
+            forward = random.uniform(-self._area.forward_m, self._area.forward_m)
+            sideways = random.uniform(-self._area.sideways_m, self._area.sideways_m)
             yaw = random.uniform(-np.pi / 4, np.pi / 4)  # every yaw that a cube can have
-            position = (*_start(arm, forward, sideways), CUBE_HALF_M)
+            position = (*self._start(arm, forward, sideways), CUBE_HALF_M)
             joint[:] = (*position, np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2))
 
     def observe(self) -> dict[str, Array]:
@@ -75,16 +92,15 @@ class MultiCubeLifting(Scene):
         """Height of the cube's lowest corner over the table, shape (...)."""
         return self._positions[index][..., 2] - CUBE_HALF_M * np.abs(self._upward[index]).sum(axis=-1)
 
+    def _start(self, arm: Arm, forward_m: float, sideways_m: float) -> tuple[float, float]:
+        x, y, _ = arm.pose_base_in_world.transform_points(
+            (self._area.center_x_m + forward_m, sideways_m, 0.0)
+        )
+        return float(x), float(y)
+
 
 SCENE = MultiCubeLifting
 
 
 def cube_of(arm: str) -> str:
     return arm.replace("arm", "cube")
-
-
-def _start(arm: Arm, forward_m: float, sideways_m: float) -> tuple[float, float]:
-    x, y, _ = arm.pose_base_in_world.transform_points(
-        (_CENTER_IN_BASE[0] + forward_m, _CENTER_IN_BASE[1] + sideways_m, 0.0)
-    )
-    return float(x), float(y)
