@@ -1,0 +1,14 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from mart.sim.experts import get_skill
+from mart.sim.experts.person import Person
+
+
+def person(skill: str = "expert", seed: int = 0, **changes: Any) -> Person:
+    """Someone of a skill, some of whose numbers are others."""
+    return Person(replace(get_skill(skill), **changes), np.random.default_rng(seed))
