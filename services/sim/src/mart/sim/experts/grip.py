@@ -64,15 +64,16 @@ class Grip:
             sight = yield Waypoint(Pose(target.position + trim, target.quaternion_wxyz), CLOSED, pace(sight))
         return sight
 
-    def raise_by(self, sight: Sight, height_m: float) -> Step:
-        """Straight up, nearly as far as asked: high enough to go on."""
-        up = at(0.0, 0.0, height_m) @ self._thing(sight)
+    def raise_to(self, sight: Sight, z_m: float) -> Step:
+        """Straight up, nearly as high as asked, which is high enough to go on; not down where it is higher."""
+        here = self._thing(sight)
+        up = at(0.0, 0.0, max(0.0, z_m - here.position[2])) @ here
         return (
             yield from self.bring(sight, lambda _: up, lambda now: apart_m(self._thing(now), up) < _LIFTED_M)
         )
 
     def put(self, sight: Sight, place: See, clear_m: float, placed: Until) -> Step:
-        """Up by `clear_m`, over the place and down, again where it got stuck; then lets go. The thing may be lost."""
+        """Up to `clear_m` over the place, there and down, again where it got stuck; lets go. The thing may be lost."""
 
         def over(now: Sight) -> Pose:
             return at(0.0, 0.0, clear_m) @ place(now)
@@ -80,7 +81,7 @@ class Grip:
         def below(now: Sight) -> Pose:
             return at(0.0, 0.0, -_PRESS_M) @ place(now)
 
-        sight = yield from self.raise_by(sight, clear_m)
+        sight = yield from self.raise_to(sight, over(sight).position[2])
         while not (placed(sight) or self.is_lost(sight)):
             sight = yield from self.bring(sight, over, lambda now: self.is_over(now, place))
             sight = yield from self.bring(

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mart.protocol.pose import Pose
+from mart.protocol.pose import Pose, quaternion_exp, quaternion_multiply
 from mart.protocol.tasks import Arm
 from mart.sim.experts.plan import Sight
 
@@ -48,6 +48,15 @@ def upright(position: ArrayLike, yaw_rad: float) -> Pose:
 def standing(place: Pose, like: Pose, symmetry_rad: float) -> Pose:
     """Standing at a place, square to it, and turned from `like` as little as the symmetry allows."""
     return upright(place.position, _yaw(place, _yaw(like), symmetry_rad))
+
+
+def level(place: Pose, like: Pose) -> Pose:
+    """At a place, with its x axis along the place's, either way round; rolled about it as `like` is."""
+    along, x = place.rotation_matrix()[:, 0], like.rotation_matrix()[:, 0]
+    axis = np.cross(x, along if along @ x > 0.0 else -along)
+    sine = max(float(np.linalg.norm(axis)), 1e-9)
+    turn = quaternion_exp(axis / sine * math.asin(min(sine, 1.0)))
+    return Pose(place.position, quaternion_multiply(turn, like.quaternion_wxyz))
 
 
 def across(thing: Pose, symmetry_rad: float = math.pi) -> Pose:

@@ -7,13 +7,16 @@ has rested at the far end of the handle for a while, arm 1 leaves when the other
 from __future__ import annotations
 
 import math
+from itertools import cycle
+
+import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
 from mart.sim.experts.grip import Grip
 from mart.sim.experts.person import Person
 from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, go, wait
-from mart.sim.experts.seeing import Still, across, apart_m, at, seen, seen_tool, standing
+from mart.sim.experts.seeing import Still, across, apart_m, at, level, seen, seen_tool, standing, upright
 
 _LID_KNOB = at(0.0, 0.0, 0.024)
 _FETCHER_END, _RECEIVER_END = (
@@ -25,7 +28,7 @@ _FETCHER_END, _RECEIVER_END = (
 _LID_PLACE = at(-0.27, -0.16, 0.075)
 _OFFER = at(0.0, 0.0, 0.25)  # of the hammer
 _AWAIT, _RETREAT = at(0.25, 0.0, 0.34), at(-0.25, 0.0, 0.34)  # of arm 1's tool and of arm 0's
-_NEAREST_REACHED = at(0.05, 0.0, 0.0)  # by arm 1, of what lies on a shelf
+_FETCHED_TO_M = 0.03  # beyond the offer: where a hammer lies further, it is arm 1 who can reach it
 _IN_THE_AIR_Z_M = 0.19
 
 _OPEN_M = 0.20  # of the lid from the container
@@ -33,8 +36,9 @@ _TRAY_HALF_M, _BIN_HALF_M = (0.06, 0.06), (0.15, 0.08)  # inside, with something
 _LOW_M = 0.045  # over a floor: what is that low lies there
 _ON_FLOOR = at(0.0, 0.0, 0.02)
 _CLEAR_M = 0.09
+_QUARTER_TURN = upright(np.zeros(3), math.pi / 2)
 _STILL_M, _STILL_S = 0.012, 0.3
-_PARTNER_M, _PARTNER_S, _PARTNER_GONE_M = 0.025, 0.7, 0.07
+_PARTNER_M, _PARTNER_S, _PARTNER_GONE_M = 0.03, 0.7, 0.09
 
 
 def plan(arm: Arm, person: Person, sight: Sight) -> Plan:
@@ -81,24 +85,24 @@ class _Fetcher:
     def has_to_fetch(self, now: Sight) -> bool:
         """The hammer lies where this arm can reach it."""
         x, _, z = self._hammer(now).position
-        return z < _IN_THE_AIR_Z_M and x < self._offer.position[0]
+        return z < _IN_THE_AIR_Z_M and x < self._offer.position[0] + _FETCHED_TO_M
 
     def offer_hammer(self, sight: Sight) -> Step:
         """One attempt: out of the container, held out until the partner has it, let go."""
         sight = yield from self._handle.pick(sight)
-        sight = yield from self._handle.raise_by(sight, _OFFER.position[2] - self._hammer(sight).position[2])
+        sight = yield from self._handle.raise_to(sight, self._offer.position[2])
         still = Still(self._partner, _STILL_M, _PARTNER_S)
         sight = yield from self._handle.bring(
             sight, self._place_of_offer, lambda now: still(now) and self._is_gripped_by_partner(now)
         )
-        sight = yield from self._handle.let_go(sight, up_m=0.08)
+        sight = yield from self._handle.let_go(sight)
         return (yield from go(sight, lambda _: self.retreat, patience_s=2.0))
 
     def _place_of_lid(self, now: Sight) -> Pose:
         return standing(self._lid_place, self._lid(now), math.pi)
 
     def _place_of_offer(self, now: Sight) -> Pose:
-        return standing(self._offer, self._hammer(now), math.tau)
+        return level(self._offer, self._hammer(now))
 
     def _is_gripped_by_partner(self, now: Sight) -> bool:
         return apart_m(self._hammer(now) @ _RECEIVER_END, self._partner(now)) < _PARTNER_M
@@ -112,18 +116,21 @@ class _Receiver:
         to_base = arm.pose_base_in_world.inverse()
         self._trash, self._tray, self._bin = (seen(arm, name) for name in ("trash", "trash_tray", "bin"))
         self._hammer, self._partner = seen(arm, "hammer"), seen_tool(arm, "arm0")
-        self._cube = Grip(person, self._trash, lambda now: across(self._trash(now), math.pi / 2))
+        along = Grip(person, self._trash, lambda now: across(self._trash(now), math.pi / 2))
+        athwart = Grip(person, self._trash, lambda now: across(self._trash(now), math.pi / 2) @ _QUARTER_TURN)
+        self._grips = cycle((along, athwart))
         self._handle = Grip(person, self._hammer, lambda now: across(self._hammer(now) @ _RECEIVER_END))
-        self._reach_x_m = float((to_base @ _NEAREST_REACHED).position[0])
+        self._reach_x_m = float((to_base @ _OFFER).position[0]) - _FETCHED_TO_M
         self.retreat = Waypoint(across(to_base @ _AWAIT), OPEN)
 
     def is_clear(self, now: Sight) -> bool:
         return _lies_in(self._trash(now), self._tray(now), _TRAY_HALF_M)
 
     def clear_trash(self, sight: Sight) -> Step:
-        """One attempt."""
-        sight = yield from self._cube.pick(sight)
-        return (yield from self._cube.put(sight, self._place_of_trash, _CLEAR_M, self.is_clear))
+        """One attempt, each across the other two sides of the cube: a wall may be in the way."""
+        grip = next(self._grips)
+        sight = yield from grip.pick(sight)
+        return (yield from grip.put(sight, self._place_of_trash, _CLEAR_M, self.is_clear))
 
     def has_placed(self, now: Sight) -> bool:
         return _lies_in(self._hammer(now), self._bin(now), _BIN_HALF_M)
@@ -153,7 +160,7 @@ class _Receiver:
         return standing(self._tray(now) @ _ON_FLOOR, self._trash(now), math.pi / 2)
 
     def _place_of_hammer(self, now: Sight) -> Pose:
-        return standing(self._bin(now) @ _ON_FLOOR, self._hammer(now), math.pi)
+        return level(self._bin(now) @ _ON_FLOOR, self._hammer(now))
 
 
 def _lies_in(thing: Pose, box: Pose, half_m: tuple[float, float]) -> bool:
