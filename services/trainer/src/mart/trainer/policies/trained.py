@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 
@@ -72,7 +73,7 @@ class TrainedPolicy(ABC):
                 f"{self.record.name} drives {', '.join(self.arms)} together and cannot take {arm} alone; "
                 "give it all of them, or use a model that is per-arm throughout, such as d-HBC."
             )
-        return OneArm(self, arm)
+        return OneArm(copy.copy(self), arm)  # the same weights, a memory of its own
 
     @abstractmethod
     def _forget(self) -> None:
