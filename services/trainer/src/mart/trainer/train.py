@@ -139,21 +139,28 @@ def _weights(dataset: Dataset, request: TrainRequest) -> Tensor | None:
 def _report(metrics: Metrics, course: Course, stage: str) -> Progress:
     losses = metrics.write(course.updates, stage)
     speed = losses.pop("updates_per_s")
-    bad = [name for name, value in losses.items() if not math.isfinite(value)]
-    if bad:
-        raise InvalidInput(
-            f"{bad[0]} is no number any more after {course.updates} updates; the checkpoints before it are good. "
-            "Train anew with a smaller learning_rate."
-        )
+    for name, value in losses.items():
+        _require_finite(name, math.isfinite(value), course.updates)
     return Progress(course.updates, course.updates_in_all, stage, speed, losses)
 
 
+def _require_finite(what: str, is_finite: bool, updates: int) -> None:
+    if not is_finite:
+        raise InvalidInput(
+            f"{what} is no number any more after {updates} updates; the checkpoints before it are good. "
+            "Train anew with a smaller learning_rate."
+        )
+
+
 def _checkpoint(run: RunDirectory, request: TrainRequest, dataset: Dataset, course: Course) -> None:
+    weights = course.acting()
+    for name, weight in weights.items():
+        _require_finite(f"The weight {name}", bool(torch.isfinite(weight).all()), course.updates)
     keep.write_checkpoint(
         run,
         course.updates,
         request.seeds,
-        course.acting(),
+        weights,
         digest=dataset.digest,
         layout=dataset.layout,
         sizes=request.hyperparameters,

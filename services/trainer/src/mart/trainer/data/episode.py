@@ -17,7 +17,8 @@ from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import ArmState, State
 from mart.protocol.recording import STATE
-from mart.trainer.data.layout import ACTION_SIZE, Layout
+from mart.protocol.worlds import ACTION_SIZE
+from mart.trainer.data.layout import Layout
 
 
 @dataclass(frozen=True)

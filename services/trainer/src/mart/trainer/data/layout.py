@@ -16,8 +16,6 @@ from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.tasks import Task, get_task
 from mart.trainer.checkpoint import Seen
 
-ACTION_SIZE = 7  # six of the step in [-1, 1] and the gripper, as in docs/protocol.md, section "Commands"
-
 _QUATERNION = "wxyz"
 _NO_ROTATION = 1e-6
 

@@ -18,7 +18,8 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mart.trainer.data.layout import ACTION_SIZE, Layout
+from mart.protocol.worlds import ACTION_SIZE
+from mart.trainer.data.layout import Layout
 from mart.trainer.data.windows import Batch
 from mart.trainer.grid import Model
 from mart.trainer.nets.actors import Actor, Memory, Memoryless, Recurrent

@@ -1,8 +1,10 @@
 """A chunk of actions at once, by flow matching: the baseline that one would pick today.
 
-Lipman et al. (2022) and Liu et al. (2022), rectified: from noise x_0 to the demonstrated chunk x_1 on a straight line,
+Lipman et al. (2022) and Liu et al. (2022): from noise x_0 to the demonstrated chunk x_1 on a straight line. The network
+says where the line ends, and the velocity follows (x-prediction, Li and He, "Back to basics", 2025): of chunks of few
+numbers that is the easier thing to learn.
 
-    x_t = (1 - t) x_0 + t x_1,    loss = |v(x_t, t, o) - (x_1 - x_0)|^2,    dx/dt = v at run time (Euler)
+    x_t = (1 - t) x_0 + t x_1,    loss = |f(x_t, t, o) - x_1|^2,    dx/dt = (f(x, t, o) - x) / (1 - t) at run time
 
 Chunks as in Diffusion Policy (Chi et al., 2023): two observations in, `chunk` actions out, the first few are done.
 """
@@ -41,24 +43,24 @@ class Flow(nn.Module):
         self.net = MLP(inputs, hidden, actions, generators)
 
     def forward(self, x: Tensor, t: Tensor, seen: Tensor) -> Tensor:
-        """The velocity. x: [M, B, chunk * size], t: [M, B, 1] in [0, 1], seen: [M, B, C] → like x."""
+        """The chunk that x is on the way to: [M, B, chunk * size], as x is. t: [M, B, 1], seen: [M, B, C]."""
         return self.net(torch.cat((seen, x, _waves(t)), -1)).float()
 
     def loss(self, seen: Tensor, actions: Tensor, t: Tensor, noise: Tensor) -> Tensor:
-        """Squared error of the velocity, for each tick of the chunk: [M, B, chunk].
+        """Squared error for each tick of the chunk: [M, B, chunk].
 
         actions: [M, B, chunk * size]. t: [M, B] uniform. noise: like actions, standard normal.
         """
         t = t[..., None]
-        error = self((1 - t) * noise + t * actions, t, seen) - (actions - noise)
+        error = self((1 - t) * noise + t * actions, t, seen) - actions
         return (error * error).unflatten(-1, (self.chunk, self.size)).mean(-1)
 
     def sample(self, seen: Tensor, noise: Tensor) -> Tensor:
-        """A chunk: [M, B, chunk, size] within [-1, 1]."""
+        """A chunk, by Euler's method: [M, B, chunk, size] within [-1, 1]."""
         x = noise
         for step in range(self.steps):
             t = torch.full_like(x[..., :1], step / self.steps)
-            x = x + self(x, t, seen) / self.steps
+            x = x + (self(x, t, seen) - x) / (self.steps - step)
         return x.unflatten(-1, (self.chunk, self.size)).clamp(-1, 1)
 
 

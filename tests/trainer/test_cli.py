@@ -1,0 +1,67 @@
+"""`mart train` as people type it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from mart.protocol.errors import InvalidInput, MartError
+from mart.trainer.cli import train
+from mart.trainer.policies import load_policy
+from mart.trainer.runs import RunDirectory
+from tests.trainer.conftest import Recorded
+
+
+def mart_train(*words: object) -> Result:
+    return CliRunner().invoke(train, [str(word) for word in words])
+
+
+def test_it_trains_and_goes_on(episodes: Recorded, tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    words = ("--model", "d-hbc", "--data", episodes.root, "--preset", "debug", "--out", run, "--json")
+    first = mart_train(*words, "--seeds", 2, "--set", "updates=8", "--weight", "human=3")
+    assert first.exit_code == 0, first.output
+    result = json.loads(first.stdout)
+    assert (result["model"], result["episodes"], result["seeds"]) == ("d-HBC", 3, [0, 1])
+    assert "base 8/8" in first.stderr
+    assert load_policy(Path(result["checkpoints"][-1])).record.updates == 8
+    assert RunDirectory(run).request.weights == {"human": 3.0}
+    again = mart_train("--resume", run, "--json")
+    assert again.exit_code == 0
+    assert json.loads(again.stdout) == result
+
+
+def test_its_selection_reaches_the_run(episodes: Recorded, tmp_path: Path) -> None:
+    words = ("--model", "BC", "--data", episodes.root, "--preset", "debug", "--out", tmp_path / "run")
+    chosen = mart_train(
+        *words, "--outcome", "any", "--verdict", "verified", "--operator", "script", "--last", 2
+    )
+    assert chosen.exit_code == 0, chosen.output
+    assert "from 2 episodes" in chosen.stdout
+    selection = RunDirectory(tmp_path / "run").request.selection
+    assert selection.outcomes == ()
+    assert selection.operators == ("script",)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--model", "HBC"), "Give --out DIR for a new run"),
+        (("--out", "x", "--model", "HBC"), "Give --model and --data"),
+        (("--out", "x", "--model", "HBC", "--data", ".", "--set", "updates"), "write NAME=VALUE"),
+        (("--out", "x", "--model", "HBC", "--data", ".", "--weight", "robot=2"), "see --help"),
+    ],
+)
+def test_what_was_forgotten_is_said(words: tuple[str, ...], sentence: str) -> None:
+    result = mart_train(*words)
+    assert isinstance(result.exception, InvalidInput)
+    assert sentence in str(result.exception)
+
+
+def test_a_folder_that_is_no_run_is_said(tmp_path: Path) -> None:
+    result = mart_train("--resume", tmp_path)
+    assert isinstance(result.exception, MartError)
+    assert "There is no run" in str(result.exception)
