@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
@@ -15,7 +16,8 @@ from mart.trainer.service.orders import DEFAULT_DATA, DEFAULT_PRESET, SCORE_EPIS
 from mart.trainer.service.settings import TrainerSettings
 
 _MAX_DATA_SETS = 200
-_NO_DATA = ("runs", "policies", "logs", "secrets", "certificates")
+_NO_DATA = ("runs", "policies", "logs", "secrets", "certificates", "cache")
+_DAY = re.compile(r"\d{4}-\d{2}-\d{2}")
 _WORDS = {"none": "nobody", "joint": "one network for all arms", "per-arm": "one network an arm"}
 _DEFAULT_MODEL = "r-HBC"
 
@@ -44,13 +46,10 @@ def choices(settings: TrainerSettings, executors: Iterable[str]) -> TrainerReply
 def data_sets(data_dir: Path) -> list[DataSet]:
     """Folders with episodes: `episodes` first, days of one recording taken together."""
     counted: Counter[str] = Counter()
-    for path in data_dir.rglob(f"*{SUFFIX}"):
-        folder = path.parent.relative_to(data_dir)
-        if not folder.parts or folder.parts[0] in _NO_DATA:
-            continue
-        if folder.name.count("-") == 2 and folder.name.replace("-", "").isdigit():
-            folder = folder.parent
-        counted[folder.as_posix()] += 1
+    roots = [root for root in data_dir.glob("*") if root.is_dir() and root.name not in _NO_DATA]
+    for path in (path for root in roots for path in root.rglob(f"*{SUFFIX}")):  # a root may be a link
+        folder = path.parent.parent if _DAY.fullmatch(path.parent.name) else path.parent
+        counted[folder.relative_to(data_dir).as_posix()] += 1
     ordered = sorted(counted.items(), key=lambda item: (item[0] != DEFAULT_DATA, item[0]))
     return [DataSet(path=path, episodes=episodes) for path, episodes in ordered[:_MAX_DATA_SETS]]
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import queue
 from collections.abc import Iterator
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus import Request
-from mart.protocol.errors import MartError
+from mart.protocol.errors import Conflict, MartError
 from mart.protocol.messages import TrainerReply, TrainerRequest, error_message
 from mart.protocol.service import announced, connected
 from mart.trainer.jobs.executors.executor import Ended, Executor, OnEnded
@@ -31,6 +32,7 @@ def serve_trainer(settings: TrainerSettings) -> None:
     inbox: Inbox = queue.SimpleQueue()
     with contextlib.ExitStack() as stack:
         service = stack.enter_context(connected(settings, "trainer", settings.trainer))
+        stack.enter_context(_claimed(settings))
         table = stack.enter_context(contextlib.closing(JobTable(settings.jobs_path)))
         executors = stack.enter_context(_executors(settings, inbox.put))
         jobs = Queue(table, executors, settings.data_dir)
@@ -58,6 +60,20 @@ def _answer(answers: Answers, payload: bytes) -> TrainerReply:
         return answers.answer(request)
     except MartError as error:
         return TrainerReply(error=error_message(error))
+
+
+@contextlib.contextmanager
+def _claimed(settings: TrainerSettings) -> Iterator[None]:
+    """One trainer at a time, or each would start the other's jobs. The lock dies with its process."""
+    settings.data_dir.mkdir(parents=True, exist_ok=True)
+    with settings.jobs_path.with_suffix(".lock").open("ab") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise Conflict(
+                f"The jobs in {settings.data_dir} are seen to by another trainer; stop it, or set MART_DATA_DIR."
+            ) from error
+        yield
 
 
 @contextlib.contextmanager
