@@ -8,9 +8,11 @@ the room as slow as who listens. Between episodes the world stands still: whoeve
 from __future__ import annotations
 
 import threading
+from collections import Counter
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus import Bus
+from mart.protocol.complaints import Complaints
 from mart.protocol.messages import OPERATOR_SCRIPT, Event, RoomStatus, SeatRequest, State, raise_error
 from mart.protocol.tasks import Task
 from mart.sim.experts import Skill
@@ -93,21 +95,31 @@ class LockstepRoom:
             raise_error(reply.error)
             self._operators[arm] = ScriptedOperator(task, arm, reply.seat.epoch, skill, seed)
 
-    def run(self, mailbox: Mailbox, stop: threading.Event) -> None:
+    def run(self, mailbox: Mailbox, garbled: Counter[str], stop: threading.Event) -> None:
         """Until `stop` is set. What comes in is answered between episodes."""
+        complaints = Complaints()
         while not stop.is_set():
+            complaints.say(Counter(self._room.rejected) + garbled, clock.monotonic_s())
             self._voice.status(self._room.status(self._time.now_s()))
             mailbox.work(STATUS_S)
-            while not self._room.in_practice and not stop.is_set():
-                self._time.reach(min(self._room.advance(self._time.now_s()), self._act_s))
-                self._act()
+            self.play(stop)
 
-    def _act(self) -> None:
-        """Where something new is to be seen, everybody says what is to be done; else the same again, now and then."""
+    def play(self, stop: threading.Event) -> None:
+        """The episode that has been asked for, if there is one, until the room is in practice again."""
+        while not self._room.in_practice and not stop.is_set():
+            next_s = self._room.advance(self._time.now_s())
+            if not self._act():  # else the room looks again before time passes
+                self._time.reach(min(next_s, self._act_s))
+
+    def _act(self) -> bool:
+        """Where something new is to be seen, everybody says what is to be done; else the same again, now and then.
+
+        Whether anything was said.
+        """
         now_s = self._time.now_s()
         news = [operator.see(self._voice.newest) for operator in self._operators.values()]
         if not any(news) and now_s < self._act_s:
-            return
+            return False
         self._act_s = now_s + REPEAT_S
         for arm, operator in self._operators.items():
             wall_ns = clock.wall_ns()
@@ -116,3 +128,4 @@ class LockstepRoom:
             payload = codec.encode(command)
             self._voice.command(arm, payload)
             self._room.hear(payload, arm, now_s, wall_ns)
+        return True

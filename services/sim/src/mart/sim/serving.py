@@ -73,7 +73,7 @@ def serve_world(settings: SimSettings, world: World) -> None:
 def serve_lockstep(settings: SimSettings, world: World, skill: Skill) -> None:
     """The same room on simulated time, with its scripts."""
     with connected(settings, "sim", settings.room) as service, contextlib.ExitStack() as opened:
-        mailbox, time = Mailbox(), SimulatedTime()
+        mailbox, garbled, time = Mailbox(), Counter[str](), SimulatedTime()
         voice = OrderedVoice(service.bus, settings.room, world.arms)
         opened.enter_context(contextlib.closing(voice))
         terms = Terms(lockstep=True, skill=skill.name, time_limit_s=settings.time_limit_s)
@@ -81,14 +81,14 @@ def serve_lockstep(settings: SimSettings, world: World, skill: Skill) -> None:
             settings.room, world, _record(settings), voice, _keeper(settings), now_s=time.now_s(), terms=terms
         )
         doorway = Doorway(
-            service.bus, settings.room, room, world, do=mailbox.put, garbled=Counter(), now_s=time.now_s
+            service.bus, settings.room, room, world, do=mailbox.put, garbled=garbled, now_s=time.now_s
         )
         opened.enter_context(contextlib.closing(doorway))
         lockstep = LockstepRoom(room, voice, time)
         lockstep.seat_scripts(world.task, skill, settings.seed or 0)
         opened.enter_context(announced(service))
         gc.freeze()
-        lockstep.run(mailbox, service.stop)
+        lockstep.run(mailbox, garbled, service.stop)
 
 
 def _keeper(settings: SimSettings) -> Callable[[RoomRecord], None]:
