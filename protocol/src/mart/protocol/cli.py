@@ -16,28 +16,36 @@ import click
 
 from mart.protocol.errors import MartError
 
-_GROUP = "mart.commands"
-
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object on standard output."
 )
 
 
-class _Installed(click.Group):
-    """Loads a subcommand only when it is used: `mart --help` must not import a simulator."""
+class Gathered(click.Group):
+    """A group to which installed parts add subcommands, as entry points of `entry_group`.
+
+    Loads one only when it is used: `mart --help` must not import a simulator.
+    """
+
+    def __init__(self, *args: Any, entry_group: str, **attributes: Any) -> None:
+        super().__init__(*args, **attributes)
+        self._entry_group = entry_group
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return sorted(entry.name for entry in entry_points(group=_GROUP))
+        gathered = (entry.name for entry in entry_points(group=self._entry_group))
+        return sorted({*super().list_commands(ctx), *gathered})
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        for entry in entry_points(group=_GROUP, name=cmd_name):
+        for entry in entry_points(group=self._entry_group, name=cmd_name):
             command = entry.load()
             assert isinstance(command, click.Command)
             return command
-        return None
+        return super().get_command(ctx, cmd_name)
 
 
-@click.group(cls=_Installed, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=Gathered, entry_group="mart.commands", context_settings={"help_option_names": ["-h", "--help"]}
+)
 @click.version_option(package_name="mart-protocol", prog_name="mart")
 def cli() -> None:
     """MART: collaborative teleoperation and imitation learning for multi-arm manipulation."""

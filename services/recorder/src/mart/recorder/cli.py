@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from mart.protocol import clock
-from mart.protocol.cli import json_option, print_result
+from mart.protocol.cli import Gathered, json_option, print_result
 from mart.protocol.errors import InvalidInput, Unavailable
 from mart.recorder.settings import RecorderSettings
 
@@ -32,7 +32,7 @@ def recorder(name: str, replica: str | None) -> None:
     serve_recorder(_settings(replica), name)
 
 
-@click.group()
+@click.group(cls=Gathered, entry_group="mart.commands.episodes")
 def episodes() -> None:
     """Work on episode files or folders of them; without a path, on all that were recorded here."""
 

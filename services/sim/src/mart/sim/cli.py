@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import click
 
+from mart.protocol.cli import json_option, print_result
+from mart.protocol.errors import Unavailable
+from mart.protocol.tasks import SHARED_VIEWPOINT
 from mart.sim.settings import ExpertsSettings, ReplicaSettings, SimSettings
 
 
@@ -51,3 +55,28 @@ def replica(**options: Any) -> None:
     from mart.sim.replica import serve_replica
 
     serve_replica(ReplicaSettings(**_given(**options)))
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--viewpoint", default=SHARED_VIEWPOINT, show_default=True, help="A camera: front, or an arm.")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Of the video.  [default: NAME-VIEWPOINT.mp4 here]"
+)
+@click.option("--width", "width_px", default=640, show_default=True, help="Of the picture, pixels.")
+@click.option("--height", "height_px", default=480, show_default=True, help="Of the picture, pixels.")
+@json_option
+def render(
+    *, file: Path, viewpoint: str, out: Path | None, width_px: int, height_px: int, as_json: bool
+) -> None:
+    """Draw an episode anew from its states, from any viewpoint, as a video."""
+    try:
+        from mart.sim.film import film
+    except ImportError as error:  # of PyOpenGL, PyAV or the system's EGL
+        raise Unavailable(
+            f"Drawing needs what this installation lacks ({error}): pip install 'mart-sim[render]', and libegl1."
+        ) from error
+
+    video = out or Path(f"{file.stem}-{viewpoint}.mp4")
+    frames = film(file, video, viewpoint, width_px, height_px)
+    print_result({"video": str(video), "frames": frames}, f"{video}: {frames} pictures.", as_json)

@@ -18,7 +18,7 @@ from mart.sim.envs.course import (
     checked_seed,
     observation_space,
 )
-from mart.sim.envs.renderer import Image
+from mart.sim.renderer import Image
 
 
 class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integer[Any]]]):

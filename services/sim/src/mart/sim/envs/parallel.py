@@ -23,7 +23,7 @@ from mart.sim.envs.course import (
     checked_seed,
     observation_space,
 )
-from mart.sim.envs.renderer import Image
+from mart.sim.renderer import Image
 from mart.sim.world import ACTION_SIZE
 
 Infos = dict[str, dict[str, object]]

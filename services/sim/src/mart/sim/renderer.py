@@ -28,7 +28,8 @@ class Renderer:
         self._view.fixedcamid = _camera_id(model, viewpoint)
         self._scene = mujoco.MjvScene(model, maxgeom=_MAX_GEOMS)
         self._options = mujoco.MjvOption()
-        self._viewport = mujoco.MjrRect(0, 0, *_size(width_px, height_px))
+        self.width_px, self.height_px = _size(width_px, height_px)
+        self._viewport = mujoco.MjrRect(0, 0, width_px, height_px)
         self._gl = GLContext(width_px, height_px)
         self._gl.make_current()
         self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
@@ -36,7 +37,12 @@ class Renderer:
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
 
     def draw(self, integration_state: bytes) -> Image:
-        """sRGB, shape (height, width, 3). The state is this model's own; see `World.integration_state`."""
+        """sRGB, shape (height, width, 3). Raises InvalidInput where the state is not one of this model."""
+        expected = 8 * mujoco.mj_stateSize(self._model, _STATE)
+        if len(integration_state) != expected:
+            raise InvalidInput(
+                f"A state of {len(integration_state)} bytes was given; this model's has {expected}."
+            )
         self._gl.make_current()
         mujoco.mj_setState(self._model, self._data, np.frombuffer(integration_state, "<f8"), _STATE)
         mujoco.mj_kinematics(self._model, self._data)
