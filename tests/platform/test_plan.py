@@ -3,7 +3,7 @@ from __future__ import annotations
 import configparser
 from pathlib import Path
 
-from mart.platform.plan import Options, environment, processes
+from mart.platform.plan import Options, environment, lockstep_processes, processes, training_processes
 from mart.platform.supervise import configuration
 
 
@@ -21,6 +21,17 @@ def test_options_reach_the_commands() -> None:
     words = {process.kind: " ".join(process.command) for process in plan}
     assert words["sim"] == "sim --room lab --task t --control-hz 30 --seed 7"
     assert words["web"] == "web --host 127.0.0.1 --port 8443 --public-host lab.local"
+
+
+def test_in_lockstep_there_are_rooms_and_who_saves_and_nobody_who_looks() -> None:
+    options = Options(Path("data"), task="t", seed=7, skill="novice", time_limit_s=12.5)
+    plan = lockstep_processes(options, rooms=2)
+    assert sorted(process.kind for process in plan) == ["recorder", "replica", "router", "sim", "sim"]
+    sims = [" ".join(process.command) for process in plan if process.kind == "sim"]
+    assert sims == [
+        f"sim --room room-{number} --task t --control-hz 20 --seed 7 --skill novice --time-limit-s 12.5 --lockstep"
+        for number in (1, 2)
+    ]
 
 
 def test_nothing_listens_beyond_the_loopback_unless_asked() -> None:
@@ -41,3 +52,12 @@ def test_the_supervisor_reads_back_what_was_planned_also_from_odd_folders(tmp_pa
         assert parser.getint(section, "priority") == number
         assert parser.getboolean(section, "autorestart")
         assert "100%" in parser.get(section, "stdout_logfile")
+
+
+def test_nobody_waits_for_what_learns_and_a_plain_session_goes_without() -> None:
+    options = Options(Path("data"))
+    assert all(process.awaited for process in processes(options))
+    plan = training_processes(options)
+    assert {process.kind for process in plan if not process.awaited} == {"trainer", "policies"}
+    assert [process for process in plan if process.awaited] == list(processes(options))
+    assert plan[-1].kind == "web"

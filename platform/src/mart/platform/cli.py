@@ -12,7 +12,7 @@ import click
 
 from mart.platform.plan import DEFAULT_TASK
 from mart.protocol import clock
-from mart.protocol.cli import json_option, print_result
+from mart.protocol.cli import cli, json_option, print_result
 from mart.protocol.errors import InvalidInput, NotFound
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def run(
     *, task: str, room: str, control_hz: float, host: str, port: int, public_host: str, as_json: bool
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
-    from mart.platform.plan import Options
+    from mart.platform.plan import Options, processes, training_processes
     from mart.platform.supervise import running_platform
     from mart.protocol.service import stop_requested
     from mart.protocol.settings import Settings
@@ -48,8 +48,10 @@ def run(
     get_task(task)
     settings = Settings()
     options = Options(settings.data_dir, settings.router, host, port, public_host, room, task, control_hz)
+    trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
+    plan = training_processes(options) if trains else processes(options)
     click.echo("Starting MART …", err=True)
-    with stop_requested() as stop, running_platform(options) as platform:
+    with stop_requested() as stop, running_platform(options, plan) as platform:
         result = {"url": platform.url, "join_code": platform.join_code, "room": room, "task": task}
         text = f"\n  Lobby      {platform.url}\n  Join code  {platform.join_code}\n\nCtrl-C stops everything."
         print_result(result, text, as_json)

@@ -11,11 +11,12 @@ DEFAULT_TASK = "two_arm_multi_cube_lifting"
 
 @dataclass(frozen=True)
 class Process:
-    """One `mart …` command; `kind` and `id` name its liveliness token."""
+    """One `mart …` command; `kind` and `id` name its liveliness token. `awaited`: a session cannot begin without it."""
 
     command: tuple[str, ...]
     kind: str
     id: str
+    awaited: bool = True
 
     @property
     def name(self) -> str:
@@ -56,6 +57,12 @@ def processes(options: Options) -> tuple[Process, ...]:
     )
 
 
+def training_processes(options: Options) -> tuple[Process, ...]:
+    """The same with a trainer and with policies in seats, for which nobody waits: a session can begin without them."""
+    *others, pages = processes(options)
+    return (*others, _POLICIES, _TRAINER, pages)
+
+
 def lockstep_processes(options: Options, rooms: int) -> tuple[Process, ...]:
     """What episodes need that nobody watches: rooms that drive themselves, and who records and verifies."""
     names = [f"room-{number + 1}" for number in range(rooms)]
@@ -65,6 +72,8 @@ def lockstep_processes(options: Options, rooms: int) -> tuple[Process, ...]:
 _ROUTER = Process(("router",), "router", "router")
 _REPLICA = Process(("replica", "--name", "replica-1"), "replica", "replica-1")
 _RECORDER = Process(("recorder", "--name", "recorder-1"), "recorder", "recorder-1")
+_POLICIES = Process(("policies",), "policies", "policies", awaited=False)
+_TRAINER = Process(("trainer", "--name", "trainer-1"), "trainer", "trainer-1", awaited=False)
 
 
 def _sim(options: Options, room: str, *more: str) -> Process:

@@ -149,7 +149,7 @@ def _connected(endpoint: str, supervisor: subprocess.Popen[bytes]) -> Iterator[B
 
 
 def _await_alive(bus: Bus, options: Options, plan: tuple[Process, ...]) -> None:
-    awaited = {keys.alive(process.kind, process.id) for process in plan}
+    awaited = {keys.alive(process.kind, process.id) for process in plan if process.awaited}
     present: set[str] = set()
     complete = threading.Event()
 

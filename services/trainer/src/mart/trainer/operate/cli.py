@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from mart.protocol.cli import json_option, print_result
+
+if TYPE_CHECKING:
+    from mart.trainer.operate.crews import Load
 
 
 @click.command()
@@ -16,10 +19,14 @@ def policies(room: str | None) -> None:
     """Drive every seat that was given to a promoted policy, each from what its arm's operator sees."""
     from mart.trainer.operate.service import serve_policies
     from mart.trainer.operate.settings import PoliciesSettings
-    from mart.trainer.policies import load_policy
+
+    def loader() -> Load:
+        from mart.trainer.policies import load_policy
+
+        return load_policy
 
     given: dict[str, Any] = {"room": room} if room else {}
-    serve_policies(PoliciesSettings(**given), load_policy)
+    serve_policies(PoliciesSettings(**given), loader)
 
 
 @click.command()

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus import Bus, Publisher, Sample
@@ -18,7 +18,9 @@ from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import OPERATOR_HOLD, Event, RoomStatus, Seat, SeatRequest, State
 from mart.protocol.tasks import Task, get_task
 from mart.trainer.operate.operator import PolicyOperator, parts_of
-from mart.trainer.policies.policy import Policy
+
+if TYPE_CHECKING:
+    from mart.trainer.policies.policy import Policy
 
 REPEAT_S = 0.1  # while no new state comes: the barrier hears that the policy is still there
 _QUERY_TIMEOUT_S = 3.0
@@ -27,7 +29,7 @@ _MAX_STATE_BYTES = 1024 * 1024
 
 M = TypeVar("M", RoomStatus, State)
 CheckpointOf = Callable[[Seat], Path | None]  # of a seat that is to be driven; None: not by us
-Load = Callable[[Path], Policy]
+Load = Callable[[Path], "Policy"]
 
 
 @dataclass

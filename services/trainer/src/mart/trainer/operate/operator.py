@@ -7,6 +7,7 @@ so that what the sim applies is what the policy meant, and a command that is los
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,9 @@ from mart.protocol.messages import (
 )
 from mart.protocol.pose import Pose, quaternion_exp, quaternion_multiply
 from mart.protocol.tasks import Limits, Task
-from mart.trainer.policies.policy import ACTION_SIZE, Policy
+
+if TYPE_CHECKING:
+    from mart.trainer.policies.policy import Policy  # with all of torch behind it
 
 Array = NDArray[np.float64]
 
@@ -79,7 +82,7 @@ class PolicyOperator:
 
     def _act(self, state: State) -> Array:
         actions = self._policy.act(sight_of(state, self._task, self._policy.needs))
-        if actions.shape != (1, len(self.arms), ACTION_SIZE) or not np.isfinite(actions).all():
+        if actions.shape != (1, len(self.arms), 7) or not np.isfinite(actions).all():
             raise Corrupt(
                 f"The policy's action of shape {actions.shape} is not of finite numbers for its arms."
             )

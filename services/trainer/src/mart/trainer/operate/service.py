@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import secrets
+import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mart.protocol import codec, keys
 from mart.protocol.bus import Bus
@@ -15,13 +18,16 @@ from mart.protocol.service import running
 from mart.trainer.operate.crews import Crews, Load
 from mart.trainer.operate.operator import parts_of
 from mart.trainer.operate.settings import OperateSettings, PoliciesSettings
-from mart.trainer.policies.policy import Policy
+
+if TYPE_CHECKING:
+    from mart.trainer.policies.policy import Policy
 
 _QUERY_TIMEOUT_S = 5.0
+_NICEST = 19
 
 
-def serve_policies(settings: PoliciesSettings, load: Load) -> None:
-    """Until the process is asked to stop."""
+def serve_policies(settings: PoliciesSettings, loader: Callable[[], Load]) -> None:
+    """Until the process is asked to stop. `loader` takes seconds: it is called in the background, before its need."""
 
     def checkpoint_of(seat: Seat) -> Path | None:
         promoted = seat.operator == OPERATOR_POLICY and seat.policy
@@ -29,10 +35,23 @@ def serve_policies(settings: PoliciesSettings, load: Load) -> None:
 
     with (
         running(settings, "policies", settings.id) as service,
-        contextlib.closing(Crews(service.bus, settings.room, checkpoint_of, load)) as crews,
+        contextlib.closing(Crews(service.bus, settings.room, checkpoint_of, _late(loader))) as crews,
     ):
+        threading.Thread(target=_warm_up, args=(loader,), daemon=True).start()
         while not service.stop.is_set():
             crews.work()
+
+
+def _late(loader: Callable[[], Load]) -> Load:
+    def load(checkpoint: Path) -> Policy:
+        return loader()(checkpoint)
+
+    return load
+
+
+def _warm_up(loader: Callable[[], Load]) -> None:
+    os.nice(_NICEST)  # of this thread alone, on Linux: the others start meanwhile
+    loader()
 
 
 def operate(settings: OperateSettings, load: Load, seated: Callable[[str, tuple[str, ...]], None]) -> None:
