@@ -1,121 +1,111 @@
-"""A control step of two Pandas: ours beside bare MuJoCo of the same scene, and beside robosuite's TwoArmLift.
+"""A control step of every task: ours beside bare MuJoCo of the same scene, and beside robosuite's TwoArmLift.
 
-Ours is World.step: 25 substeps of 2 ms with the controller in each, then poses, success and shadows. Bare is
-mj_step(nstep=25) from the very same states with no callback, torques and finger targets held at what our controller
-ended the tick with, so that the physics has nearly the same contacts to solve. Both follow a recorded episode of two
-scripted experts (reach, grasp, lift), tick by tick in turns; robosuite takes its turn after each round. Times are the
-thread's processor time, so that other programs on a shared machine count little.
+Beside robosuite stands World.step, success judged and all. Beside bare mj_step(nstep=25) stands World.drive, which is
+what moves the arms in it: the command taken, 25 substeps of 2 ms with the controller in each, the new poses, the guard
+against divergence. Bare starts from the very same states with no callback, torques and finger targets held at what our
+controller ended the tick with, so that the physics has nearly the same contacts to solve. All follow a recorded episode
+of scripted experts, tick by tick in turns; robosuite takes its turn after each round. Times are the thread's processor
+time, so that other programs on a shared machine count little.
 """
 
 from __future__ import annotations
 
-import json
-import subprocess
 import sys
 import time
-import venv
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from statistics import median
-from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
-from report import Bar, report
+from report import Bar, report, spread
+from support.recorded import Recording, record
+from support.robosuite import Robosuite, Steps, robosuite
 
-from mart.sim.experts import Expert, get_skill
+from mart.protocol.tasks import arm_counts, task_names
 from mart.sim.world import World, osc
 
-HERE = Path(__file__).parent
-PEER = HERE / "peers" / "robosuite"
-PEER_VENV = HERE.parent / ".venv-peers" / "robosuite"
-TASK = "two_arm_multi_cube_lifting"
+ARMS = (2, 3)
 ROUNDS = 7
+TICKS = 66  # a round, spread over the episode
 PEER_STEPS = 20
 
 
 @dataclass(frozen=True)
-class Tick:
-    state: bytes
-    actions: NDArray[np.float64]
-    controls_after: NDArray[np.float64]  # torques and finger targets, shape (nu,)
+class Round:
+    """Milliseconds, one a tick."""
+
+    step: tuple[float, ...]
+    drive: tuple[float, ...]
+    bare: tuple[float, ...]
+    peer: Steps
 
 
 def main() -> None:
-    world = World.build(TASK)
-    episode = record(world)
-    rounds = []
-    with robosuite() as peer_steps:
-        for _ in range(ROUNDS):
-            ours, bare = follow(world, episode)
-            rounds.append((ours, bare, peer_steps(PEER_STEPS)))
-    ours_ms = [median(ours) for ours, _, _ in rounds]
-    bare_ms = [median(bare) for _, bare, _ in rounds]
-    peer_ms = [median(peer["step_ms"]) for _, _, peer in rounds]
-    over_bare = [sum(ours) / sum(bare) for ours, bare, _ in rounds]
+    metrics: dict[str, float] = {"rounds": ROUNDS}
+    bars: list[Bar] = []
+    peers: list[Steps] = []
+    with robosuite() as peer:
+        for task in sys.argv[1:] or task_names():
+            for arms in sorted(set(ARMS) & set(arm_counts(task))):
+                rounds = measure(World.build(task, arms=arms), peer)
+                step_ms = [median(taken.step) for taken in rounds]
+                over_bare = [sum(taken.drive) / sum(taken.bare) for taken in rounds]
+                name = f"{task}_{arms}_arms"
+                metrics |= {
+                    **spread(f"{name}_step_ms", step_ms),
+                    **spread(f"{name}_drive_over_bare", over_bare),
+                    **spread(
+                        f"{name}_step_over_bare", [sum(taken.step) / sum(taken.bare) for taken in rounds]
+                    ),
+                }
+                steps = [taken.peer for taken in rounds]
+                faster = median(median(taken.step_ms) for taken in steps) / median(step_ms)
+                bars += [
+                    Bar.at_least(f"{task}, {arms} arms: times robosuite", faster, 8.0),
+                    Bar.at_most(f"{task}, {arms} arms: times bare mj_step", median(over_bare), 1.10),
+                ]
+                peers += steps
     report(
         "control",
-        metrics={
-            **spread("step_ms", ours_ms),
-            **spread("bare_mj_step_ms", bare_ms),
-            **spread("over_bare", over_bare),
-            "ticks": len(episode),
-            "rounds": ROUNDS,
-        },
+        metrics,
         peer={
-            "name": f"robosuite {rounds[0][2]['version']} TwoArmLift",
-            **spread("step_ms", peer_ms),
-            **spread("bare_mj_step_ms", [median(peer["bare_ms"]) for _, _, peer in rounds]),
+            "name": f"robosuite {peers[0].version} TwoArmLift",
+            **spread("step_ms", [median(taken.step_ms) for taken in peers]),
+            **spread("bare_mj_step_ms", [median(taken.bare_ms) for taken in peers]),
         },
-        bars=[
-            Bar.at_least("times faster than robosuite", median(peer_ms) / median(ours_ms), 8.0),
-            Bar.at_most("times bare mj_step of our scene", median(over_bare), 1.10),
-        ],
+        bars=bars,
     )
 
 
-def record(world: World) -> list[Tick]:
-    """States and the actions taken in them, until both cubes are up."""
-    world.reset(0)
-    experts = [Expert(world.task, arm, get_skill("expert"), np.random.default_rng(0)) for arm in world.arms]
-    targets = [world.tool_pose_in_base(arm) for arm in world.arms]
-    episode: list[Tick] = []
-    while not world.progress().success:
-        actions = []
-        for index, (arm, expert) in enumerate(zip(world.arms, experts, strict=True)):
-            intent = expert.act(world.observations_for(arm), world.sim_time_s)
-            if intent.engaged:
-                targets[index] = intent.target_tool_in_base
-            actions.append(world.action_for(arm, targets[index], intent.gripper))
-        state = world.integration_state()
-        world.step(actions)
-        episode.append(Tick(state, np.array(actions), world.data.ctrl.copy()))
-    return episode
+def measure(world: World, peer: Robosuite) -> list[Round]:
+    episode = record(world, seed=0)
+    return [follow(world, episode, peer) for _ in range(ROUNDS)]
 
 
-def follow(world: World, episode: list[Tick]) -> tuple[list[float], list[float]]:
-    """Milliseconds of every tick: our step, and bare mj_step."""
-    ours, bare = [], []
-    for number, tick in enumerate(episode):
-        # In turns, so that neither always finds the caches warm.
-        for ours_now in (True, False) if number % 2 else (False, True):
-            world.set_integration_state(tick.state)
-            if ours_now:
-                ours.append(milliseconds(partial(world.step, tick.actions)))
+def follow(world: World, episode: Recording, peer: Robosuite) -> Round:
+    """Ticks all along the episode, each stepped in three ways."""
+    took: list[list[float]] = []
+    for tick in np.linspace(0, len(episode) - 1, min(TICKS, len(episode))).astype(int):
+        ways = (partial(world.step, episode.actions[tick]), partial(world.drive, episode.actions[tick]))
+        took.append([0.0] * 3)
+        for place in range(3):  # in turns, so that none always finds the caches warm
+            way = (place + len(took)) % 3
+            world.set_integration_state(episode.states[tick].tobytes())
+            if way < len(ways):
+                took[-1][way] = milliseconds(ways[way])
             else:
-                bare.append(bare_step_ms(world, tick.controls_after))
-    return ours, bare
+                world.data.ctrl[:] = episode.controls[tick]
+                took[-1][way] = bare_step_ms(world)
+    step, drive, bare = zip(*took, strict=True)
+    return Round(step, drive, bare, peer.steps(PEER_STEPS))
 
 
-def bare_step_ms(world: World, controls: NDArray[np.float64]) -> float:
-    world.data.ctrl[:] = controls
+def bare_step_ms(world: World) -> float:
     mujoco.set_mjcb_control(None)
     try:
-        return milliseconds(partial(mujoco.mj_step, world.model, world.data, 25))
+        return milliseconds(partial(mujoco.mj_step, world.model, world.data, world.substeps))
     finally:
         osc.install()
 
@@ -124,54 +114,6 @@ def milliseconds(call: Callable[[], None]) -> float:
     begun_ns = time.thread_time_ns()
     call()
     return (time.thread_time_ns() - begun_ns) / 1e6
-
-
-@contextmanager
-def robosuite() -> Iterator[Callable[[int], dict[str, Any]]]:
-    """A peer process that times so many of its steps whenever asked."""
-    process = subprocess.Popen(
-        [peer_python(), PEER / "control.py"],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-    )
-    assert process.stdin is not None
-    assert process.stdout is not None
-
-    def ask(steps: int) -> dict[str, Any]:
-        print(steps, file=process.stdin, flush=True)
-        for line in process.stdout or ():
-            if line.startswith("{"):  # robosuite prints notes of its own
-                answer: dict[str, Any] = json.loads(line)
-                return answer
-        raise SystemExit(
-            f"robosuite ended with code {process.wait()}: run {PEER / 'control.py'} by hand to see why."
-        )
-
-    try:
-        yield ask
-    finally:
-        process.stdin.close()
-        process.wait(timeout=30)
-        process.stdout.close()
-
-
-def peer_python() -> Path:
-    """The peer's own environment, made at the first call."""
-    python = PEER_VENV / "bin" / "python"
-    ready = PEER_VENV / "ready"
-    if not ready.is_file():
-        print(f"making {PEER_VENV} …", file=sys.stderr)
-        venv.create(PEER_VENV, with_pip=True)
-        subprocess.run([python, "-m", "pip", "install", "-q", "-r", PEER / "requirements.txt"], check=True)
-        ready.touch()
-    return python
-
-
-def spread(name: str, values: list[float]) -> dict[str, float]:
-    """Median, smallest and largest of the rounds."""
-    return {name: median(values), f"{name}_min": min(values), f"{name}_max": max(values)}
 
 
 if __name__ == "__main__":

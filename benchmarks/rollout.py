@@ -112,7 +112,7 @@ def measure(bus: Bus, task: str) -> Measured:
         session = lockstep.answer(begin, 0.0).session
         for tick in range(ticks):
             step = RolloutRequest.Step(session=session, actions=actions[tick].tobytes())
-            turns = [
+            turns: list[Callable[[], object]] = [
                 partial(client.step, actions[tick]),
                 partial(lockstep.answer, RolloutRequest(step=step), 0.0),
                 partial(bare_step, bare_batch, states[tick], controls[tick], world.substeps),

@@ -38,7 +38,8 @@ def record(world: World, seed: int) -> Recording:
         for index, arm in enumerate(world.arms)
     ]
     targets = [world.tool_pose_in_base(arm) for arm in world.arms]
-    states, actions, controls = [], [], []
+    states: list[NDArray[np.float64]] = []
+    actions, controls = [], []
     while not world.progress().success and len(states) < _MOST_TICKS:
         states.append(np.frombuffer(world.integration_state(), "<f8"))
         act = []

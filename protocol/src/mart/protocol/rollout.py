@@ -171,10 +171,14 @@ class RolloutClient:
 
     def _all(self, calls: Sequence[Callable[[], RolloutReply]]) -> list[RolloutReply]:
         """At the same time. Where one fails, the worlds of all are let go: they no longer belong together."""
-        futures = [self._executor.submit(call) for call in calls]
-        wait(futures)
+        first, *others = calls
+        futures = [self._executor.submit(call) for call in others]
         try:
-            return [future.result() for future in futures]
+            try:
+                reply = first()
+            finally:
+                wait(futures)
+            return [reply, *(future.result() for future in futures)]
         except MartError:
             self._close_shares()
             raise

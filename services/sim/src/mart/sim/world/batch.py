@@ -30,6 +30,7 @@ class WorldBatch:
         self._world = world
         self._batch = Batch(world.model, size, threads)
         self._surface = Surface(scene_of(world.task), world.model, self._batch)
+        self._judgement = self._surface.judge()
         self._fatal_warnings = self._batch.warning[:, FATAL_WARNINGS, 1]
         self._diverged: dict[int, str] = {}
 
@@ -44,6 +45,7 @@ class WorldBatch:
             row[:] = np.frombuffer(self._world.integration_state(), "<f8")
         self._diverged.clear()
         self._batch.forward(stage=_POSITIONS)
+        self._judgement = self._surface.judge()
 
     def step(self, actions: Array, running: Flags) -> dict[int, str]:
         """Advances the running worlds by one control period; actions: shape (worlds, arms, 7), finite.
@@ -56,11 +58,14 @@ class WorldBatch:
         before = self._batch.state.copy()
         self._surface.command(actions)
         diverged = self._advance(np.flatnonzero(going))
-        self._surface.settle()
-        going[diverged] = False
-        self._batch.state[~going] = before[~going]
         if len(diverged):
+            self._batch.state[diverged] = before[diverged]
             self._batch.forward(diverged, stage=_POSITIONS)
+            going[diverged] = False
+        self._judgement = self._surface.settle()
+        if not going.all():
+            self._batch.state[~going] = before[~going]
+            self._judgement = self._surface.judge()
         now = {int(world): str(Diverged(self._batch.time[world])) for world in diverged}
         self._diverged |= now
         return now
@@ -85,7 +90,7 @@ class WorldBatch:
 
     def standing(self, *, integration_states: bool = False) -> Worlds:
         """How every world stands."""
-        judgement = self._surface.judge()
+        judgement = self._judgement
         reasons = first_reasons(judgement.failed, len(self))
         for world, reason in self._diverged.items():
             reasons[world] = reason

@@ -43,12 +43,14 @@ class Surface:
     def command(self, actions: Array) -> None:
         """actions: shape (..., arms, 7), clipped to [-1, 1]."""
         np.multiply(np.minimum(np.maximum(actions, -1.0), 1.0), self._action_scale, out=self.commands)
-        self.modes[...] = osc.NEW_DELTA
+        self.modes.fill(osc.NEW_DELTA)
 
-    def settle(self) -> None:
-        """A control period is over: what it did is remembered and counted."""
+    def settle(self) -> Judgement:
+        """A control period is over: what it did is remembered, judged and counted."""
         self._scene.remember()
-        self.success_ticks[...] = next_success_ticks(self.success_ticks, self.judge().success_now)
+        judgement = self.judge()
+        self.success_ticks[...] = next_success_ticks(self.success_ticks, judgement.success_now)
+        return judgement
 
     def judge(self) -> Judgement:
         return self._scene.judge()

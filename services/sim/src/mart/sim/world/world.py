@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import logging
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -66,6 +67,7 @@ class World:
         self.data = mujoco.MjData(self.model)
         self._surface = Surface(scene, self.model, self.data)
         self._action_shape = (len(self.arms), ACTION_SIZE)
+        self._velocities = self.data.qvel
         self._fatal_warnings = self.data.warning.number[FATAL_WARNINGS]
 
     @classmethod
@@ -146,21 +148,25 @@ class World:
         Raises InvalidInput where the shape is not (arms, 7) or a number is not finite, Diverged where the physics left
         its bounds.
         """
+        self.drive(actions)
+        self._surface.settle()
+
+    def drive(self, actions: ArrayLike) -> None:
+        """The part of a step that moves the arms: physics and control; nothing is remembered or judged."""
         actions = np.asarray(actions, dtype=np.float64)
         if actions.shape != self._action_shape:
             raise InvalidInput(
                 f"Actions of shape {actions.shape} were given; {self._action_shape} is needed."
             )
-        if not np.isfinite(actions).all():
+        if not math.isfinite(actions.sum()):
             raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
         self._surface.command(actions)
         begun_s = self.sim_time_s
         mujoco.mj_step(self.model, self.data, self.substeps)
         # Poses of the new state: mj_step leaves those of its last substep's beginning.
         mujoco.mj_kinematics(self.model, self.data)
-        if self._fatal_warnings.any() or not bounded(self.data.qvel):
+        if any(self._fatal_warnings.tolist()) or not bounded(self._velocities):
             raise Diverged(begun_s)
-        self._surface.settle()
 
     def integration_state(self) -> bytes:
         """MuJoCo's full integration state, float64 little-endian: all that decides the future, and the shadows."""
@@ -208,7 +214,7 @@ class World:
 
 def bounded(velocities: Array) -> Flags:
     """Whether MuJoCo will go on from these, shape (..., nv): what it would find bad next time is told this time."""
-    return (np.abs(velocities) < mujoco.mjMAXVAL).all(axis=-1)
+    return np.vecdot(velocities, velocities) < mujoco.mjMAXVAL**2  # False for NaN
 
 
 def _within_unit(vector: Array) -> Array:
