@@ -13,6 +13,7 @@ from mart.protocol.tasks import Arm
 from mart.protocol.tasks.tray import handle_of, partner_of
 from mart.sim.experts.person import Person
 from mart.sim.experts.plan import CLOSED, OPEN, Sight, Step, Waypoint, go, pick, stay, wait
+from mart.sim.experts.seeing import apart_m, seen, seen_tool, upright
 
 _AWAY_M = 0.05  # a tool further than this from a handle does not hold it
 _MISSED = 0.92  # of the gripper: fingers that have closed on nothing
@@ -25,14 +26,16 @@ Vector = NDArray[np.float64]
 
 
 class Carrier:
-    """What one carrier sees and does; waypoints are in the arm's own base frame."""
+    """What one carrier sees and does; everything is in the arm's own base frame."""
 
     def __init__(self, arm: Arm, person: Person) -> None:
         self._person = person
-        self._base_from_world = arm.pose_base_in_world.inverse()
         partner = partner_of(arm.name)
-        self._own, self._other = (f"{handle_of(name)}/position_in_world" for name in (arm.name, partner))
-        self._partner_tool = f"{partner}/tool_position_in_world"
+        self._handle, self._partner_handle = (
+            seen(arm, handle_of(arm.name)),
+            seen(arm, handle_of(partner)),
+        )
+        self._partner_tool = seen_tool(arm, partner)
 
     def pick(self, sight: Sight) -> Step:
         """Attempts at the own handle until it is in the hand."""
@@ -49,30 +52,30 @@ class Carrier:
         return (yield from stay(sight, here, self._person.grips_s()))
 
     def along(self, sight: Sight, shift: Vector, until: Callable[[Sight], bool]) -> Step:
-        """Moves the own handle by `shift` (world frame, metres), never far ahead of the partner's.
+        """Moves the own handle by `shift` (metres), never far ahead of the partner's.
 
         Ends when `until` holds or the handle is lost. Where the partner lets go, it goes back to where it began.
         """
-        start, partner_start = sight.pose_tool_in_base, sight.observations[self._other]
+        tool = sight.pose_tool_in_base
         way_m = float(np.linalg.norm(shift))
         forward = shift / way_m
-        in_base = self._base_from_world.rotation_matrix() @ forward
+        # The partner is to come as far as this arm, from beside it: level with it, whatever the tray is now.
+        beside = (self._partner_handle(sight).position - self._handle(sight).position) * (1, 1, 0)
+        partner_start = self._handle(sight).position + beside
         while not (until(sight) or self.has_lost(sight)):
-            followed_m = float((sight.observations[self._other] - partner_start) @ forward)
+            followed_m = float((self._partner_handle(sight).position - partner_start) @ forward)
             lead_m = 0.0 if self.is_alone(sight) else _LEAD_M
             done_m = min(max(followed_m + lead_m, 0.0), way_m)
-            goal = Pose(start.position + done_m * in_base, start.quaternion_wxyz)
+            goal = Pose(tool.position + done_m * forward, tool.quaternion_wxyz)
             sight = yield Waypoint(goal, CLOSED, _PACE)
         return sight
 
     def has_lost(self, now: Sight) -> bool:
-        away_m = float(np.linalg.norm(self._grip(now).position - now.pose_tool_in_base.position))
-        return away_m > _AWAY_M or now.gripper > _MISSED
+        return apart_m(self._handle(now), now.pose_tool_in_base) > _AWAY_M or now.gripper > _MISSED
 
     def is_alone(self, now: Sight) -> bool:
         """The partner's tool is not at its handle."""
-        away = now.observations[self._partner_tool] - now.observations[self._other]
-        return float(np.linalg.norm(away)) > _AWAY_M
+        return apart_m(self._partner_handle(now), self._partner_tool(now)) > _AWAY_M
 
     def _let_go(self, sight: Sight) -> Step:
         """Opens and goes up, so as to take the tray with it as little as can be."""
@@ -82,16 +85,10 @@ class Carrier:
         return (yield from go(sight, lambda _: up, _PATIENCE_S))
 
     def _grip(self, now: Sight) -> Pose:
-        """The tool that grips the own handle: pointing down, fingers across the bar."""
-        bar = self._base_from_world.rotation_matrix() @ (
-            now.observations[self._own] - now.observations[self._other]
-        )
-        # The bar lies across the line between the handles; the tool is turned by a quarter, as it was at the start.
-        yaw = (math.atan2(bar[1], bar[0]) + math.pi / 2) % math.pi
-        return Pose(
-            self._base_from_world.transform_points(now.observations[self._own]),
-            np.array([math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)]),
-        )
+        """The tool that grips the own handle: fingers across the bar, which lies across the line between handles."""
+        handle = self._handle(now).position
+        x, y, _ = handle - self._partner_handle(now).position
+        return upright(handle, (math.atan2(y, x) + math.pi / 2) % math.pi)
 
 
 def raised(pose: Pose, height_m: float) -> Pose:

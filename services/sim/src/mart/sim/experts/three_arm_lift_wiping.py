@@ -11,38 +11,36 @@ from mart.protocol.tasks.three_arm_lift_wiping import ASIDE_Y_M, RACK_TOP_M, SPO
 from mart.sim.experts.carrying import Carrier, raised
 from mart.sim.experts.person import Person
 from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, pick, stay, wait
+from mart.sim.experts.seeing import apart_m, at, seen
 
-_RACK_TRAY_M = np.array(RACK_TOP_M) + np.array([0.0, 0.0, 0.005])  # of the tray's plate that stands on it
-_CARRY_Z_M = 0.13  # of the tray, on its way
+_RACK_TRAY_M = np.add(RACK_TOP_M, (0.0, 0.0, 0.002))  # of the tray on it, put down with a little force
+_CARRY_Z_M = 0.105  # of the tray, on its way: not higher than the rack asks for, in case somebody lets go
 _NEAR_M = 0.02
 
+_SPOTS_M = np.array([(x, y, 0.0) for x, y in SPOTS_M])
 _SPONGE_Z_M, _SPONGE_LENGTH_M = 0.015, 0.09  # of its middle when it lies on the table
-_BLOCK_Z_M = 0.035  # of the middle of the block to hold it by, over the sponge's
-_LOST_M = 0.04  # a sponge further from the tool than it was gripped is not in the hand
+_BLOCK = at(0.0, 0.0, 0.035)  # what to hold it by, in its frame
+_LOST_M = 0.04  # a block further from the tool than this is not in the hand
 _OVER_M = 0.10
 _PRESS_M, _PRESS_MORE_M_PER_S, _PRESS_MOST_M = 0.004, 0.003, 0.010
 _PACE = 0.8
-
-_SPOTS_M = np.array([(x, y, 0.0) for x, y in SPOTS_M])
 
 Vector = NDArray[np.float64]
 
 
 def plan(arm: Arm, person: Person, sight: Sight) -> Plan:
-    return wipe(arm, person, sight) if arm.name == WIPER else carry(arm, person, sight)
+    return _wipe(arm, person, sight) if arm.name == WIPER else _carry(arm, person, sight)
 
 
-def carry(arm: Arm, person: Person, sight: Sight) -> Plan:
-    carrier = Carrier(arm, person)
-
-    def tray(now: Sight) -> Vector:
-        return now.observations["tray/position_in_world"]
+def _carry(arm: Arm, person: Person, sight: Sight) -> Plan:
+    carrier, tray = Carrier(arm, person), seen(arm, "tray")
+    rack = arm.pose_base_in_world.inverse().transform_points(_RACK_TRAY_M)
 
     def beside(now: Sight) -> Vector:
-        return (_RACK_TRAY_M - tray(now)) * (1, 1, 0)
+        return (rack - tray(now).position) * (1, 1, 0)
 
     def is_up(now: Sight) -> bool:
-        return bool(tray(now)[2] > _CARRY_Z_M - _NEAR_M)
+        return bool(tray(now).position[2] > _CARRY_Z_M - _NEAR_M)
 
     def is_over_rack(now: Sight) -> bool:
         return float(np.linalg.norm(beside(now))) < _NEAR_M
@@ -51,14 +49,14 @@ def carry(arm: Arm, person: Person, sight: Sight) -> Plan:
         sight = yield from carrier.pick(sight)
         sight = yield from carrier.await_partner(sight)
         if not is_over_rack(sight):
-            up = np.array([0.0, 0.0, _CARRY_Z_M - tray(sight)[2]])
+            up = np.array([0.0, 0.0, _CARRY_Z_M - tray(sight).position[2]])
             sight = yield from carrier.along(sight, up, is_up)
             sight = yield from carrier.along(sight, beside(sight), is_over_rack)
-        down = np.array([0.0, 0.0, _RACK_TRAY_M[2] - tray(sight)[2]])
+        down = np.array([0.0, 0.0, rack[2] - tray(sight).position[2]])
         sight = yield from carrier.along(sight, down, lambda _: False)
 
 
-def wipe(arm: Arm, person: Person, sight: Sight) -> Plan:
+def _wipe(arm: Arm, person: Person, sight: Sight) -> Plan:
     wiper = _Wiper(arm, person)
     while True:
         sight = yield from pick(sight, person, wiper.grip)
@@ -68,59 +66,53 @@ def wipe(arm: Arm, person: Person, sight: Sight) -> Plan:
 
 
 class _Wiper:
-    """What the third operator sees and does; waypoints are in the arm's own base frame."""
+    """What the third operator sees and does; everything is in the arm's own base frame."""
 
     def __init__(self, arm: Arm, person: Person) -> None:
         self._person = person
-        self._base_from_world = arm.pose_base_in_world.inverse()
+        self._sponge = seen(arm, "sponge")
+        self._spots = arm.pose_base_in_world.inverse().transform_points(_SPOTS_M)
 
     def grip(self, now: Sight) -> Pose:
-        return self._sponge(now) @ Pose(np.array([0.0, 0.0, _BLOCK_Z_M]), Pose.identity().quaternion_wxyz)
+        return self._sponge(now) @ _BLOCK
 
     def wait_aside(self, sight: Sight) -> Step:
         """Holds the sponge up until the tray has left the dirt."""
         up = Waypoint(raised(sight.pose_tool_in_base, _OVER_M), CLOSED, _PACE)
 
         def has_news(now: Sight) -> bool:
-            return self._is_aside(now) or self.has_lost(now)
+            return _is_aside(now) or self.has_lost(now)
 
         return (yield from wait(sight, up, self._person, has_news))
 
     def rub(self, sight: Sight) -> Step:
         """Over whatever is nearest and still dirty, pressed harder where it does not come off; then up, and stay so."""
-        begun_s, left = sight.sim_time_s, -1
+        since_s, left = sight.sim_time_s, len(self._spots)
         offset = sight.pose_tool_in_base.position - self._sponge(sight).position
         turn = sight.pose_tool_in_base.quaternion_wxyz
         while not self.has_lost(sight):
-            dirty = _SPOTS_M[sight.observations["dirt/wiped"] < 1]
-            if len(dirty) != left:
-                begun_s, left = sight.sim_time_s, len(dirty)
-            place = self._next_place(sight, dirty, sight.sim_time_s - begun_s)
+            dirty = self._spots[sight.observations["dirt/wiped"] < 1]
+            if len(dirty) < left:
+                since_s, left = sight.sim_time_s, len(dirty)
+            place = self._next_place(sight, dirty, sight.sim_time_s - since_s)
             sight = yield Waypoint(Pose(place + offset, turn), CLOSED, _PACE)
         return sight
 
     def has_lost(self, now: Sight) -> bool:
-        return float(np.linalg.norm(self.grip(now).position - now.pose_tool_in_base.position)) > _LOST_M
+        return apart_m(self.grip(now), now.pose_tool_in_base) > _LOST_M
 
     def _next_place(self, now: Sight, dirty: Vector, stuck_s: float) -> Vector:
         """Where the sponge's middle should be."""
-        here = self._sponge(now).position
-        if len(dirty) == 0:
-            return np.array([*here[:2], _OVER_M])
-        in_base = self._base_from_world.transform_points(dirty)
-        nearest = in_base[np.argmin(np.hypot(*(in_base - here).T[:2]))]
-        if not self._is_aside(now):
-            return np.array([*here[:2], _OVER_M])
-        if float(np.hypot(*(nearest - here)[:2])) > _SPONGE_LENGTH_M:
-            return np.array([*nearest[:2], 0.5 * _OVER_M])
+        x, y, _ = self._sponge(now).position
+        if len(dirty) == 0 or not _is_aside(now):
+            return np.array([x, y, _OVER_M])
+        away_m = np.hypot(dirty[:, 0] - x, dirty[:, 1] - y)
+        nearest_x, nearest_y, _ = dirty[np.argmin(away_m)]
+        if away_m.min() > _SPONGE_LENGTH_M:
+            return np.array([nearest_x, nearest_y, _OVER_M / 2])
         press_m = min(_PRESS_M + _PRESS_MORE_M_PER_S * stuck_s, _PRESS_MOST_M)
-        return np.array([*nearest[:2], _SPONGE_Z_M - press_m])
+        return np.array([nearest_x, nearest_y, _SPONGE_Z_M - press_m])
 
-    def _sponge(self, now: Sight) -> Pose:
-        return self._base_from_world @ Pose(
-            now.observations["sponge/position_in_world"], now.observations["sponge/quaternion_in_world"]
-        )
 
-    @staticmethod
-    def _is_aside(now: Sight) -> bool:
-        return bool(now.observations["tray/position_in_world"][1] < ASIDE_Y_M)
+def _is_aside(now: Sight) -> bool:
+    return bool(now.observations["tray/position_in_world"][1] < ASIDE_Y_M)
