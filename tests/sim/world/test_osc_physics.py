@@ -109,8 +109,7 @@ def test_a_load_bends_it_as_far_as_its_stiffness_says(world: World, axis: int) -
     for _ in range(40):
         jacobian = osc_oracle.tool_jacobian(world.model, world.data, ARM)[:, dofs(world)]
         world.data.qfrc_applied[dofs(world)] = jacobian.T @ wrench
-        bent = track(world, 0.05)
-    assert bent is not None
+        track(world, 0.05)
     start = Pose(*goal_in_base(world))
     error = np.concatenate(difference(world.tool_pose_in_base(ARM), start))
     assert np.abs(error - predicted).max() < 0.05 * np.abs(predicted).max()
