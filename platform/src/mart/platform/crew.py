@@ -19,6 +19,7 @@ from mart.platform.browser import open_operator_page
 from mart.platform.plan import environment
 from mart.platform.supervise import Platform
 from mart.platform.visitor import Visitor
+from mart.protocol.errors import Forbidden
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -58,7 +59,7 @@ class Crew:
             visitor = stack.enter_context(contextlib.closing(Visitor(platform.url, platform.certificate)))
             visitor.join(platform.join_code, name)
             visitor.take(room, arm)
-            stack.callback(visitor.leave, room, arm)
+            stack.callback(_leave, visitor, room, arm)
             if self.browser is not None:
                 page = open_operator_page(self.browser, visitor, platform.url, room, arm)
                 stack.enter_context(contextlib.closing(page.context))
@@ -79,6 +80,11 @@ class Crew:
             hand = ["phone", "--url", platform.url, "--code", visitor.pair(room, arm), "--insecure"]
             stack.enter_context(_running(platform, hand, f"phone-{arm}"))
             yield Person(arm, name, visitor)
+
+
+def _leave(visitor: Visitor, room: str, arm: str) -> None:
+    with contextlib.suppress(Forbidden):  # handed back meanwhile
+        visitor.leave(room, arm)
 
 
 @contextlib.contextmanager

@@ -36,9 +36,13 @@ class Visitor:
     def take(self, room: str, arm: str) -> None:
         self._request("POST", f"api/rooms/{room}/seats/{arm}", {"operator": "human"})
 
-    def assign(self, room: str, arm: str, operator: str) -> None:
-        """Sets a free seat to script or hold."""
-        self._request("POST", f"api/rooms/{room}/seats/{arm}", {"operator": operator})
+    def assign(self, room: str, arm: str, operator: str, policy: str = "") -> None:
+        """Sets a seat that no person holds to script, hold or a promoted policy."""
+        self._request("POST", f"api/rooms/{room}/seats/{arm}", {"operator": operator, "policy": policy})
+
+    def hand_back(self, room: str, arm: str) -> None:
+        """To the machine from which this person took over."""
+        self._request("POST", f"api/rooms/{room}/seats/{arm}/hand-back")
 
     def leave(self, room: str, arm: str) -> None:
         self._request("DELETE", f"api/rooms/{room}/seats/{arm}")
