@@ -29,6 +29,24 @@ def test_wrong_operators_are_refused_before_anything_starts(operators: str, kind
     assert type(failure("collect", "--operators", operators)) is kind
 
 
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [
+        ("--skill", "master"),
+        ("--episodes", "0"),
+        ("--seed", "-1"),
+        ("--seed", str(2**32)),
+        ("--time-limit", "0"),
+    ],
+)
+def test_what_cannot_be_collected_is_refused_in_one_line(option: str, value: str) -> None:
+    result = CliRunner().invoke(cli, ["collect", "--lockstep", option, value])
+    assert result.exit_code == 2
+    (sentence,) = [line for line in result.output.splitlines() if line.startswith("Error")]
+    assert value in sentence
+    assert option in sentence
+
+
 def test_without_a_router_commands_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MART_ROUTER", f"tcp/127.0.0.1:{free_port()}")
     for command in (["rooms"], ["alive", "sim"]):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import queue
 import threading
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from mart.platform.rooms import open_rooms
@@ -19,6 +20,7 @@ from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import EpisodeRequest, Event, RoomReply, raise_error
 
 _UNSAVED_A_ROOM = 2  # one that is being made, one that is being verified
+_OF_AN_EPISODE = {"episode_started", "episode_ended", "episode_saved"}
 _PATIENCE_S = 120.0  # a room answers between two episodes
 
 
@@ -42,26 +44,24 @@ class LockstepSession:
         """
         for asker in self._askers:
             asker.start()
-        events: dict[tuple[str, int, str], Event] = {}
+        told: dict[tuple[str, int], dict[str, Event]] = defaultdict(dict)
         saved = 0
         while saved < self._episodes:
             event = self._next()
             what = event.WhichOneof("what") or ""
-            if what in ("episode_started", "episode_ended"):
-                events[event.room, getattr(event, what).number, what] = event
-            elif what == "episode_saved":
-                key = (event.room, event.episode_saved.number)
-                if (
-                    *key,
-                    "episode_ended",
-                ) in events:  # what an earlier run has left is repaired and told as well
-                    saved += 1
-                    self._unsaved.release()
-                    started, ended = (
-                        events.pop((*key, "episode_started")),
-                        events.pop((*key, "episode_ended")),
-                    )
-                    yield episode_of(started, ended, event.episode_saved)
+            if what not in _OF_AN_EPISODE:
+                continue
+            key = (event.room, getattr(event, what).number)
+            told[key][what] = event
+            if (
+                told[key].keys() == _OF_AN_EPISODE
+            ):  # what an earlier run left is saved as well, but begins nowhere
+                saved += 1
+                self._unsaved.release()
+                events = told.pop(key)
+                yield episode_of(
+                    events["episode_started"], events["episode_ended"], events["episode_saved"].episode_saved
+                )
 
     def close(self) -> None:
         """Waits for the rooms to end what they are at."""
