@@ -24,24 +24,12 @@ from mart.trainer.nets.stack import Generators, full, uniform
 State = tuple[Tensor, Tensor]  # h and c, each float32[M, B, H]
 
 
-def tick(z: Tensor, c: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """z: [M, B, 4 H], c: [M, B, H] → gates and candidate as in z, the next c, the next h; all float32."""
-    width = c.shape[-1]
-    gates = torch.cat((torch.sigmoid(z[..., : 3 * width]), torch.tanh(z[..., 3 * width :])), dim=-1)
-    i, f, o, u = gates.chunk(4, dim=-1)
-    c = torch.addcmul(f * c, i, u)
-    return gates, c, o * torch.tanh(c)
-
-
-def tick_backward(gates: Tensor, c: Tensor, c_before: Tensor, d_h: Tensor, d_c: Tensor) -> State:
-    """The gradients with respect to z and to the cell before, from those to h and to c; all float32."""
-    i, f, o, u = gates.chunk(4, dim=-1)
-    tanh_c = torch.tanh(c)
-    d_c = torch.addcmul(d_c, d_h * o, 1 - tanh_c * tanh_c)
-    d_gates = torch.cat((d_c * u, d_c * c_before, d_h * tanh_c, d_c * i), dim=-1)
-    width = c.shape[-1]
-    slope = torch.cat((gates[..., : 3 * width] * (1 - gates[..., : 3 * width]), 1 - u * u), dim=-1)
-    return d_gates * slope, d_c * f
+def squash_(z: Tensor) -> Tensor:
+    """In place: sigmoid of the three gates, tanh of the candidate. z: [M, B, 4 H]."""
+    width = z.shape[-1] // 4
+    z[..., : 3 * width].sigmoid_()
+    z[..., 3 * width :].tanh_()
+    return z
 
 
 class _Layer(torch.autograd.Function):
@@ -55,25 +43,29 @@ class _Layer(torch.autograd.Function):
         width = w_h.shape[1]
         x, w_i, w_h = x.to(dtype), w_i.to(dtype), w_h.to(dtype)
         z = torch.bmm(x.flatten(1, 2), w_i).view(models, ticks, batch, 4 * width)
-        gates = x.new_empty(models, ticks, batch, 4 * width, dtype=torch.float32)
-        cells = x.new_zeros(models, ticks + 1, batch, width, dtype=torch.float32)  # the one before each tick
-        hidden = x.new_zeros(models, ticks + 1, batch, width)
-        out = torch.empty_like(cells[:, 1:])
+        gates = torch.empty_like(z, dtype=torch.float32)
+        cells = gates.new_zeros(models, ticks + 1, batch, width)  # cells[:, t]: before tick t
+        shown = torch.empty_like(cells[:, 1:])  # tanh of the cells after each tick
+        hidden = torch.zeros_like(cells, dtype=dtype)
+        out = torch.empty_like(shown)
         for t in range(ticks):
             z_t = torch.baddbmm(z[:, t], hidden[:, t], w_h) if t else z[:, t]
-            gates[:, t], cells[:, t + 1], out[:, t] = tick(z_t + b, cells[:, t])
+            i, f, o, u = squash_(torch.add(z_t, b, out=gates[:, t])).chunk(4, dim=-1)
+            torch.mul(f, cells[:, t], out=cells[:, t + 1]).addcmul_(i, u)
+            torch.mul(o, torch.tanh(cells[:, t + 1], out=shown[:, t]), out=out[:, t])
             hidden[:, t + 1] = out[:, t]
-        ctx.save_for_backward(x, w_i, w_h, gates, cells, hidden)
+        ctx.save_for_backward(x, w_i, w_h, gates, cells, shown, hidden)
         return out
 
     @staticmethod
     def backward(ctx: Any, *d_out: Tensor) -> tuple[Tensor | None, Tensor, Tensor, Tensor, None]:
-        x, w_i, w_h, gates, cells, hidden = ctx.saved_tensors
-        d_z = torch.empty_like(gates, dtype=x.dtype)
+        x, w_i, w_h, gates, cells, shown, hidden = ctx.saved_tensors
+        d_z, d = torch.empty_like(gates, dtype=x.dtype), torch.empty_like(gates[:, 0])
         d_h, d_c = torch.zeros_like(cells[:, 0]), torch.zeros_like(cells[:, 0])
         for t in reversed(range(x.shape[1])):
             d_h = d_h + d_out[0][:, t]
-            d_z[:, t], d_c = tick_backward(gates[:, t], cells[:, t + 1], cells[:, t], d_h, d_c)
+            _tick_backward(gates[:, t], cells[:, t], shown[:, t], d_h, d_c, d)
+            d_z[:, t] = d
             if t:
                 d_h = torch.bmm(d_z[:, t], w_h.mT).float()
         flat = d_z.flatten(1, 2)
@@ -81,6 +73,24 @@ class _Layer(torch.autograd.Function):
         d_w_i = torch.bmm(x.flatten(1, 2).mT, flat).float()
         d_w_h = torch.bmm(hidden[:, 1:-1].flatten(1, 2).mT, d_z[:, 1:].flatten(1, 2)).float()
         return d_x, d_w_i, d_w_h, flat.float().sum(1, keepdim=True), None
+
+
+def _tick_backward(  # noqa: PLR0917 -- tensors of one tick, in the order of the equations
+    gates: Tensor, before: Tensor, shown: Tensor, d_h: Tensor, d_c: Tensor, d_z: Tensor
+) -> None:
+    """Fills d_z with the gradient to z, and turns d_c from that to the cell after the tick into that to the one before.
+
+    before: the cell before the tick. shown: tanh of the one after. d_h: the gradient to h.
+    """
+    i, f, o, u = gates.chunk(4, dim=-1)
+    d_i, d_f, d_o, d_u = d_z.chunk(4, dim=-1)
+    d_c += torch.ops.aten.tanh_backward(d_h * o, shown)
+    for product, left, right in ((d_i, d_c, u), (d_f, d_c, before), (d_o, d_h, shown), (d_u, d_c, i)):
+        torch.mul(left, right, out=product)
+    three = 3 * u.shape[-1]
+    d_z[..., :three] = torch.ops.aten.sigmoid_backward(d_z[..., :three], gates[..., :three])
+    d_z[..., three:] = torch.ops.aten.tanh_backward(d_u, u)
+    d_c *= f
 
 
 class LSTM(nn.Module):
@@ -114,6 +124,8 @@ class LSTM(nn.Module):
         """One tick in float32. x: [M, B, I] → h of the last layer, and the next state."""
         after = []
         for w_i, w_h, b, (h, c) in zip(self.w_i, self.w_h, self.b, state, strict=True):
-            _, c_after, x = tick(torch.bmm(x, w_i) + torch.bmm(h, w_h) + b, c)
+            i, f, o, u = squash_(torch.bmm(x, w_i) + torch.bmm(h, w_h) + b).chunk(4, dim=-1)
+            c_after = f * c + i * u
+            x = o * torch.tanh(c_after)
             after.append((x, c_after))
         return x, after
