@@ -1,4 +1,4 @@
-"""Episodes that were read before, by the hash of their file: reading again costs a hash and one small file.
+"""Episodes that were read before, by the hashes of file and layout: reading again costs a hash and one small file.
 
 What is in the cache is derived: it can be deleted at any time, and a damaged entry is read anew.
 """
@@ -32,9 +32,9 @@ def read_cached(file: EpisodeFile, layout: Layout, sha256: str, folder: Path | N
     """Raises what `read_episode` raises. `folder`: of the cache; None reads the file itself."""
     if folder is None:
         return read_episode(file, layout)
-    entry = folder / f"{sha256}-{_VERSION}.safetensors"
+    entry = folder / f"{sha256}-{layout.sha256[:16]}-{_VERSION}.safetensors"
     known = _load(entry)
-    if known is not None and known.observations.shape[1] == layout.width:
+    if known is not None:
         return known
     episode = read_episode(file, layout)
     _save(entry, episode)

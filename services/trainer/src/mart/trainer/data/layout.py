@@ -6,6 +6,7 @@ part is what its operator sees, in the same order. Parts overlap where arms see 
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -36,6 +37,12 @@ class Layout:
     def of_arms(cls, task: str, arms: int) -> Layout:
         """Raises NotFound for an unknown task and InvalidInput for a number of arms that it cannot have."""
         return cls.of(get_task(task, arms))
+
+    @property
+    def sha256(self) -> str:
+        """Two layouts with the same digest put the same things into the same columns."""
+        said = ";".join(f"{seen.name} {seen.shape} {seen.unit}" for seen in self.seen)
+        return hashlib.sha256(f"{self.arms};{said}".encode()).hexdigest()
 
     @property
     def width(self) -> int:
