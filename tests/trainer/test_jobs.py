@@ -31,7 +31,11 @@ from tests.support.processes import Running, running_router, running_service, st
 from tests.trainer.conftest import Recorded
 from tests.trainer.recorded import TASK
 
-_WAIT_S = 60.0
+pytestmark = pytest.mark.timeout(
+    300
+)  # every job begins with importing torch, which takes its time on a busy machine
+
+_WAIT_S = 120.0
 _BETWEEN_S = 0.1
 
 

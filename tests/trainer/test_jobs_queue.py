@@ -28,6 +28,7 @@ class Slots:
 
     def __init__(self, slots: int) -> None:
         self.slots = slots
+        self.trouble = "" if slots else "nobody is there"
         self.running: list[int] = []
         self.stopped: list[int] = []
 
@@ -108,6 +109,13 @@ def test_a_lost_cluster_costs_no_attempt(table: JobTable, tmp_path: Path) -> Non
         queue.advance(now_ns=1)
         queue.end(Ended(slots.running.pop(), End.LOST, "waits for the cluster"), now_ns=2)
     assert (table.get(1).state, table.get(1).attempt) == (State.QUEUED, 0)
+
+
+def test_a_job_that_waits_says_for_what(table: JobTable, tmp_path: Path) -> None:
+    queue = Queue(table, {"ray": Slots(0)}, tmp_path)
+    queue.submit([WISH], "ray", now_ns=0)
+    queue.advance(now_ns=1)
+    assert table.get(1).detail == "nobody is there"
 
 
 def test_what_ran_when_the_trainer_died_is_queued_again(table: JobTable, tmp_path: Path) -> None:

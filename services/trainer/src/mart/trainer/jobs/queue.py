@@ -6,7 +6,7 @@ import itertools
 import logging
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mart.protocol.errors import Conflict, NotFound
@@ -64,6 +64,8 @@ class Queue:
                 continue
             if Counter(self._busy.values())[job.executor] < executor.slots:
                 self._start(job, executor, now_ns)
+            elif executor.trouble and not job.detail:
+                self._put(replace(job, detail=executor.trouble))
 
     def end(self, ended: Ended, now_ns: int) -> None:
         """A job's process has ended. One that was cancelled meanwhile stays cancelled."""

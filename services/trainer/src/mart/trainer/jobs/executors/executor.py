@@ -26,6 +26,11 @@ class Executor(Protocol):
         """How many jobs it takes at a time now; 0 while it cannot be reached."""
         ...
 
+    @property
+    def trouble(self) -> str:
+        """Why it takes none, in words for those who wait; empty where it does."""
+        ...
+
     def start(self, job: int, run: Path) -> None:
         """Runs `mart.trainer.jobs.work` on the folder `run`."""
         ...

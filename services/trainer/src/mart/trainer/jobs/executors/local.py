@@ -20,6 +20,7 @@ class LocalExecutor:
 
     def __init__(self, slots: int, ended: OnEnded) -> None:
         self.slots = slots
+        self.trouble = ""
         self._ended = ended
         self._processes: dict[int, subprocess.Popen[bytes]] = {}
         self._waiters: list[threading.Thread] = []

@@ -42,6 +42,10 @@ class RayExecutor:
             self._connect()
         return self._slots
 
+    @property
+    def trouble(self) -> str:
+        return "" if self._slots else f"waits for the Ray cluster at {self._address}, which does not answer"
+
     def start(self, job: int, run: Path) -> None:
         with self._lock:
             self._runs[job] = run
@@ -98,5 +102,9 @@ class RayExecutor:
             run = self._runs.pop(job, None)
         if run is None:
             return
-        why = f"waits for the Ray cluster at {self._address}, which was lost" if code == End.LOST else ""
-        self._ended(Ended(job, code, why or (why_ended(run, code) if code != End.DONE else "")))
+        if code == End.DONE:
+            self._ended(Ended(job, code))
+        elif code == End.LOST:
+            self._ended(Ended(job, code, f"waits for the Ray cluster at {self._address}, which was lost"))
+        else:
+            self._ended(Ended(job, code, why_ended(run, code)))
