@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import threading
+from collections import Counter
+from functools import partial
 
 import pytest
 
@@ -21,6 +23,7 @@ from mart.protocol.messages import (
 from mart.sim.episode import COUNTDOWN_S, ENDED_S, Terms
 from mart.sim.experts import get_skill
 from mart.sim.lockstep_room import LockstepRoom, OrderedVoice, SimulatedTime
+from mart.sim.mailbox import Mailbox
 from mart.sim.room import Room
 from mart.sim.room_record import RoomRecord
 from mart.sim.world import World
@@ -37,16 +40,19 @@ class Stage:
         voice = OrderedVoice(bus, "room-1", world.arms)
         terms = Terms(lockstep=True, skill=skill, time_limit_s=time_limit_s)
         self.room = Room("room-1", world, RoomRecord(seed=5), voice, lambda _: None, now_s=0.0, terms=terms)
-        self._lockstep = LockstepRoom(self.room, voice, self.time)
-        self._lockstep.seat_scripts(world.task, get_skill(skill), seed=5)
+        self.lockstep = LockstepRoom(self.room, voice, self.time)
+        self.lockstep.seat_scripts(world.task, get_skill(skill), seed=5)
 
     def play(self, number: int) -> list[State]:
         """One episode; the states that are recorded of it."""
+        self.ask(number)
+        self.lockstep.play(threading.Event())
+        return [said for said in self.said if isinstance(said, State) and said.episode == number]
+
+    def ask(self, number: int) -> None:
         ready = EpisodeRequest(ready=EpisodeRequest.Ready(arm="arm0", ready=True, number=number))
         reply = self.room.answer_episode(ready, self.time.now_s())
         assert not reply.error.code, reply.error.message
-        self._lockstep.play(threading.Event())
-        return [said for said in self.said if isinstance(said, State) and said.episode == number]
 
     def event(self, what: str) -> Event:
         """The newest of its kind."""
@@ -79,6 +85,16 @@ def test_an_episode_is_driven_through_the_barrier_by_commands_like_anybodys(worl
     assert len(used) == 2 * len(ticks)
     assert all(arm.source == OPERATOR_SCRIPT and arm.fresh for state in ticks for arm in state.arms)
     assert not stage.room.rejected
+
+
+def test_who_asks_before_an_episode_is_over_gets_the_next_one(world: World) -> None:
+    stage, stop, mailbox = Stage(world, time_limit_s=0.2), threading.Event(), Mailbox()
+    for number in (1, 2):
+        mailbox.put(partial(stage.ask, number))
+    mailbox.put(stop.set)
+    stage.lockstep.run(mailbox, Counter(), stop)
+    started = [said.episode_started.number for said in stage.said if isinstance(said, Event)]
+    assert [number for number in started if number] == [1, 2]
 
 
 def test_everything_is_said_in_the_order_in_which_it_happened(world: World) -> None:

@@ -31,6 +31,15 @@ def test_work_wakes_the_one_who_waits() -> None:
 
 def test_nothing_to_do_is_no_failure() -> None:
     Mailbox().work(timeout_s=-1.0)
+    assert not Mailbox().work_once(timeout_s=-1.0)
+
+
+def test_work_can_be_done_one_by_one() -> None:
+    mailbox, done = Mailbox(), list[int]()
+    mailbox.put(lambda: done.append(1))
+    mailbox.put(lambda: done.append(2))
+    assert mailbox.work_once(timeout_s=0.0)
+    assert done == [1]
 
 
 def test_work_that_makes_work_does_not_hold_up_the_room() -> None:

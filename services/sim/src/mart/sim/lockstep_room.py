@@ -96,12 +96,12 @@ class LockstepRoom:
             self._operators[arm] = ScriptedOperator(task, arm, reply.seat.epoch, skill, seed)
 
     def run(self, mailbox: Mailbox, garbled: Counter[str], stop: threading.Event) -> None:
-        """Until `stop` is set. What comes in is answered between episodes."""
+        """Until `stop` is set. What comes in is answered between episodes: whoever asks twice gets two."""
         complaints = Complaints()
         while not stop.is_set():
             complaints.say(Counter(self._room.rejected) + garbled, clock.monotonic_s())
             self._voice.status(self._room.status(self._time.now_s()))
-            mailbox.work(STATUS_S)
+            mailbox.work_once(STATUS_S)
             self.play(stop)
 
     def play(self, stop: threading.Event) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import queue
 from collections.abc import Callable
 
@@ -25,7 +24,15 @@ class Mailbox:
 
     def work(self, timeout_s: float) -> None:
         """Waits until something is there, at most `timeout_s`, and does all that came until then."""
-        with contextlib.suppress(queue.Empty):
-            self._queue.get(timeout=max(timeout_s, 0.0))()
+        if self.work_once(timeout_s):
             for _ in range(self._queue.qsize()):
-                self._queue.get_nowait()()
+                self.work_once(0.0)
+
+    def work_once(self, timeout_s: float) -> bool:
+        """Waits in the same way and does what came first; whether there was anything."""
+        try:
+            work = self._queue.get(timeout=max(timeout_s, 0.0))
+        except queue.Empty:
+            return False
+        work()
+        return True
