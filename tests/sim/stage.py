@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from mart.protocol import codec
 from mart.protocol.messages import (
     EPISODE_PHASE_RECORDING,
@@ -16,7 +18,7 @@ from mart.protocol.messages import (
 )
 from mart.sim.room import Room
 from mart.sim.room_record import RoomRecord
-from mart.sim.world import World
+from mart.sim.world import Diverged, World
 
 ARMS = ("arm0", "arm1")
 PERIOD_S = 0.05
@@ -50,13 +52,24 @@ class Heard:
 class Stage:
     """A room, two people who take seats, and the time."""
 
-    def __init__(self, world: World, record: RoomRecord | None = None) -> None:
+    def __init__(
+        self,
+        world: World,
+        record: RoomRecord | None = None,
+        explain: Callable[[Diverged], str] = str,
+    ) -> None:
         self.world = world
         self.voice = Heard()
         self.kept: list[RoomRecord] = []
         self.now_s = 1000.0
         self.room = Room(
-            "room-1", world, record or RoomRecord(seed=1), self.voice, self.kept.append, now_s=self.now_s
+            "room-1",
+            world,
+            record or RoomRecord(seed=1),
+            self.voice,
+            self.kept.append,
+            now_s=self.now_s,
+            explain=explain,
         )
         self._sequence = 0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
@@ -23,10 +24,11 @@ from mart.protocol.messages import (
     Event,
     SeatRequest,
 )
+from mart.sim import divergence
 from mart.sim.admission import Rejection
 from mart.sim.room import REPEAT_S, Room
 from mart.sim.room_record import RoomRecord
-from mart.sim.world import Diverged, World
+from mart.sim.world import World
 from tests.sim.stage import ARMS, PERIOD_S, Heard, Stage
 
 TASK = "two_arm_multi_cube_lifting"
@@ -221,17 +223,12 @@ def test_a_pause_interrupts_the_episode(stage: Stage) -> None:
     assert stage.status().episode.interrupted
 
 
-def test_a_world_that_diverges_ends_the_episode_and_is_reset(
-    stage: Stage, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_world_that_diverges_ends_the_episode_and_is_reset(world: World, tmp_path: Path) -> None:
+    stage = Stage(world, explain=divergence.Keeper(tmp_path / "diverged", "room-1"))
     stage.record()
-
-    def diverge(_world: World, _actions: object) -> None:
-        raise Diverged(1.0)
-
-    with monkeypatch.context() as broken:
-        broken.setattr(World, "step", diverge)
-        stage.drive(1)
+    stage.drive(2)
+    world.data.qvel[:] = 1e9  # truly out of bounds after a substep or two
+    stage.drive(1)
     (ended,) = stage.voice.of("episode_ended")
     assert (ended.episode_ended.outcome, ended.episode_ended.reason) == (
         OUTCOME_FAILURE,
@@ -240,6 +237,11 @@ def test_a_world_that_diverges_ends_the_episode_and_is_reset(
     assert stage.status().episode.phase == EPISODE_PHASE_PRACTICE
     stage.drive(2)
     assert stage.newest.arms[0].fresh
+    (path,) = (tmp_path / "diverged").iterdir()
+    assert str(path) in stage.voice.of("notice")[-1].notice.text
+    last, told = divergence.load(path), {state.tick: state for state in stage.voice.states}
+    good = told[ended.episode_ended.last_tick - 1]
+    assert last.states[-2].tobytes() == good.integration_state
 
 
 def test_what_a_room_keeps_lets_it_go_on(stage: Stage, world: World) -> None:

@@ -10,6 +10,7 @@ import hashlib
 import math
 import os
 import secrets
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +18,7 @@ import numpy as np
 from mart.protocol.errors import Conflict, InvalidInput, NotFound, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest
 from mart.protocol.worlds import Array, Flags, check_actions, pack
-from mart.sim.world import ACTION_SIZE, World, WorldBatch
+from mart.sim.world import ACTION_SIZE, Diverged, World, WorldBatch
 
 MAX_SESSIONS = 8
 MAX_WORLDS = 4096  # of all sessions: about 10 kB each, so that a replica stays below 100 MB
@@ -48,9 +49,13 @@ class _Session:
 
 
 class Lockstep:
-    """Answers rollout requests. Raises errors of the tree; `now_s` is monotonic."""
+    """Answers rollout requests. Raises errors of the tree; `now_s` is monotonic.
 
-    def __init__(self, threads: int | None = None) -> None:
+    explain: says in words why a world has failed whose physics left its bounds.
+    """
+
+    def __init__(self, threads: int | None = None, explain: Callable[[Diverged], str] = str) -> None:
+        self._explain = explain
         self._threads = threads or os.cpu_count() or 1
         self._boot = secrets.token_hex(4)  # tells a session of an earlier run from one that was closed
         self._opened = 0
@@ -75,7 +80,7 @@ class Lockstep:
     def _reset(self, reset: RolloutRequest.Reset, now_s: float) -> RolloutReply:
         self._require_room(len(reset.seeds))
         world = self._world(Kind(reset.task, reset.control_hz, reset.arms or None))
-        worlds = WorldBatch(world, len(reset.seeds), self._threads)
+        worlds = WorldBatch(world, len(reset.seeds), self._threads, self._explain)
         worlds.reset(reset.seeds)
         self._opened += 1
         name = f"{self._boot}-{self._opened}"

@@ -14,6 +14,7 @@ from mart.protocol.complaints import Complaints
 from mart.protocol.errors import MartError
 from mart.protocol.messages import RolloutReply, RolloutRequest, error_message
 from mart.protocol.service import announced, connected
+from mart.sim import divergence
 from mart.sim.lockstep import Lockstep
 from mart.sim.settings import ReplicaSettings
 
@@ -24,12 +25,13 @@ def serve_replica(settings: ReplicaSettings) -> None:
     """Until the process is asked to stop."""
     os.nice(settings.niceness)
     requests: queue.SimpleQueue[Request] = queue.SimpleQueue()
+    keeper = divergence.Keeper(settings.diverged_dir, settings.name)
     with (
         connected(settings, "replica", settings.name) as service,
         contextlib.closing(service.bus.serve(keys.rollout(settings.name), requests.put)),
         announced(service),
     ):
-        _answer_all(Lockstep(), requests, service.stop)
+        _answer_all(Lockstep(explain=keeper), requests, service.stop)
 
 
 def _answer_all(lockstep: Lockstep, requests: queue.SimpleQueue[Request], stop: threading.Event) -> None:

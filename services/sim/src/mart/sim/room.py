@@ -1,7 +1,8 @@
 """One room: seats, barrier, episode and world, put together. Used by one thread at a time, which says what time it is
 (`now_s`, monotonic seconds).
 
-What it has to say goes to a `Voice`, what must survive a crash to `keep`, which may raise OSError.
+What it has to say goes to a `Voice`, what must survive a crash to `keep`, which may raise OSError. `explain` says in
+words what became of a world whose physics left its bounds.
 """
 
 from __future__ import annotations
@@ -66,7 +67,9 @@ class Room:
         now_s: float,
         pace: float = 1.0,
         terms: Terms = Terms(),  # noqa: B008 - frozen
+        explain: Callable[[Diverged], str] = str,
     ) -> None:
+        self._explain = explain
         self._name, self._world, self._voice, self._keep, self._record = name, world, voice, keep, record
         self._boot_ns = clock.wall_ns()
         self._seats = SeatTable(world.arms)
@@ -168,7 +171,7 @@ class Room:
         try:
             state = self._ticker.advance(firing, self._seats, self._course, now_s)
         except Diverged as error:
-            self._tell(publish.notice("error", str(error)))
+            self._tell(publish.notice("warning", self._explain(error)))
             self._do(self._course.abandon(OUTCOME_FAILURE, "the physics diverged", now_s), now_s)
             return
         self._tell_state(state, now_s)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from mart.protocol import clock
 from mart.protocol.complaints import Complaints
 from mart.protocol.service import announced, connected
-from mart.sim import room_record
+from mart.sim import divergence, room_record
 from mart.sim.bus_voice import BusVoice
 from mart.sim.doorway import Doorway
 from mart.sim.episode import Terms
@@ -53,6 +53,7 @@ def serve_world(settings: SimSettings, world: World) -> None:
             now_s=clock.monotonic_s(),
             pace=settings.pace,
             terms=Terms(skill=settings.skill or "", time_limit_s=settings.time_limit_s),
+            explain=divergence.Keeper(settings.diverged_dir, settings.room),
         )
         complaints, garbled = Complaints(), Counter[str]()
 
@@ -78,7 +79,14 @@ def serve_lockstep(settings: SimSettings, world: World, skill: Skill) -> None:
         opened.enter_context(contextlib.closing(voice))
         terms = Terms(lockstep=True, skill=skill.name, time_limit_s=settings.time_limit_s)
         room = Room(
-            settings.room, world, _record(settings), voice, _keeper(settings), now_s=time.now_s(), terms=terms
+            settings.room,
+            world,
+            _record(settings),
+            voice,
+            _keeper(settings),
+            now_s=time.now_s(),
+            terms=terms,
+            explain=divergence.Keeper(settings.diverged_dir, settings.room),
         )
         doorway = Doorway(
             service.bus, settings.room, room, world, do=mailbox.put, garbled=garbled, now_s=time.now_s

@@ -11,7 +11,14 @@ from mart.protocol.settings import Settings
 DEFAULT_TASK = "two_arm_multi_cube_lifting"
 
 
-class SimSettings(Settings):
+class _WorldSettings(Settings):
+    @property
+    def diverged_dir(self) -> Path:
+        """Where the last states of worlds that went out of bounds are kept."""
+        return self.data_dir / "diverged"
+
+
+class SimSettings(_WorldSettings):
     """One room."""
 
     room: str = Field("room-1", description="Id of the room.")
@@ -37,7 +44,7 @@ class SimSettings(Settings):
         return self.data_dir / "rooms" / f"{self.room}.json"
 
 
-class ReplicaSettings(Settings):
+class ReplicaSettings(_WorldSettings):
     """Worlds stepped by requests."""
 
     name: str = Field("replica-1", description="Id of the replica.")

@@ -6,7 +6,8 @@ they are between two steps is one integration state each; positions are worked o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import deque
+from collections.abc import Callable, Sequence
 
 import mujoco
 import numpy as np
@@ -16,23 +17,31 @@ from numpy.typing import NDArray
 from mart.protocol.worlds import Worlds
 from mart.sim.tasks import scene_of
 from mart.sim.world.data import Array, Flags
+from mart.sim.world.last_states import KEPT, Diverged
 from mart.sim.world.progress import first_reasons
 from mart.sim.world.surface import Surface
-from mart.sim.world.world import FATAL_WARNINGS, Diverged, World, bounded
+from mart.sim.world.world import FATAL_WARNINGS, World, bounded
 
 _NOTHING, _POSITIONS = int(mujoco.mjtStage.mjSTAGE_NONE), int(mujoco.mjtStage.mjSTAGE_POS)
 
 
 class WorldBatch:
-    """`size` worlds like `world`, which stays in use: it makes the states of resets. Reset before anything else."""
+    """`size` worlds like `world`, which stays in use: it makes the states of resets. Reset before anything else.
 
-    def __init__(self, world: World, size: int, threads: int) -> None:
-        self._world = world
+    A world whose physics leaves its bounds stays as it was before that, for good, and has failed; `explain` says in
+    words why.
+    """
+
+    def __init__(
+        self, world: World, size: int, threads: int, explain: Callable[[Diverged], str] = str
+    ) -> None:
+        self._world, self._explain = world, explain
         self._batch = Batch(world.model, size, threads)
         self._surface = Surface(scene_of(world.task), world.model, self._batch)
         self._judgement = self._surface.judge()
         self._fatal_warnings = self._batch.warning[:, FATAL_WARNINGS, 1]
         self._diverged: dict[int, str] = {}
+        self._trail: deque[tuple[Array, Array, Flags]] = deque(maxlen=KEPT)  # states, actions, who went on
 
     def __len__(self) -> int:
         return int(self._batch.nsim)
@@ -44,18 +53,16 @@ class WorldBatch:
             self._world.reset(seed)
             row[:] = np.frombuffer(self._world.integration_state(), "<f8")
         self._diverged.clear()
+        self._trail.clear()
         self._batch.forward(stage=_POSITIONS)
         self._judgement = self._surface.judge()
 
-    def step(self, actions: Array, running: Flags) -> dict[int, str]:
-        """Advances the running worlds by one control period; actions: shape (worlds, arms, 7), finite.
-
-        A world whose physics leaves its bounds stays as it was, for good, and has failed; the answer says which have
-        now, and why.
-        """
+    def step(self, actions: Array, running: Flags) -> None:
+        """Advances the running worlds by one control period; actions: shape (worlds, arms, 7), finite."""
         going = running.copy()
         going[list(self._diverged)] = False
         before = self._batch.state.copy()
+        self._trail.append((before, actions, going.copy()))
         self._surface.command(actions)
         diverged = self._advance(np.flatnonzero(going))
         if len(diverged):
@@ -66,9 +73,13 @@ class WorldBatch:
         if not going.all():
             self._batch.state[~going] = before[~going]
             self._judgement = self._surface.judge()
-        now = {int(world): str(Diverged(self._batch.time[world])) for world in diverged}
-        self._diverged |= now
-        return now
+        for world in diverged.tolist():
+            self._diverged[world] = self._explain(self._divergence(world))
+
+    def _divergence(self, world: int) -> Diverged:
+        trail = [(states[world], actions[world]) for states, actions, going in self._trail if going[world]]
+        states, actions = (np.array(part) for part in zip(*trail, strict=True))
+        return Diverged(float(self._batch.time[world]), self._world.last_states(states, actions))
 
     def _advance(self, going: NDArray[np.intp]) -> NDArray[np.intp]:
         """Which of them left their bounds."""

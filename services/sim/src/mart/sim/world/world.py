@@ -17,13 +17,14 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mart.protocol.errors import Corrupt, InvalidInput
+from mart.protocol.errors import InvalidInput
 from mart.protocol.pose import Pose, quaternion_conjugate, quaternion_log, quaternion_multiply
 from mart.protocol.tasks import Task, get_task
 from mart.sim.tasks import scene_of
 from mart.sim.world import kinematics, model, osc, panda
 from mart.sim.world.arm import MeasuredArm
 from mart.sim.world.data import Array, Flags
+from mart.sim.world.last_states import Diverged, LastStates, Trail
 from mart.sim.world.meshes import Detail
 from mart.sim.world.progress import Progress, first_reasons
 from mart.sim.world.surface import ACTION_SIZE, Surface
@@ -42,13 +43,6 @@ def _log_warning(message: str) -> None:
     logging.getLogger(__name__).warning("MuJoCo: %s", message)
 
 
-class Diverged(Corrupt):
-    """The simulation went out of numerical bounds; only a reset helps."""
-
-    def __init__(self, sim_time_s: float) -> None:
-        super().__init__(f"The world ran out of numerical bounds after {sim_time_s:.3f} s: reset it.")
-
-
 class World:
     """A compiled task and its state. Build with `World.build`, then `reset` before anything else.
 
@@ -62,11 +56,12 @@ class World:
         mujoco.set_mju_user_warning(_log_warning)
         self._scene = scene
         self.substeps, timestep_s = model.substeps(control_hz)
-        self.control_period_s = 1.0 / control_hz
+        self.control_hz, self.control_period_s = control_hz, 1.0 / control_hz
         self.model = model.build(scene, timestep_s, detail)
         self.data = mujoco.MjData(self.model)
         self._surface = Surface(scene, self.model, self.data)
         self._action_shape = (len(self.arms), ACTION_SIZE)
+        self._trail = Trail(self.model, self._action_shape)
         self._velocities = self.data.qvel
         self._fatal_warnings = self.data.warning.number[FATAL_WARNINGS]
 
@@ -107,6 +102,7 @@ class World:
         """Begins an episode: things and arms where this seed puts them, arms at rest and holding."""
         random = np.random.default_rng(seed)
         mujoco.mj_resetData(self.model, self.data)
+        self._trail.clear()
         self._scene.place_objects(random)
         for index, arm in enumerate(self.task.arms):
             tool_in_world = arm.pose_base_in_world @ self._scene.start_pose_in_base(arm, random)
@@ -160,13 +156,18 @@ class World:
             )
         if not math.isfinite(actions.sum()):
             raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
-        self._surface.command(actions)
         begun_s = self.sim_time_s
+        self._trail.note(self.data, actions)
+        self._surface.command(actions)
         mujoco.mj_step(self.model, self.data, self.substeps)
         # Poses of the new state: mj_step leaves those of its last substep's beginning.
         mujoco.mj_kinematics(self.model, self.data)
         if any(self._fatal_warnings.tolist()) or not bounded(self._velocities):
-            raise Diverged(begun_s)
+            raise Diverged(begun_s, self.last_states(*self._trail.states_and_actions()))
+
+    def last_states(self, states: Array, actions: Array) -> LastStates:
+        """Of a world of this model; shapes (n, size) and (n, arms, 7)."""
+        return LastStates(self.task.name, self.control_hz, self.model_sha256, states, actions)
 
     def integration_state(self) -> bytes:
         """MuJoCo's full integration state, float64 little-endian: all that decides the future, and the shadows."""
@@ -184,6 +185,7 @@ class World:
         if not np.isfinite(numbers).all():
             raise InvalidInput("A state with NaN or infinity was given; every number must be finite.")
         mujoco.mj_resetData(self.model, self.data)
+        self._trail.clear()
         mujoco.mj_setState(self.model, self.data, numbers, STATE)
         mujoco.mj_kinematics(self.model, self.data)
 
