@@ -52,7 +52,7 @@ class Crews:
     def __init__(self, bus: Bus, room: str | None, checkpoint_of: CheckpointOf, load: Load) -> None:
         self._bus, self._checkpoint_of, self._load = bus, checkpoint_of, load
         self._crews: dict[tuple[str, Path], Crew] = {}
-        self._failed: set[tuple[str, Path]] = set()
+        self._failed: dict[tuple[str, Path], Mapping[str, int]] = {}  # with the epochs that were left
         self._states: dict[str, bytes] = {}  # the newest of every room
         self._statuses: dict[str, bytes] = {}
         self._arrived = threading.Condition()
@@ -113,7 +113,6 @@ class Crews:
                 wanted.setdefault((room, checkpoint), {})[seat.arm] = seat.epoch
         for place in [place for place in self._crews if place[0] == room and place not in wanted]:
             self._crews.pop(place).close()
-        self._failed = {place for place in self._failed if place[0] != room or place in wanted}
         for place, epochs in wanted.items():
             self._guarded(place, epochs, partial(self._seat, place, epochs, status))
 
@@ -153,12 +152,12 @@ class Crews:
 
     def _guarded(self, place: tuple[str, Path], epochs: Mapping[str, int], deed: Callable[[], None]) -> None:
         """What fails is told to the room, and its seats are left: people must not wait for it."""
-        if place in self._failed:
+        if self._failed.get(place) == epochs:
             return
         try:
             deed()
         except MartError as error:
-            self._failed.add(place)
+            self._failed[place] = epochs
             if place in self._crews:
                 self._crews.pop(place).close()
             self._give_up(place, epochs, error)

@@ -1,0 +1,177 @@
+"""Which seats are driven, over an in-memory bus: found, followed through changes, and left where it cannot be done."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from mart.protocol import codec, keys
+from mart.protocol.bus.memory import MemoryBus, MemoryNetwork
+from mart.protocol.errors import NotFound
+from mart.protocol.messages import (
+    OPERATOR_HOLD,
+    OPERATOR_HUMAN,
+    OPERATOR_POLICY,
+    ArmState,
+    Command,
+    Event,
+    Observation,
+    Operator,
+    Seat,
+    State,
+    pose_message,
+)
+from mart.protocol.pose import Pose
+from mart.sim.seats import SeatTable
+from mart.trainer.operate.crews import Crews
+from mart.trainer.operate.service import OwnSeats
+from tests.support.mailbox import Mailbox
+from tests.trainer.operate.toys import Wanderer
+from tests.web.room import Room
+
+ARMS = ("arm0", "arm1")
+
+
+def promoted(seat: Seat) -> Path | None:
+    return Path("policies") / seat.policy if seat.policy else None
+
+
+class Stand:
+    """A room without a world, the crews, and what they say."""
+
+    def __init__(self, bus: MemoryBus, policies: dict[str, Wanderer]) -> None:
+        self.bus, self.policies = bus, policies
+        self.room = Room(bus)
+        self.crews = Crews(bus, None, promoted, self.load)
+        self.commands = Mailbox(bus, keys.commands("room-1"), Command)
+        self.events = Mailbox(bus, keys.event("room-1").key, Event)
+        self.loaded: list[str] = []
+        self.tick = 0
+
+    def load(self, checkpoint: Path) -> Wanderer:
+        self.loaded.append(checkpoint.name)
+        if checkpoint.name not in self.policies:
+            raise NotFound.named("policy", checkpoint.name, self.policies)
+        return self.policies[checkpoint.name]
+
+    def assign(self, arm: str, policy: str = "", operator: Operator = OPERATOR_POLICY) -> None:
+        self.room.seats.assign(arm, operator, policy)
+        self.room.publish()
+
+    def show(self) -> list[tuple[str, int]]:
+        """A new state; (arm, epoch) of the commands that it brought forth."""
+        self.tick += 1
+        seen = [Observation(name=f"{arm}/tool_position_in_base", value=[0.5, 0.0, 0.3]) for arm in ARMS]
+        arms = [
+            ArmState(arm=arm, tool_in_base=pose_message(Pose.identity()), action=[0.0] * 7) for arm in ARMS
+        ]
+        state = State(boot=1, tick=self.tick, sim_time_s=self.tick / 20, observations=seen, arms=arms)
+        before = len(self.commands)
+        self.bus.publisher(keys.state("room-1")).put(codec.encode(state))
+        self.crews.work()
+        return [(command.arm, command.seat_epoch) for command in self.commands.all()[before:]]
+
+    def close(self) -> None:
+        self.crews.close()
+        self.room.close()
+
+
+@pytest.fixture
+def stand() -> Iterator[Stand]:
+    policies = {
+        "alone": Wanderer(),
+        "together": Wanderer(joint=True),
+        "elsewhere": Wanderer(task="another"),
+        "slow": Wanderer(hz=10.0),
+        "small": Wanderer(("arm0",)),
+    }
+    with contextlib.closing(Stand(MemoryNetwork().connect(), policies)) as stand:
+        yield stand
+
+
+def test_a_seat_is_driven_as_soon_as_it_names_a_policy_and_no_longer(stand: Stand) -> None:
+    assert stand.show() == []
+    stand.assign("arm1", "alone")
+    assert stand.show() == [("arm1", 2)]
+    stand.assign("arm1", operator=OPERATOR_HOLD)
+    assert stand.show() == []
+
+
+def test_a_joint_policy_drives_all_its_seats_with_one_memory(stand: Stand) -> None:
+    for arm in ARMS:
+        stand.assign(arm, "together")
+    assert stand.show() == [("arm0", 2), ("arm1", 2)]
+    assert len(stand.policies["together"].given) == 1
+    stand.room.seats.claim("arm0", "ana", "Ana", OPERATOR_HUMAN)
+    stand.room.publish()
+    assert stand.show() == [("arm1", 2)]
+    stand.room.seats.hand_back("arm0", "ana")
+    stand.room.publish()
+    assert stand.show() == [("arm0", 4), ("arm1", 2)]
+    assert stand.loaded == ["together"]
+
+
+@pytest.mark.parametrize(
+    ("policy", "says"),
+    [
+        ("unknown", "no policy 'unknown'"),
+        ("elsewhere", "trained for another"),
+        ("slow", "10 ticks a second"),
+        ("small", "drives arm0"),
+    ],
+)
+def test_what_does_not_fit_is_told_once_and_the_seat_is_left(stand: Stand, policy: str, says: str) -> None:
+    stand.assign("arm1", policy)
+    assert stand.show() == []
+    stand.show()
+    (notice,) = [event.notice for event in stand.events.all() if event.HasField("notice")]
+    assert says in notice.text
+    assert stand.room.seats["arm1"].operator == OPERATOR_HOLD
+
+
+def test_a_policy_that_goes_astray_leaves_its_seat(stand: Stand) -> None:
+    stand.assign("arm0", "together")
+    stand.show()
+    stand.policies["together"].spoilt = float("nan")
+    assert stand.show() == []
+    assert stand.room.seats["arm0"].operator == OPERATOR_HOLD
+    stand.policies["together"].spoilt = None
+    stand.assign("arm0", "together")  # a second chance for whoever asks again
+    assert stand.show() == [("arm0", 4)]
+
+
+def test_garbage_disturbs_nobody(stand: Stand) -> None:
+    stand.assign("arm1", "alone")
+    for topic in (keys.state("room-1"), keys.status("room-1")):
+        stand.bus.publisher(topic).put(b"\xff" * 40)
+        stand.crews.work()
+    stand.room.publish()
+    assert stand.show() == [("arm1", 2)]
+
+
+def test_ones_own_seat_may_come_back_from_a_person_and_from_nobody_else() -> None:
+    seats = SeatTable(["arm0", "arm1"])
+
+    def message(arm: str) -> Seat:
+        seat = seats[arm]
+        relieved = seat.relieved.called if seat.relieved else ""
+        return Seat(arm=arm, epoch=seat.epoch, holder_id=seat.holder_id, name=seat.name, relieved=relieved)
+
+    for arm in ARMS:
+        seats.claim(arm, "me", "own", OPERATOR_POLICY)
+    own = OwnSeats(Path("checkpoint"), "me", [message(arm) for arm in ARMS])
+    assert own(message("arm0")) == Path("checkpoint")
+    seats.claim("arm0", "ana", "Ana", OPERATOR_HUMAN)
+    assert own(message("arm0")) is None
+    seats.hand_back("arm0", "ana")
+    assert own(message("arm0")) == Path("checkpoint")
+    seats.assign("arm0", OPERATOR_HOLD)
+    assert own(message("arm0")) is None
+    own.require_any("room-1")
+    seats.assign("arm1", OPERATOR_HOLD)
+    own(message("arm1"))
+    with pytest.raises(Exception, match="given away or left"):
+        own.require_any("room-1")
