@@ -26,7 +26,8 @@ from report import Bar, report
 from mart.protocol.messages import Model
 from mart.sim.world.world import World
 from mart.teleop_gateway import encoder, tick_code
-from mart.teleop_gateway.renderer import Renderer, blank_picture, load_model
+from mart.teleop_gateway.quality import FAST
+from mart.teleop_gateway.renderer import Renderer, load_model
 
 CONTROL_HZ = 20.0
 FRAMES = 240
@@ -105,7 +106,7 @@ def pictures() -> Iterator[tick_code.Image]:
             0.0,
         )
         world.step(np.tile(swing, (len(world.arms), 1)))
-        picture_rgb = blank_picture()
+        picture_rgb = FAST.blank_picture()
         renderer.draw(world.integration_state(), tick, picture_rgb)
         yield picture_rgb
     renderer.close()

@@ -10,6 +10,7 @@ from av.video.frame import PictureType
 
 from mart.teleop_gateway import tick_code
 from mart.teleop_gateway.encoder import CLOCK_HZ, Codec, Encoded, Encoder, to_i420
+from mart.teleop_gateway.quality import FULL
 
 DECODERS = {Codec.H264: "h264", Codec.VP8: "vp8"}
 FRAMES_PER_S = 20.0
@@ -106,3 +107,12 @@ def test_the_rate_stays_what_a_wireless_network_carries(codec: Codec) -> None:
     encoded = encode(codec, range(100))
     bits_per_s = 8 * sum(len(picture.data) for picture in encoded) / (100 / FRAMES_PER_S)
     assert bits_per_s < 3_000_000  # everything moves: far more than a room ever does
+
+
+@both
+def test_a_larger_picture_says_its_tick_too(codec: Codec) -> None:
+    rgb = FULL.blank_picture()
+    tick_code.write(4711, rgb[FULL.view_height_px :])
+    encoded = Encoder(codec, FRAMES_PER_S, FULL).encode(to_i420(rgb), 0, keyframe=True)
+    (frame,) = decoder(codec).decode(av.Packet(encoded.data))
+    assert tick_code.read(np.asarray(frame.to_ndarray(format="gray"), np.uint8)) == 4711

@@ -79,8 +79,11 @@ def videos(room: str) -> str:
     return f"{ROOT}/{_segment('room', room)}/view/*/video"
 
 
+DETAILED = b"detailed"
+
+
 def model(room: str) -> Topic:
-    """Queryable: the compiled model."""
+    """Queryable: the compiled model; the payload DETAILED asks for the one with detailed meshes, where there is one."""
     return Topic(_key(room, "model"), Priority.LOW, must_arrive=True)
 
 

@@ -39,11 +39,15 @@ class Doorway:
         do: Callable[[Callable[[], None]], None],
         garbled: Counter[str],
         now_s: Callable[[], float] = clock.monotonic_s,
+        looks: World | None = None,
     ) -> None:
         self._bus, self._name, self._now_s = bus, name, now_s
         self._room = room
         self._do, self._garbled = do, garbled
-        self._model = codec.encode(publish.model(world, mujoco.__version__))
+        self._models = {
+            what: codec.encode(publish.model(shown, mujoco.__version__))
+            for what, shown in ((b"", world), (keys.DETAILED, looks or world))
+        }
         self._open: list[Closable] = [
             bus.subscribe(keys.event(name).key, self._on_event),
             bus.serve(keys.seat(name), self._on_seat_request),
@@ -81,7 +85,7 @@ class Doorway:
         self._do(partial(self._answer, request, EpisodeRequest, self._room.answer_episode))
 
     def _on_model_request(self, request: Request) -> None:
-        request.reply(self._model)
+        request.reply(self._models.get(request.payload, self._models[b""]))
 
     def _answer(self, request: Request, kind: type[R], answer: Callable[[R, float], RoomReply]) -> None:
         try:

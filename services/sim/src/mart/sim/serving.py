@@ -63,7 +63,9 @@ def serve_world(settings: SimSettings, world: World) -> None:
             return next_s
 
         turns = Turns(advance)
-        doorway = Doorway(service.bus, settings.room, room, world, do=turns.do, garbled=garbled)
+        doorway = Doorway(
+            service.bus, settings.room, room, world, do=turns.do, garbled=garbled, looks=_looks(settings)
+        )
         opened.enter_context(contextlib.closing(doorway))
         doorway.hear_commands()
         opened.enter_context(announced(service))
@@ -97,6 +99,13 @@ def serve_lockstep(settings: SimSettings, world: World, skill: Skill) -> None:
         opened.enter_context(announced(service))
         gc.freeze()
         lockstep.run(mailbox, garbled, service.stop)
+
+
+def _looks(settings: SimSettings) -> World | None:
+    """The same room to look at more closely; what happens in it is the other's."""
+    if settings.quality == "fast":
+        return None
+    return World.build(settings.task, settings.control_hz, settings.arms, detail="detailed")
 
 
 def _keeper(settings: SimSettings) -> Callable[[RoomRecord], None]:

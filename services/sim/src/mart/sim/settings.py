@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 from pydantic import Field
 
@@ -36,6 +37,10 @@ class SimSettings(_WorldSettings):
     lockstep: bool = Field(False, description="Scripts drive every arm, as fast as the machine allows.")
     skill: str | None = Field(
         None, description="Of the scripts that drive here, told in files: expert, average or novice."
+    )
+
+    quality: Literal["fast", "full"] = Field(
+        "fast", description="full: also offers the model with detailed meshes, 25 MB, to gateways with a GPU."
     )
 
     @property

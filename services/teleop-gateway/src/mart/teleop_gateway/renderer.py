@@ -13,17 +13,21 @@ from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import Model
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import get_task
+from mart.teleop_gateway import tick_code
+from mart.teleop_gateway.quality import FAST, Image, Quality
 from mart.teleop_gateway.retarget import azimuth_of_camera_rad
-from mart.teleop_gateway.tick_code import HEIGHT_PX, VIEW_HEIGHT_PX, WIDTH_PX, Image
-from mart.teleop_gateway.tick_code import write as write_tick
 
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 _MAX_GEOMS = 2000
 _FILE = "model.mjb"
+_SHADOW_MAP_PX = 4096
 
 
-def load_model(message: Model) -> mujoco.MjModel:
-    """The compiled model that a room sent; raises Corrupt where its digest is wrong or it cannot be loaded."""
+def load_model(message: Model, quality: Quality = FAST) -> mujoco.MjModel:
+    """The compiled model that a room sent, to be drawn in this quality.
+
+    Raises Corrupt where its digest is wrong or it cannot be loaded.
+    """
     if hashlib.sha256(message.mjb).hexdigest() != message.sha256:
         raise Corrupt(
             f"A model of {len(message.mjb)} bytes was given that does not match its SHA-256: ask again."
@@ -35,8 +39,24 @@ def load_model(message: Model) -> mujoco.MjModel:
             f"A model of MuJoCo {message.mujoco_version} was given; MuJoCo {mujoco.__version__} cannot load it: {error}"
         ) from error
     # The model asks for the largest picture that anybody wants; clearing it costs as much as it is large.
-    model.vis.global_.offwidth, model.vis.global_.offheight = WIDTH_PX, VIEW_HEIGHT_PX
+    model.vis.global_.offwidth, model.vis.global_.offheight = quality.width_px, quality.view_height_px
+    model.vis.quality.offsamples, model.vis.quality.shadowsize = quality.samples, _SHADOW_MAP_PX
+    if quality.shadows:
+        _cast_shadows(model)
     return model
+
+
+def _cast_shadows(model: mujoco.MjModel) -> None:
+    """Of the first light, the window: two shadows of everything confuse.
+
+    The soft black spots under things stood in for them; the coloured ones under the tools stay, because they show what
+    a tool is above.
+    """
+    model.light_castshadow[:1] = True
+    spots = np.isin(model.geom_bodyid, np.flatnonzero(model.body_mocapid >= 0)) & ~model.geom_rgba[:, :3].any(
+        axis=1
+    )
+    model.geom_rgba[spots, 3] = 0.0
 
 
 def camera_azimuth_rad(message: Model, model: mujoco.MjModel, arm: str) -> float:
@@ -53,7 +73,7 @@ def camera_azimuth_rad(message: Model, model: mujoco.MjModel, arm: str) -> float
 class Renderer:
     """Draws one camera. Build, use and close it on one thread: an OpenGL context belongs to a thread."""
 
-    def __init__(self, model: mujoco.MjModel, camera: str) -> None:
+    def __init__(self, model: mujoco.MjModel, camera: str, quality: Quality = FAST) -> None:
         self._model = model
         self._data = mujoco.MjData(model)
         self._view = mujoco.MjvCamera()
@@ -63,16 +83,17 @@ class Renderer:
         self._scene = mujoco.MjvScene(model, maxgeom=_MAX_GEOMS)
         # The floor fills every view, so the sky would only be drawn to be covered: 1 ms of 10 without a GPU.
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = 0
-        self._viewport = mujoco.MjrRect(0, 0, WIDTH_PX, VIEW_HEIGHT_PX)
-        self._upside_down = np.empty((VIEW_HEIGHT_PX, WIDTH_PX, 3), np.uint8)
-        self._gl = GLContext(WIDTH_PX, VIEW_HEIGHT_PX)
+        width, height = quality.width_px, quality.view_height_px
+        self._viewport = mujoco.MjrRect(0, 0, width, height)
+        self._upside_down = np.empty((height, width, 3), np.uint8)
+        self._gl = GLContext(width, height)
         self._gl.make_current()
         self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
         _filter_textures_cheaply(self._context)
 
     def draw(self, integration_state: bytes, tick: int, picture_rgb: Image) -> None:
-        """Fills `picture_rgb`, shape (496, 640, 3): the view, and the strip with the tick below it.
+        """Fills `picture_rgb`, a picture of this quality: the view, and the strip with the tick below it.
 
         Raises InvalidInput where the state is not one of this model.
         """
@@ -82,8 +103,9 @@ class Renderer:
         )
         mujoco.mjr_render(self._viewport, self._scene, self._context)
         mujoco.mjr_readPixels(self._upside_down, None, self._viewport, self._context)
-        picture_rgb[:VIEW_HEIGHT_PX] = self._upside_down[::-1]
-        write_tick(tick, picture_rgb[VIEW_HEIGHT_PX:])
+        view_height = len(self._upside_down)
+        picture_rgb[:view_height] = self._upside_down[::-1]
+        tick_code.write(tick, picture_rgb[view_height:])
 
     def close(self) -> None:
         self._context.free()
@@ -101,10 +123,6 @@ class Renderer:
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_comPos(self._model, self._data)  # what tracking cameras and lights look at
         mujoco.mj_camlight(self._model, self._data)
-
-
-def blank_picture() -> Image:
-    return np.zeros((HEIGHT_PX, WIDTH_PX, 3), np.uint8)
 
 
 def _filter_textures_cheaply(context: mujoco.MjrContext) -> None:

@@ -10,8 +10,10 @@ from collections.abc import Set as AbstractSet
 from mart.protocol import codec, keys
 from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.errors import MartError
+from mart.protocol.keys import DETAILED
 from mart.protocol.messages import Model, State
 from mart.teleop_gateway.encoder import Codec
+from mart.teleop_gateway.quality import Quality
 from mart.teleop_gateway.renderer import camera_azimuth_rad, load_model
 from mart.teleop_gateway.view import Sink, View
 
@@ -28,10 +30,17 @@ class Scenery:
     """
 
     def __init__(
-        self, bus: AsyncBus, room: str, arm: str, sink: Sink, on_azimuth: Callable[[float], None]
+        self,
+        bus: AsyncBus,
+        room: str,
+        arm: str,
+        *,
+        sink: Sink,
+        on_azimuth: Callable[[float], None],
+        quality: Quality,
     ) -> None:
         self._bus, self._room, self._arm = bus, room, arm
-        self._sink, self._on_azimuth = sink, on_azimuth
+        self._sink, self._on_azimuth, self._quality = sink, on_azimuth, quality
         self._boot = 0
         self._sha256 = ""
         self._codecs: frozenset[Codec] = frozenset()
@@ -72,7 +81,7 @@ class Scenery:
     async def _fetch(self) -> None:
         while True:
             try:
-                answer = await self._bus.query(keys.model(self._room), b"", _QUERY_TIMEOUT_S)
+                answer = await self._bus.query(keys.model(self._room), self._wanted(), _QUERY_TIMEOUT_S)
                 message = codec.decode(Model, answer)
                 if message.sha256 != self._sha256:
                     await self._use(message)
@@ -82,10 +91,13 @@ class Scenery:
             else:
                 return
 
+    def _wanted(self) -> bytes:
+        return DETAILED if self._quality.detailed else b""
+
     async def _use(self, message: Model) -> None:
-        model = await asyncio.to_thread(load_model, message)
+        model = await asyncio.to_thread(load_model, message, self._quality)
         azimuth_rad = camera_azimuth_rad(message, model, self._arm)
-        view = View(model, self._arm, message.control_hz, self._sink)
+        view = View(model, self._arm, message.control_hz, self._sink, self._quality)
         view.set_codecs(self._codecs)
         await self._replace(view)
         self._sha256 = message.sha256

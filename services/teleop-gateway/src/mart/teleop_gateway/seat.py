@@ -32,6 +32,7 @@ from mart.teleop_gateway.encoder import Codec
 from mart.teleop_gateway.latency import MotionToPhoton
 from mart.teleop_gateway.peer import MAX_SDP_CHARACTERS, Peer
 from mart.teleop_gateway.peers import Peers
+from mart.teleop_gateway.quality import QUALITIES
 from mart.teleop_gateway.rate import RateLimit
 from mart.teleop_gateway.reading import Reader
 from mart.teleop_gateway.retarget import Retarget
@@ -63,7 +64,14 @@ class Seat:
         self._commands = bus.publisher(keys.command(room, arm))
         self._events = bus.publisher(keys.event(room))
         self._video = video_bus.publisher(keys.video(room, arm))
-        self._scenery = Scenery(bus, room, arm, self._on_picture, self._on_azimuth)
+        self._scenery = Scenery(
+            bus,
+            room,
+            arm,
+            sink=self._on_picture,
+            on_azimuth=self._on_azimuth,
+            quality=QUALITIES[settings.quality],
+        )
         self._peers = Peers(bus, self, settings.ice_servers)
         self._offers = RateLimit(MAX_OFFERS_PER_S)
         self._latency = MotionToPhoton(arm)

@@ -22,9 +22,9 @@ from mart.protocol.messages import State
 from mart.teleop_gateway.encoder import CLOCK_HZ, Codec, Encoded, Encoder, to_i420
 from mart.teleop_gateway.handover import Closed, Fresh, Handover
 from mart.teleop_gateway.latency import PictureStamps
+from mart.teleop_gateway.quality import FAST, Image, Quality
 from mart.teleop_gateway.rate import RateLimit
-from mart.teleop_gateway.renderer import Renderer, blank_picture
-from mart.teleop_gateway.tick_code import Image
+from mart.teleop_gateway.renderer import Renderer
 
 _log = logging.getLogger(__name__)
 
@@ -50,10 +50,12 @@ Sink = Callable[[Picture], None]
 class View:
     """Draws `camera` of `model` from `start` to `stop`. The sink is called on its thread: it may only hand over."""
 
-    def __init__(self, model: mujoco.MjModel, camera: str, frames_per_s: float, sink: Sink) -> None:
-        self._model, self._camera, self._sink = model, camera, sink
+    def __init__(
+        self, model: mujoco.MjModel, camera: str, frames_per_s: float, sink: Sink, quality: Quality = FAST
+    ) -> None:
+        self._model, self._camera, self._sink, self._quality = model, camera, sink, quality
         self._handover = Handover()
-        self._encoders = {codec: Encoder(codec, frames_per_s) for codec in Codec}
+        self._encoders = {codec: Encoder(codec, frames_per_s, quality) for codec in Codec}
         self._keyframe_s = dict.fromkeys(Codec, -KEYFRAME_EVERY_S)
         self._complaints = RateLimit(1)
         self._times_s: deque[float] = deque(maxlen=_RATE_WINDOW)
@@ -87,7 +89,7 @@ class View:
     def _run(self) -> None:
         cv2.setNumThreads(1)
         try:
-            renderer = Renderer(self._model, self._camera)
+            renderer = Renderer(self._model, self._camera, self._quality)
         except Exception:  # noqa: BLE001  # EGL and OpenGL fail with errors of their own
             _log.exception(
                 "The view of %s cannot be drawn; `mart doctor` tells what is missing", self._camera
@@ -101,7 +103,7 @@ class View:
             renderer.close()
 
     def _draw_until_closed(self, renderer: Renderer) -> None:
-        picture_rgb = blank_picture()
+        picture_rgb = self._quality.blank_picture()
         drawn: Fresh | None = None
         rendered_ns = 0
         while True:

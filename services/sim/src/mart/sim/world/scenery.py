@@ -116,6 +116,7 @@ def _add_light(spec: mujoco.MjSpec) -> None:
         spec.worldbody.add_light(
             type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
             dir=direction,
+            pos=-2.0 * np.array(direction),  # shadows fall from here on
             diffuse=diffuse,
             specular=0.4 * diffuse,
             castshadow=False,
