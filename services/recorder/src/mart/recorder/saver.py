@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import sqlite3
+import threading
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
@@ -30,6 +31,8 @@ class Saver:
         self._models = models
         self._announcer = announcer
         self._verify = verify
+        self._unsaved = 0
+        self._lock = threading.Lock()
         self._workers = ThreadPoolExecutor(max_workers=2, thread_name_prefix="saver")
 
     def fetch_model(self, room: str, boot: int) -> None:
@@ -37,7 +40,9 @@ class Saver:
         self._work("Fetching a model", self._models.fetch, room, boot)
 
     def save(self, file: EpisodeWriter, episode: Episode, facts: RoomFacts) -> None:
-        self._work("Saving", self._save, file, episode, facts)
+        with self._lock:
+            self._unsaved += 1
+        self._work("Saving", self._save_counted, file, episode, facts)
 
     def repair(self) -> None:
         """Makes episodes of what an earlier run has left."""
@@ -47,7 +52,17 @@ class Saver:
         """Waits until everything is done."""
         self._workers.shutdown(wait=True)
 
-    def _save(self, file: EpisodeWriter, episode: Episode, facts: RoomFacts) -> None:
+    def _save_counted(self, file: EpisodeWriter, episode: Episode, facts: RoomFacts) -> None:
+        """The folder is looked through once nothing else waits: that takes longer the more is in it."""
+        try:
+            saved = self._save(file, episode, facts)
+        finally:
+            with self._lock:
+                self._unsaved -= 1
+        if saved and not self._unsaved:
+            self._repair()  # what a full disk had left, now that there may be room
+
+    def _save(self, file: EpisodeWriter, episode: Episode, facts: RoomFacts) -> bool:
         try:
             describe(file, facts, self._models.fetch(episode.room, episode.boot))
             saved = save(file, episode, facts, self._root, self._verify, repaired=False)
@@ -56,9 +71,9 @@ class Saver:
             why = error.strerror if isinstance(error, OSError) else error
             text = f"Episode {episode.number} could not be completed: {why}. It is kept as {file.path}."
             self._announcer.notice(episode.room, "error", text)
-            return
+            return False
         self._announcer.saved(saved)
-        self._repair()  # what a full disk had left, now that there may be room
+        return True
 
     def _repair(self) -> None:
         for saved in log_repairs(repair_all(self._root, self._verify)):
