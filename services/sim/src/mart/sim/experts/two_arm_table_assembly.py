@@ -18,14 +18,14 @@ from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, wai
 from mart.sim.experts.seeing import See, Still, across, apart_m, at, seen, seen_tool, standing, uprightness
 
 _SOCKET_X_M, _KNOB_X_M = 0.12, 0.205
-_SEATED_Z_M, _TOP_SEATED_Z_M = 0.02, 0.17  # over the base
+_SEATED_Z_M, _TOP_SEATED_Z_M = 0.01, 0.16  # over the base
 _NECK = at(0.0, 0.0, 0.126)  # where a column is gripped, just under its shoulder
-_CLEAR_M = 0.06  # over the sockets, and over the pegs
+_OVER_SOCKET_M, _OVER_PEGS_M = 0.045, 0.05
 _PRESS_M = 0.004
 _SEEN_SEATED_M = 0.012
 
 _AHEAD_M = 0.010
-_PACE = 0.4  # of carrying together
+_PACE = 0.7  # of carrying together
 _LIFTED_M = 0.03
 _PARTNER_M = 0.045  # a partner whose tool stays this near to its knob has gripped it
 _STILL_M, _STILL_S = 0.015, 0.5
@@ -55,7 +55,7 @@ class _Column:
     def place(self, sight: Sight) -> Step:
         """One attempt."""
         sight = yield from self._grip.pick(sight)
-        return (yield from self._grip.put(sight, self._place, _CLEAR_M, self.is_seated))
+        return (yield from self._grip.put(sight, self._place, _OVER_SOCKET_M, self.is_seated))
 
     def _place(self, now: Sight) -> Pose:
         return standing(self._base(now) @ self._seat, self._column(now), math.pi / 2)
@@ -115,7 +115,7 @@ class _Tabletop:
         return standing(self._base(now) @ at(0.0, 0.0, _TOP_SEATED_Z_M), self._top(now), math.tau)
 
     def _over_pegs(self, now: Sight) -> Pose:
-        return at(0.0, 0.0, _CLEAR_M) @ self._place(now)
+        return at(0.0, 0.0, _OVER_PEGS_M) @ self._place(now)
 
     def _is_over_pegs(self, now: Sight) -> bool:
         return self._grip.is_over(now, lambda now: across(self._place(now) @ self._own))

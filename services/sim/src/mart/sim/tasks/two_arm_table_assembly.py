@@ -20,15 +20,15 @@ from mart.sim.world.scenery import TABLE_HALF_M
 from mart.sim.world.shadows import add_shadow
 from mart.sim.world.symbols import add_tile
 
-BASE_HALF_M = (0.18, 0.06, 0.01)
+BASE_HALF_M = (0.18, 0.06, 0.005)
 SOCKET_X_M = 0.12  # of the sockets in the base, of the columns and of the tabletop's holes
-_SOCKET_HALF_M, _WALL_HALF_M, _WALL_HEIGHT_M = 0.033, 0.007, 0.03
+_SOCKET_HALF_M, _WALL_HALF_M, _WALL_HEIGHT_M = 0.037, 0.007, 0.025
 SEAT_Z_M = 2 * BASE_HALF_M[2]  # where a seated column's foot stands, in the base
 
 COLUMN_HALF_M, COLUMN_HEIGHT_M = 0.020, 0.14
-# A foot broad enough for a column to stay up when it is set down in a hurry. Under it four balls instead of edges: four
-# contacts, and a chamfer that finds the socket.
-_FOOT_HALF_M, _FOOT_HEIGHT_M, _BALL_RADIUS_M = 0.030, 0.018, 0.009
+# A foot so broad and heavy that a column stays up when it is pushed or set down hastily. Under it four balls instead of
+# edges: four contacts, and a chamfer that finds the socket.
+_FOOT_HALF_M, _FOOT_HEIGHT_M, _BALL_RADIUS_M = 0.034, 0.018, 0.009
 _PEG_RADIUS_M, _PEG_HEIGHT_M = 0.010, 0.025  # the palm is 45 mm above the pads, so no peg may be higher
 
 TOP_HALF_M = (0.17, 0.10, 0.01)
@@ -36,13 +36,15 @@ _HOLE_HALF_M = 0.016
 KNOB_X_M = 0.205
 _KNOB_RADIUS_M, _KNOB_HALF_M = 0.012, 0.006
 TOP_SEATED_Z_M = SEAT_Z_M + COLUMN_HEIGHT_M + TOP_HALF_M[2]  # of its middle, in the base
-_REST_HEIGHT_M, _REST_Y_M = 0.03, 0.30
-LIFTED_M = 0.10
+# Two blocks high enough that the tabletop need not be lifted far, and falls softly.
+_REST_HEIGHT_M, _REST_Y_M = 0.12, 0.30
+LIFTED_M, _LEVEL = (
+    _REST_HEIGHT_M + 0.04,
+    0.98,
+)  # one arm that lifts an end raises the middle by 2 cm until it leans so
 
-_DENSITY = {
-    "column": 780.0,
-    "tabletop": 310.0,
-}  # kg/m³: 0.21 and 0.43 kg, so that no arm sags by more than 5 mm
+# kg/m³: columns of 0.20 kg and a tabletop of 0.42 kg, under which no arm sags by more than 5 mm.
+_DENSITY = {"column": 340.0, "foot": 3200.0, "tabletop": 310.0}
 _FIRM = {"solref": (0.004, 1.0)}
 _SLIPPERY_SOCKET = {"priority": 1, "friction": (0.3, 0.005, 0.0001), **_FIRM}
 _SLIPPERY_PEG = {"priority": 1, "friction": (0.2, 0.005, 0.0001), **_FIRM}
@@ -138,7 +140,7 @@ class TableAssembly(Scene):
         column0, column1 = (
             self._column_seated(*of_one) for of_one in zip(self._columns, (-1, 1), strict=True)
         )
-        lifted = (self._top.position[..., 2] > LIFTED_M) & (self._top.uprightness > 0.95)
+        lifted = (self._top.position[..., 2] > LIFTED_M) & (self._top.uprightness > _LEVEL)
         seated = self._top_seated() & column0 & column1
         subtasks = {
             "column0_seated": column0,
@@ -186,12 +188,15 @@ def _add_column(spec: mujoco.MjSpec, arm: Arm, side: int) -> None:
     column = spec.worldbody.add_body(name=name, pos=(0.20 * side, -0.25, 0))
     column.add_freejoint(name=name)
     look = {"material": "paint", "rgba": rgba(arm.color)}
-    for size, bottom, top in ((half, _FOOT_HEIGHT_M, height), (foot, radius, _FOOT_HEIGHT_M)):
+    for part, size, bottom, top in (
+        ("column", half, _FOOT_HEIGHT_M, height),
+        ("foot", foot, radius, _FOOT_HEIGHT_M),
+    ):
         column.add_geom(
             type=_BOX,
             size=(size, size, (top - bottom) / 2),
             pos=(0, 0, (bottom + top) / 2),
-            density=_DENSITY["column"],
+            density=_DENSITY[part],
             **look,
             **_FIRM,
         )
