@@ -51,6 +51,8 @@ def configure(spec: mujoco.MjSpec, timestep_s: float) -> None:
     visual = spec.visual
     visual.map.znear = 0.02
     visual.quality.offsamples = 0
+    # Of round things: MuJoCo's 28 and 16 make 900 triangles of every cylinder, 1.5 ms a frame with a tray of drinks.
+    visual.quality.numslices, visual.quality.numstacks = 24, 6
     visual.global_.offwidth, visual.global_.offheight = 1280, 960
 
 
