@@ -64,13 +64,9 @@ class Seat:
         self._commands = bus.publisher(keys.command(room, arm))
         self._events = bus.publisher(keys.event(room))
         self._video = video_bus.publisher(keys.video(room, arm))
+        look = QUALITIES[settings.quality]
         self._scenery = Scenery(
-            bus,
-            room,
-            arm,
-            sink=self._on_picture,
-            on_azimuth=self._on_azimuth,
-            quality=QUALITIES[settings.quality],
+            bus, room, arm, sink=self._on_picture, on_azimuth=self._on_azimuth, quality=look
         )
         self._peers = Peers(bus, self, settings.ice_servers)
         self._offers = RateLimit(MAX_OFFERS_PER_S)
