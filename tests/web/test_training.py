@@ -30,7 +30,10 @@ def trainer(site: Site, bus: MemoryBus) -> Iterator[Trainer]:
 
 
 async def test_without_a_trainer_it_says_how_to_start_one(enter: Enter) -> None:
-    answer = await (await enter("Ana")).get("/api/training/choices")
+    ana = await enter("Ana")
+    assert (await ana.get("/api/training/choices")).json() == {"choices": None}
+    assert (await ana.get(POLICIES)).json() == {"policies": []}
+    answer = await ana.get(JOBS)
     assert answer.status_code == 503
     assert "`mart trainer`" in answer.json()["error"]["message"]
 

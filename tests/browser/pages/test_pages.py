@@ -195,6 +195,24 @@ def test_dragging_the_picture_moves_the_arm(browser: Browser, platform: Platform
         expect(page.locator("#clutch")).to_contain_text("Hold space", timeout=WAIT_MS)
 
 
+def test_a_script_is_taken_over_from_and_handed_back_to(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana:
+        ana.join("Ana", "Join and choose a seat")
+        ana.page.get_by_label("Who drives the blue arm in room-1").select_option("Script")
+        expect(ana.page.get_by_role("button", name="Take over: Blue arm")).to_be_visible()
+        ana.page.goto(f"{platform.url}rooms/room-1/arms/arm0")
+        expect(ana.page.get_by_role("button", name="Take over")).to_be_visible(timeout=WAIT_MS)
+        ana.page.keyboard.press("n")
+        expect(ana.page.locator("#picture.live")).to_be_visible(timeout=WAIT_MS)
+        expect(ana.page.get_by_role("button", name="Hand back")).to_be_visible()
+        ana.is_fine("operator-taken-over")
+        ana.page.keyboard.press("b")
+        expect(ana.page.get_by_role("button", name="Take over")).to_be_visible(timeout=WAIT_MS)
+        ana.is_fine("operator-beside-a-script")
+        ana.page.goto(platform.url)
+        ana.page.get_by_label("Who drives the blue arm in room-1").select_option("Free")
+
+
 def test_a_page_that_does_not_exist_leads_home(browser: Browser, platform: Platform) -> None:
     with visit(browser, platform, "narrow", "dark") as ana:
         ana.join("Ana", "Join and choose a seat")

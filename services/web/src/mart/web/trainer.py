@@ -27,6 +27,10 @@ class Trainer:
     def __init__(self, bus: AsyncBus, running: Callable[[], list[str]]) -> None:
         self._bus, self._running = bus, running
 
+    @property
+    def is_running(self) -> bool:
+        return bool(self._running())
+
     async def ask(self, request: TrainerRequest) -> TrainerReply:
         """Raises Unavailable where no trainer runs, and what the trainer reports."""
         running = self._running()

@@ -55,6 +55,9 @@ class Promotion(BaseModel):
 
 @router.get("/choices")
 async def choices(site: TheSite, _person: Joined) -> Json:
+    """None where no trainer runs: that is no fault of a page that waits for one."""
+    if not site.trainer.is_running:
+        return {"choices": None}
     reply = await site.trainer.ask(TrainerRequest(choices=TrainerRequest.Choices()))
     return {"choices": as_json(reply.choices)}
 
@@ -110,6 +113,9 @@ async def video(job: str, rollout: str, site: TheSite, _person: Joined) -> Respo
 
 @router.get("/policies")
 async def policies(site: TheSite, _person: Joined, task: str = Query("")) -> Json:
+    """None to seat where no trainer runs."""
+    if not site.trainer.is_running:
+        return {"policies": []}
     reply = await site.trainer.ask(TrainerRequest(policies=TrainerRequest.Policies(task=task)))
     return {"policies": [as_json(policy) for policy in reply.policies]}
 

@@ -72,7 +72,7 @@ function enter(person) {
   followPolicies();
 }
 
-/** Promoted policies come from the trainer; without one there are none to seat. */
+/** Promoted policies come from the trainer; without one, or while it is busy, there are none to seat. */
 async function followPolicies() {
   ({ policies } = await api.policies().catch(() => ({ policies: [] })));
   setTimeout(followPolicies, POLICIES_MS);

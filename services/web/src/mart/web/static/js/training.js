@@ -40,16 +40,20 @@ async function start() {
 async function refresh() {
   clearTimeout(timer);
   try {
-    await load();
-    show();
+    ({ choices } = await api.trainingChoices());
+    setShown(byId("absent"), choices === null);
+    setShown(byId("bench"), choices !== null);
+    if (choices !== null) {
+      await load();
+      show();
+    }
   } catch (error) {
-    showAbsence(error);
+    say(error.message);
   }
   if (!document.hidden) timer = setTimeout(refresh, REFRESH_MS);
 }
 
 async function load() {
-  ({ choices } = await api.trainingChoices());
   ({ jobs } = await api.trainingJobs());
   comparison.keep(jobs);
   await comparison.load(async (id) => (await api.trainingJob(id)).details);
@@ -58,8 +62,6 @@ async function load() {
 
 function show() {
   say("");
-  setShown(byId("absent"), false);
-  setShown(byId("bench"), true);
   setText(byId("page-text"), choices.device === "cpu" ? "Trains on the processor." : `Trains on ${choices.device}.`);
   if (first) byId("new").open = jobs.length === 0 || matchMedia("(min-width: 64rem)").matches;
   first = false;
@@ -67,14 +69,6 @@ function show() {
   runs.show(jobs);
   comparison.show();
   view.show(comparison.current);
-}
-
-/** Without a trainer there is nothing to show; a trainer that stumbles is told beside what was there. */
-function showAbsence(error) {
-  const absent = error.code === "Unavailable";
-  if (!absent) say(error.message);
-  setShown(byId("absent"), absent);
-  if (absent) setShown(byId("bench"), false);
 }
 
 async function submit(order) {

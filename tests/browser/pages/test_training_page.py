@@ -1,0 +1,142 @@
+"""The training page in a real Chromium, beside a trainer that tells of runs: order, compare, promote, seat."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.messages import OPERATOR_POLICY
+from tests.browser.pages.test_pages import INSPECT, LOOKS, SIZES, listen
+from tests.support.processes import free_port, running_router, running_service
+from tests.web.room import Room
+from tests.web.trainer import Trainer
+
+SCREENSHOTS = Path("test-output/browser/pages")
+SPEAK_S = 0.2
+
+
+@dataclass
+class Site:
+    url: str
+    join_code: str
+    bus: ZenohBus
+    room: Room
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    """Pages and a room that speaks five times a second; no trainer yet."""
+    port, data_dir, done = free_port(), tmp_path_factory.mktemp("web"), threading.Event()
+    with (
+        running_router() as endpoint,
+        ZenohBus.connect(endpoint) as bus,
+        contextlib.closing(Room(bus)) as room,
+        running_service(["web", "--port", str(port)], endpoint, data_dir, kind="web", id="web"),
+    ):
+
+        def speak() -> None:
+            while not done.wait(SPEAK_S):
+                room.publish()
+
+        speaking = threading.Thread(target=speak)
+        speaking.start()
+        yield Site(f"https://localhost:{port}/", (data_dir / "join-code").read_text().strip(), bus, room)
+        done.set()
+        speaking.join()
+
+
+@pytest.fixture
+def trainer(site: Site) -> Iterator[Trainer]:
+    with contextlib.closing(Trainer(site.bus)) as trainer:
+        yield trainer
+
+
+@contextlib.contextmanager
+def page_of(browser: Browser, site: Site, size: str = "wide", scheme: str = "light") -> Iterator[Page]:
+    width, height = SIZES[size]
+    with browser.new_context(
+        ignore_https_errors=True,
+        viewport={"width": width, "height": height},
+        color_scheme=scheme,  # type: ignore[arg-type]
+        reduced_motion="reduce",
+    ) as context:
+        page = context.new_page()
+        noise: list[str] = []
+        page.goto(f"{site.url}#code={site.join_code}")
+        page.get_by_label("Your name").fill("Ana")
+        page.get_by_role("button", name="Join and choose a seat").click()
+        expect(page.locator(".seat").first).to_be_visible()
+        listen(page, noise)
+        page.goto(f"{site.url}training")
+        yield page
+        assert noise == []
+
+
+@pytest.mark.parametrize(("size", "scheme"), LOOKS)
+def test_it_is_legible_and_whole(
+    browser: Browser, site: Site, trainer: Trainer, size: str, scheme: str
+) -> None:
+    with page_of(browser, site, size, scheme) as page:
+        page.get_by_label("Compare d-HBC, job").last.check()
+        expect(page.locator(".evaluation").first).to_be_visible()
+        expect(page.locator("#loss-chart .curve").first).to_be_visible()
+        page.screenshot(path=SCREENSHOTS / f"training-{size}-{scheme}.png", full_page=True)
+        assert page.evaluate(INSPECT) == []
+
+
+def test_without_a_trainer_it_says_how_to_start_one_and_goes_on_by_itself(
+    browser: Browser, site: Site
+) -> None:
+    with page_of(browser, site) as page:
+        expect(page.locator("#absent")).to_contain_text("mart trainer")
+        assert page.evaluate(INSPECT) == []
+        with contextlib.closing(Trainer(site.bus, jobs=False)):
+            expect(page.locator("#no-runs")).to_be_visible(timeout=15_000)
+
+
+def test_the_grid_tells_the_papers_name_and_the_name_sets_the_grid(
+    browser: Browser, site: Site, trainer: Trainer
+) -> None:
+    with page_of(browser, site) as page:
+        name = page.locator(".model-name")
+        expect(name).to_have_text("r-HBC")
+        page.get_by_role("radiogroup", name="Residual").get_by_label("Joint").focus()
+        page.keyboard.press("ArrowLeft")
+        expect(name).to_have_text("d-HBC")
+        page.get_by_role("radiogroup", name="Planner").get_by_label("None").check()
+        expect(name).to_have_text("d-Flow")  # the first of those that share this point
+        page.get_by_role("radiogroup", name="Residual").get_by_label("Joint").check()
+        expect(name).to_have_text("none/per-arm/joint")
+        page.get_by_role("button", name="rd-HBC", exact=True).first.click()
+        expect(name).to_have_text("rd-HBC")
+        chosen = [page.locator(f"input[name={axis}]:checked").input_value() for axis in ("planner", "actor")]
+        assert chosen == ["joint", "joint"]
+        page.get_by_label("Compare all seven of the paper").check()
+        page.get_by_role("button", name="Train all seven").click()
+        expect(page.locator(".run")).to_have_count(11)
+        submitted = next(one.submit for one in trainer.asked if one.HasField("submit"))
+        assert (len(submitted.models), list(submitted.order.seeds)) == (7, [0, 1, 2])
+
+
+def test_a_checkpoint_is_promoted_and_seated(browser: Browser, site: Site, trainer: Trainer) -> None:
+    with page_of(browser, site) as page:
+        page.locator(".run strong:text-is('d-HBC')").click()
+        page.get_by_role("button", name="Promote the checkpoint").first.click()
+        page.locator("#policy-name").fill("lifter")
+        page.keyboard.press("Enter")
+        page.get_by_label("Where lifter sits").select_option("Orange arm, room-1")
+        page.get_by_role("button", name="Seat lifter").click()
+        expect(page.get_by_label("Where lifter sits").locator("option")).to_have_count(1)
+        assert site.room.seats["arm1"].operator == OPERATOR_POLICY
+        page.goto(site.url)
+        machine = page.get_by_label("Who drives the orange arm in room-1")
+        expect(machine).to_have_value("policy lifter")
+        machine.select_option("Free")
+        expect(machine).to_have_value("hold")
