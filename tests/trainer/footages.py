@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
+from mart.protocol.messages import Model
 from mart.protocol.tasks import Task, get_task
 from mart.trainer.evaluate.footage import Footage, write
 
 STARTED_NS = 1_790_000_000_000_000_000
+MODEL = Model(sha256="0" * 64, mjb=b"none", mujoco_version="4.0.0")
 
 
 def footage(
@@ -36,7 +38,7 @@ def footage(
 
 def write_footage(folder: Path, number: int, task: str, done: Collection[str], outcome: str) -> Path:
     path = folder / f"evaluation-{number:04}-{task}.mcap"
-    write(path, footage(task, done, outcome), STARTED_NS)
+    write(path, footage(task, done, outcome), MODEL, STARTED_NS)
     return path
 
 

@@ -123,6 +123,7 @@ def test_a_kept_episode_shows_the_very_course(
             len(recorded) - 1,
         )
         assert states[-1].progress.success
+        assert file.model() == episodes.world.model_bytes()
     camera.keep({})
 
 

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from mart.protocol import codec, keys
 from mart.protocol.bus import Bus
 from mart.protocol.errors import Conflict, InvalidInput, MartError, Unavailable
-from mart.protocol.messages import RolloutReply, RolloutRequest, raise_error
+from mart.protocol.messages import Model, RolloutReply, RolloutRequest, raise_error
 from mart.protocol.tasks import Task, get_task
 from mart.protocol.worlds import ACTION_SIZE, Flags, Worlds, join, pack_actions, unpack
 
@@ -118,6 +118,13 @@ class RolloutClient:
                 )
                 calls.append(partial(self._query, share.replica, RolloutRequest(step=step), timeout_s))
             return self._unpack(task, self._all(calls))
+
+    def model(self, task: str, control_hz: float = 20.0, arms: int | None = None) -> Model:
+        """What such worlds are compiled to. Raises as `reset`; worlds that there are stay as they are."""
+        describe = RolloutRequest.Describe(task=task, control_hz=control_hz, arms=arms or 0)
+        with self._alone():
+            self._require_replicas()
+            return self._query(self._replicas[0], RolloutRequest(describe=describe), _RESET_TIMEOUT_S).model
 
     def close(self) -> None:
         """Lets go of the worlds. The bus stays open."""

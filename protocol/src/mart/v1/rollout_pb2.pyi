@@ -1,4 +1,5 @@
 from mart.v1 import room_pb2 as _room_pb2
+from mart.v1 import state_pb2 as _state_pb2
 from google.protobuf.internal import containers as _containers
 from google.protobuf import descriptor as _descriptor
 from google.protobuf import message as _message
@@ -8,7 +9,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class RolloutRequest(_message.Message):
-    __slots__ = ("reset", "step", "close", "resimulate")
+    __slots__ = ("reset", "step", "close", "resimulate", "describe")
     class Reset(_message.Message):
         __slots__ = ("task", "control_hz", "arms", "seeds", "integration_states")
         TASK_FIELD_NUMBER: _ClassVar[int]
@@ -51,15 +52,26 @@ class RolloutRequest(_message.Message):
         first_state: bytes
         actions: bytes
         def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., first_state: _Optional[bytes] = ..., actions: _Optional[bytes] = ...) -> None: ...
+    class Describe(_message.Message):
+        __slots__ = ("task", "control_hz", "arms")
+        TASK_FIELD_NUMBER: _ClassVar[int]
+        CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
+        ARMS_FIELD_NUMBER: _ClassVar[int]
+        task: str
+        control_hz: float
+        arms: int
+        def __init__(self, task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ...) -> None: ...
     RESET_FIELD_NUMBER: _ClassVar[int]
     STEP_FIELD_NUMBER: _ClassVar[int]
     CLOSE_FIELD_NUMBER: _ClassVar[int]
     RESIMULATE_FIELD_NUMBER: _ClassVar[int]
+    DESCRIBE_FIELD_NUMBER: _ClassVar[int]
     reset: RolloutRequest.Reset
     step: RolloutRequest.Step
     close: RolloutRequest.Close
     resimulate: RolloutRequest.Resimulate
-    def __init__(self, reset: _Optional[_Union[RolloutRequest.Reset, _Mapping]] = ..., step: _Optional[_Union[RolloutRequest.Step, _Mapping]] = ..., close: _Optional[_Union[RolloutRequest.Close, _Mapping]] = ..., resimulate: _Optional[_Union[RolloutRequest.Resimulate, _Mapping]] = ...) -> None: ...
+    describe: RolloutRequest.Describe
+    def __init__(self, reset: _Optional[_Union[RolloutRequest.Reset, _Mapping]] = ..., step: _Optional[_Union[RolloutRequest.Step, _Mapping]] = ..., close: _Optional[_Union[RolloutRequest.Close, _Mapping]] = ..., resimulate: _Optional[_Union[RolloutRequest.Resimulate, _Mapping]] = ..., describe: _Optional[_Union[RolloutRequest.Describe, _Mapping]] = ...) -> None: ...
 
 class WorldArrays(_message.Message):
     __slots__ = ("observations", "subtasks", "success_ticks", "success", "failed", "sim_time_s", "integration_states")
@@ -80,13 +92,15 @@ class WorldArrays(_message.Message):
     def __init__(self, observations: _Optional[bytes] = ..., subtasks: _Optional[bytes] = ..., success_ticks: _Optional[bytes] = ..., success: _Optional[bytes] = ..., failed: _Optional[_Iterable[str]] = ..., sim_time_s: _Optional[bytes] = ..., integration_states: _Optional[bytes] = ...) -> None: ...
 
 class RolloutReply(_message.Message):
-    __slots__ = ("error", "session", "worlds", "state_digests")
+    __slots__ = ("error", "session", "worlds", "state_digests", "model")
     ERROR_FIELD_NUMBER: _ClassVar[int]
     SESSION_FIELD_NUMBER: _ClassVar[int]
     WORLDS_FIELD_NUMBER: _ClassVar[int]
     STATE_DIGESTS_FIELD_NUMBER: _ClassVar[int]
+    MODEL_FIELD_NUMBER: _ClassVar[int]
     error: _room_pb2.Error
     session: str
     worlds: WorldArrays
     state_digests: bytes
-    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., session: _Optional[str] = ..., worlds: _Optional[_Union[WorldArrays, _Mapping]] = ..., state_digests: _Optional[bytes] = ...) -> None: ...
+    model: _state_pb2.Model
+    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., session: _Optional[str] = ..., worlds: _Optional[_Union[WorldArrays, _Mapping]] = ..., state_digests: _Optional[bytes] = ..., model: _Optional[_Union[_state_pb2.Model, _Mapping]] = ...) -> None: ...

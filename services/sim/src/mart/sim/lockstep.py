@@ -13,11 +13,13 @@ import secrets
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import mujoco
 import numpy as np
 
 from mart.protocol.errors import Conflict, InvalidInput, NotFound, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest
 from mart.protocol.worlds import Array, Flags, check_actions, pack
+from mart.sim import publish
 from mart.sim.world import ACTION_SIZE, Diverged, World, WorldBatch
 
 MAX_SESSIONS = 8
@@ -75,7 +77,11 @@ class Lockstep:
                 return RolloutReply(session=request.close.session)
             case "resimulate":
                 return self._resimulate(request.resimulate)
-        raise InvalidInput("An empty rollout request was given; ask for reset, step, close or resimulate.")
+            case "describe":
+                return self._describe(request.describe)
+        raise InvalidInput(
+            "An empty rollout request was given; ask for reset, step, close, resimulate or describe."
+        )
 
     def _reset(self, reset: RolloutRequest.Reset, now_s: float) -> RolloutReply:
         self._require_room(len(reset.seeds))
@@ -110,6 +116,10 @@ class Lockstep:
             raise InvalidInput(f"{ticks} ticks were given; at most {MAX_TICKS} are re-simulated at once.")
         actions = _actions(request.actions, (ticks, arms, ACTION_SIZE))
         return RolloutReply(state_digests=_digests(world, request.first_state, actions))
+
+    def _describe(self, request: RolloutRequest.Describe) -> RolloutReply:
+        world = self._world(Kind(request.task, request.control_hz, request.arms or None))
+        return RolloutReply(model=publish.model(world, mujoco.__version__))
 
     def _require_room(self, worlds: int) -> None:
         if not 1 <= worlds <= MAX_WORLDS:

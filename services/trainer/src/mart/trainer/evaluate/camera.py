@@ -28,9 +28,10 @@ class Camera:
         """Each as an episode file at its path."""
         if not courses:
             return
+        model = self.client.model(self.task.name, self.control_hz, len(self.task.arms))
         looks = self._step_again(list(courses.values()))
         for world, (path, course) in enumerate(courses.items()):
-            write(path, self._footage(course, looks, world), clock.wall_ns())
+            write(path, self._footage(course, looks, world), model, clock.wall_ns())
 
     def _step_again(self, courses: Sequence[Course]) -> list[Worlds]:
         """How the worlds stood after each tick; one whose course has ended stands still."""

@@ -17,6 +17,7 @@ from mart.protocol import codec
 from mart.protocol.messages import (
     OPERATOR_POLICY,
     ArmState,
+    Model,
     Observation,
     PoseMessage,
     Progress,
@@ -25,6 +26,7 @@ from mart.protocol.messages import (
     TickStamps,
 )
 from mart.protocol.recording import (
+    MODEL_ATTACHMENT,
     PROFILE,
     STATE,
     CadenceRecord,
@@ -135,14 +137,21 @@ class Footage:
         )
 
 
-def write(path: Path, footage: Footage, started_ns: int) -> None:
-    """An episode file, complete before it has its name."""
+def write(path: Path, footage: Footage, model: Model, started_ns: int) -> None:
+    """An episode file, complete before it has its name. model: of its world."""
     path.parent.mkdir(parents=True, exist_ok=True)
     half = path.with_name(f".{path.name}.half")
     writer = Writer(str(half), compression=CompressionType.ZSTD)
     writer.start(profile=PROFILE)
-    room = RoomRecord(room=ROOM, task=footage.task.name, control_hz=footage.control_hz)
+    room = RoomRecord(
+        room=ROOM,
+        task=footage.task.name,
+        control_hz=footage.control_hz,
+        model_sha256=model.sha256,
+        mujoco_version=model.mujoco_version,
+    )
     writer.add_metadata(room.NAME, room.to_strings())
+    writer.add_attachment(started_ns, started_ns, MODEL_ATTACHMENT, "application/octet-stream", model.mjb)
     channel = _channel(writer, STATE, State)
     for tick in range(footage.ticks + 1):
         state = footage.state(tick, started_ns)
