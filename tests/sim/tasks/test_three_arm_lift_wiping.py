@@ -7,6 +7,7 @@ import pytest
 from mart.protocol.tasks.three_arm_lift_wiping import RACK_TOP_M, SPOTS_M
 from mart.sim.experts.rehearsal import rehearse
 from mart.sim.world import World
+from mart.sim.world.batch import WorldBatch
 from tests.sim.tasks.tray import lift_alone, shift, tilt
 
 TASK = "three_arm_lift_wiping"
@@ -149,3 +150,22 @@ def test_an_episode_replays_bit_for_bit_from_any_state_of_it(world: World) -> No
     for action in actions:
         again.step(action)
     assert ends[0] == ends[1] == again.integration_state()
+
+
+def test_a_batch_wipes_as_its_worlds_alone_do(world: World) -> None:
+    batch = WorldBatch(world, size=2, threads=1)
+    batch.reset([3, 4])
+    for row, place in zip(batch._batch.state, [(0.06, 0.04), (-0.02, -0.04)], strict=True):
+        world.set_integration_state(row.astype("<f8").tobytes())
+        put_sponge(world, *place)
+        row[:] = np.frombuffer(world.integration_state(), "<f8")
+    begun = batch._batch.state.copy()
+    for _ in range(3):
+        batch.step(np.stack([REST, REST]), np.ones(2, np.bool_))
+    states = batch.integration_states()
+    for number in range(2):
+        world.set_integration_state(begun[number].astype("<f8").tobytes())
+        for _ in range(3):
+            world.step(REST)
+        assert len(wiped(world)) == 2
+        assert states[number].tobytes() == world.integration_state()
