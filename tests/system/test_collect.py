@@ -53,7 +53,7 @@ def test_the_files_are_like_live_ones_and_say_how_they_were_made(collected: dict
     for told in collected["episodes"]:
         file = EpisodeFile.open(Path(told["path"]))
         episode = file.episode
-        assert (episode.mode, episode.skill, episode.time_limit_s) == ("lockstep", "novice", 12.0)
+        assert (episode.mode, episode.skill, episode.time_limit_s) == ("lockstep", "novice", 10.5)
         assert (episode.seed, episode.ticks, episode.outcome) == (
             told["seed"],
             told["ticks"],

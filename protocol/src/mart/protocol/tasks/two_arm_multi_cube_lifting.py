@@ -31,7 +31,7 @@ def task(arms: int) -> Task:
         ),
         observations=tuple(o for arm in placed for o in (*proprioception(arm.name), *_cube(arm.name))),
         horizon_ticks=1200,  # a minute: scripts need 4 s, people at a keyboard half a minute
-        trial_ticks=240,
+        trial_ticks=210,
     )
 
 
