@@ -118,6 +118,7 @@ function showPicture(seat) {
   const seen = byId("video").videoWidth > 0;
   const empty = seat && !isSeen(seat) ? NO_PICTURE[seat.operator] : "Connecting to the scene…";
   setText(byId("no-picture"), empty);
+  setShown(byId("video"), !seat || isSeen(seat)); // its last picture would be an old one
   setShown(byId("no-picture"), Boolean(seat) && (!seen || !isSeen(seat)));
   byId("picture").classList.toggle("live", seen && link.state === LinkState.LIVE);
 }
