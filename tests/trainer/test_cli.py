@@ -65,3 +65,9 @@ def test_a_folder_that_is_no_run_is_said(tmp_path: Path) -> None:
     result = mart_train("--resume", tmp_path)
     assert isinstance(result.exception, MartError)
     assert "There is no run" in str(result.exception)
+
+
+def test_a_run_that_could_not_begin_can_be_asked_anew(episodes: Recorded, tmp_path: Path) -> None:
+    words = ("--model", "BC", "--data", episodes.root, "--preset", "debug", "--out", tmp_path / "run")
+    assert isinstance(mart_train(*words, "--operator", "human").exception, InvalidInput)
+    assert mart_train(*words, "--operator", "script").exit_code == 0

@@ -73,7 +73,7 @@ def train(resume: Path | None, out: Path | None, as_json: bool, **options: Any) 
     request = run.request if resume else _request(options)
     with stop_requested() as stop:
         train_run(request, run.path, stop, lambda progress: click.echo(_line(progress), err=True))
-    result = _result(run)
+    result = {**_result(run), "complete": not stop.is_set()}
     print_result(result, _words(result), as_json)
     return 130 if stop.is_set() else 0
 
@@ -159,9 +159,11 @@ def _result(run: RunDirectory) -> dict[str, Any]:
 
 def _words(result: dict[str, Any]) -> str:
     newest = result["checkpoints"][-len(result["seeds"]) :]
+    learned = f"from {result['episodes']} episodes ({result['ticks']} ticks)"
+    then = "Judge them: mart eval --checkpoint" if result["complete"] else "Go on: mart train --resume"
     lines = [
-        f"{result['model']} for {result['task']}, from {result['episodes']} episodes ({result['ticks']} ticks)",
-        f"{len(result['checkpoints'])} checkpoints; the newest:",
+        f"{result['model']} for {result['task']}, {learned}, {len(result['checkpoints'])} checkpoints",
         *newest,
+        f"{then} {result['run']}",
     ]
     return "\n".join(lines)

@@ -64,8 +64,8 @@ def train(
     device = find_device(request.device)
     with _claimed(run, request):
         dataset = load_dataset(request.data, request.selection, Settings().data_dir / "cache" / "episodes")
-        _note_data(run, dataset)
         course = _course(request, dataset, device)
+        _note(run, request, dataset)
         kept = keep.read_state(run)
         if kept is not None:
             course.restore(*kept)
@@ -179,17 +179,16 @@ def _claimed(run: RunDirectory, request: TrainRequest) -> Iterator[None]:
             raise Conflict(
                 f"{run.path} is being trained by another process; wait, or name another."
             ) from error
-        file = run.path / REQUEST
-        if not file.exists():
-            keep.write_json(file, request.model_dump_json())
-        elif run.request != request:
+        if (run.path / REQUEST).exists() and run.request != request:
             raise Conflict(f"{run.path} holds a run of another request; resume that one, or name another.")
         yield
 
 
-def _note_data(run: RunDirectory, dataset: Dataset) -> None:
-    if not run.data.exists():
+def _note(run: RunDirectory, request: TrainRequest, dataset: Dataset) -> None:
+    """What is trained from what: once it is clear that it can be. Raises Conflict where a run had other data."""
+    if not (run.path / REQUEST).exists():
         keep.write_json(run.data, dataset.digest.model_dump_json())
+        keep.write_json(run.path / REQUEST, request.model_dump_json())
     elif Digest.model_validate_json(run.data.read_bytes()).sha256 != dataset.digest.sha256:
         raise Conflict(
             f"The data of {run.path} have changed since it was begun; {run.data} lists what they were: "
