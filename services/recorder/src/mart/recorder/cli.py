@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -17,6 +17,8 @@ from mart.recorder.settings import RecorderSettings
 if TYPE_CHECKING:
     from mart.recorder.verify import Resimulate
 
+_OUTCOMES = ("success", "failure", "discarded", "unspecified")
+_VERDICTS = ("verified", "diverged", "unverified")
 _path = click.argument("path", type=click.Path(path_type=Path))
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
 _replica = click.option("--replica", help="Which replica re-simulates.  [default: replica-1]")
@@ -122,9 +124,7 @@ def repair(folder: Path | None, replica: str | None, as_json: bool) -> int:
 
 @episodes.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option(
-    "--outcome", type=click.Choice(["success", "failure", "discarded"]), help="How it really ended."
-)
+@click.option("--outcome", type=click.Choice(_OUTCOMES[:3]), help="How it really ended.")
 @click.option("--note", help="Anything worth remembering.")
 @click.option("--drop/--undrop", default=None, help="Leave out of data sets, or take in again.")
 @json_option
@@ -147,6 +147,40 @@ def label(
                 labels.say(path, kind, value, clock.wall_ns())
     rows = [(path, files.row_of(path)) for path in chosen]
     print_result({"episodes": [report.listed(path, row) for path, row in rows]}, report.table(rows), as_json)
+
+
+@episodes.command()
+@_paths
+@click.option(
+    "--format", "file_format", type=click.Choice(["robomimic"]), required=True, help="Whose file it is."
+)
+@click.option("--out", type=click.Path(path_type=Path), required=True, help="The file to be written.")
+@click.option("--outcome", type=click.Choice([*_OUTCOMES, "any"]), multiple=True, help="[default: success]")
+@click.option("--verdict", type=click.Choice([*_VERDICTS, "any"]), multiple=True, help="[default: verified]")
+@json_option
+def export(paths: tuple[Path, ...], out: Path, as_json: bool, **wanted: Any) -> None:
+    """Write episodes of one task as a data set of another project; dropped ones are left out."""
+    from mart.recorder import files
+    from mart.recorder.export.choice import choose
+    from mart.recorder.export.robomimic import write_robomimic
+
+    rows = files.rows(_given(paths))
+    choice = choose(rows, _any(wanted["outcome"], "success"), _any(wanted["verdict"], "verified"))
+    ticks = write_robomimic(choice, out)
+    count, task = len(choice.episodes), choice.task.name
+    result = {
+        "path": str(out),
+        "format": wanted["file_format"],
+        "task": task,
+        "episodes": count,
+        "ticks": ticks,
+    }
+    print_result(result, f"{out}: {count} of {len(rows)} episodes of {task}, {ticks} ticks.", as_json)
+
+
+def _any(given: tuple[str, ...], usual: str) -> tuple[str, ...]:
+    """What a choice takes; empty where any will do."""
+    return () if "any" in given else given or (usual,)
 
 
 def _settings(replica: str | None) -> RecorderSettings:

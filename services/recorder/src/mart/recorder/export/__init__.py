@@ -1,0 +1,1 @@
+"""Episodes in the files of other projects, one module a format."""

@@ -1,0 +1,193 @@
+"""The HDF5 that robomimic reads: the source's numbers, the trainer's alignment, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from mart.protocol.episodes.labels import Kind, say
+from mart.protocol.episodes.reader import EpisodeFile
+from mart.protocol.errors import Conflict, Corrupt, InvalidInput
+from mart.protocol.messages import OUTCOME_FAILURE, State
+from mart.protocol.recording import Verdict
+from mart.protocol.tasks import get_task
+from mart.recorder.cli import export
+from mart.recorder.export.choice import choose
+from mart.recorder.export.robomimic import key_of, write_robomimic
+from mart.recorder.export.transitions import from_states, read_transitions
+from mart.recorder.files import rows
+from mart.sim.world import World
+from mart.trainer.data.episode import from_states as as_the_trainer
+from mart.trainer.data.layout import Layout
+from tests.trainer import recorded
+
+TASK = get_task(recorded.TASK)
+
+
+@dataclass(frozen=True)
+class Source:
+    world: World
+    episodes: tuple[list[State], ...]
+
+
+@pytest.fixture(scope="module")
+def source() -> Source:
+    world = World.build(recorded.TASK)
+    return Source(world, tuple(recorded.perform(world, seed, number=seed) for seed in (1, 2)))
+
+
+@pytest.fixture
+def folder(source: Source, tmp_path: Path) -> Path:
+    """Two verified successes; and the first one again as a failure, and as one that nobody has verified."""
+    first, second = source.episodes
+    recorded.write(tmp_path, source.world, first)
+    recorded.write(tmp_path, source.world, second)
+    recorded.write(tmp_path, source.world, renumbered(first, 3), outcome=OUTCOME_FAILURE)
+    recorded.write(tmp_path, source.world, renumbered(first, 4), verdict=Verdict.UNVERIFIED)
+    return tmp_path
+
+
+def renumbered(states: list[State], number: int) -> list[State]:
+    return [changed(state, lambda copy: setattr(copy, "episode", number)) for state in states]
+
+
+def changed(state: State, change: Callable[[State], object]) -> State:
+    copy = State.FromString(state.SerializeToString())
+    change(copy)
+    return copy
+
+
+def write(folder: Path, out: Path, *arguments: str) -> None:
+    command = [str(folder), "--format", "robomimic", "--out", str(out), *arguments]
+    export.main(command, standalone_mode=False)
+
+
+def test_the_file_is_the_source(source: Source, folder: Path) -> None:
+    write(folder, folder / "lifting.hdf5")
+    with h5py.File(folder / "lifting.hdf5") as file:
+        data = file["data"]
+        assert sorted(data) == ["demo_0", "demo_1"]
+        assert data.attrs["total"] == sum(len(states) - 1 for states in source.episodes)
+        for states, demo in zip(source.episodes, ("demo_0", "demo_1"), strict=True):
+            assert_holds(data[demo], states)
+
+
+def assert_holds(demo: h5py.Group, states: list[State]) -> None:
+    before, after = states[:-1], states[1:]
+    assert demo.attrs["num_samples"] == len(before)
+    assert (
+        sorted(demo["obs"]) == sorted(demo["next_obs"]) == sorted(key_of(o.name) for o in TASK.observations)
+    )
+    for column, wanted in enumerate(TASK.observations):
+        for key, seen in (("obs", before), ("next_obs", after)):
+            values = [state.observations[column].value for state in seen]
+            np.testing.assert_array_equal(
+                demo[key][key_of(wanted.name)][:], np.reshape(values, (-1, *wanted.shape))
+            )
+    joined = [[number for arm in state.arms for number in arm.action] for state in after]
+    np.testing.assert_array_equal(demo["actions"][:], joined)
+    assert demo["states"][0].tobytes() == before[0].integration_state
+    assert demo["states"][-1].tobytes() == before[-1].integration_state
+    assert demo["dones"][:].tolist() == [0] * (len(before) - 1) + [1]
+    assert demo["rewards"][:].tolist() == [float(state.progress.success) for state in after]
+
+
+def test_observation_and_action_stand_side_by_side_as_in_training(source: Source) -> None:
+    layout = Layout.of(TASK)
+    for states in source.episodes:
+        ours, trainers = from_states(states, TASK), as_the_trainer(layout, states)
+        np.testing.assert_array_equal(ours.actions.astype(np.float32), trainers.actions)
+        np.testing.assert_array_equal(layout.vector(ours.observations), trainers.observations)
+
+
+def test_what_the_file_is_stands_in_it(folder: Path) -> None:
+    write(folder, folder / "lifting.hdf5", "--outcome", "any", "--verdict", "any")
+    with h5py.File(folder / "lifting.hdf5") as file:
+        environment = json.loads(file["data"].attrs["env_args"])
+        observations = json.loads(file["data"].attrs["observations"])
+        groups = {key: [name.decode() for name in names] for key, names in file["mask"].items()}
+    assert environment["env_name"] == recorded.TASK
+    assert environment["env_kwargs"] == {"control_hz": 20.0, "arms": 2}
+    assert observations["arm1_gripper"]["arms"] == ["arm1"]
+    assert groups["success"] == ["demo_0", "demo_2", "demo_3"]
+    assert groups["failure"] == ["demo_1"]
+
+
+def test_only_what_is_asked_for_is_taken(folder: Path) -> None:
+    def count(outcomes: tuple[str, ...], verdicts: tuple[str, ...]) -> int:
+        return len(choose(rows([folder]), outcomes, verdicts).episodes)
+
+    assert count(("success",), ("verified",)) == 2
+    assert count(("success", "failure"), ("verified",)) == 3
+    assert count((), ()) == 4
+    say(min(folder.rglob("*.mcap")), Kind.USE, "drop", at_ns=1)
+    assert count((), ()) == 3
+    with pytest.raises(
+        InvalidInput, match=r"1 dropped, 1 failure and verified.* widen --outcome or --verdict"
+    ):
+        count(("discarded",), ())
+    assert len(choose(rows([folder, folder]), (), ()).episodes) == 3
+
+
+def test_nothing_is_overwritten_and_nothing_half_is_left(source: Source, folder: Path) -> None:
+    out = folder / "lifting.hdf5"
+    write(folder, out)
+    with pytest.raises(Conflict, match="is there already"):
+        write(folder, out)
+    broken = [*source.episodes[0][:5], *source.episodes[0][6:]]
+    recorded.write(folder, source.world, renumbered(broken, 5))
+    with pytest.raises(InvalidInput, match=r"0005.* ticks are missing after tick 4"):
+        write(folder, folder / "other.hdf5")
+    assert [path.name for path in folder.iterdir() if "hdf5" in path.name] == [out.name]
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "sentence"),
+    [("control_hz", 30.0, "several control rates"), ("task", "two_arm_table_assembly", "several tasks")],
+)
+def test_a_mixture_is_refused(source: Source, folder: Path, field: str, value: object, sentence: str) -> None:
+    recorded.write(folder, source.world, renumbered(source.episodes[0], 5), **{field: value})  # type: ignore[arg-type]
+    with pytest.raises(InvalidInput, match=sentence):
+        write(folder, folder / "lifting.hdf5")
+
+
+def test_a_damaged_file_is_named(folder: Path) -> None:
+    path = min(folder.rglob("*.mcap"))
+    path.write_bytes(path.read_bytes()[:5000])
+    with pytest.raises(Corrupt, match=path.name):
+        write(folder, folder / "lifting.hdf5")
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda state: state.observations[0].value.__setitem__(0, np.nan), "holds NaN"),
+        (lambda state: state.observations[0].value.pop(), "is not in every state"),
+        (lambda state: state.observations.pop(0), "is not in every state"),
+        (lambda state: state.arms[1].action.__setitem__(0, np.nan), "an action is NaN"),
+        (lambda state: state.arms[1].action.__setitem__(0, 1.5), "outside -1 … 1"),
+        (lambda state: state.arms.pop(), "arm1 has no action at tick 3"),
+        (lambda state: setattr(state, "integration_state", b"short"), "integration states"),
+    ],
+)
+def test_what_cannot_be_learned_from_is_one_sentence(
+    source: Source, tmp_path: Path, change: Callable[[State], object], sentence: str
+) -> None:
+    states = list(source.episodes[0][:10])
+    states[3] = changed(states[3], change)
+    path = recorded.write(tmp_path, source.world, states)
+    with pytest.raises(InvalidInput, match=sentence) as raised:
+        read_transitions(EpisodeFile.open(path), TASK)
+    assert str(path) in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def test_a_place_that_cannot_be_written_is_one_sentence(folder: Path) -> None:
+    with pytest.raises(Conflict, match="could not be written"):
+        write_robomimic(choose(rows([folder]), (), ()), folder / "nowhere" / "lifting.hdf5")
