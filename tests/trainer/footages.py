@@ -30,7 +30,7 @@ def footage(
         outcome=outcome,
         reason="made up",
         integration_states=[bytes([tick]) * 8 for tick in range(ticks + 1)],
-        observations=_observations(row, ticks),
+        observations=_observations(row, ticks, seed),
         actions=np.linspace(-1, 1, ticks * len(row.arms) * 7).reshape(ticks, len(row.arms), 7),
         subtasks=subtasks,
     )
@@ -38,12 +38,12 @@ def footage(
 
 def write_footage(folder: Path, number: int, task: str, done: Collection[str], outcome: str) -> Path:
     path = folder / f"evaluation-{number:04}-{task}.mcap"
-    write(path, footage(task, done, outcome), MODEL, STARTED_NS)
+    write(path, footage(task, done, outcome, seed=number), MODEL, STARTED_NS)
     return path
 
 
-def _observations(task: Task, ticks: int) -> dict[str, np.ndarray]:
-    random = np.random.default_rng(0)
+def _observations(task: Task, ticks: int, seed: int) -> dict[str, np.ndarray]:
+    random = np.random.default_rng(seed)
     made = {o.name: random.normal(size=(ticks + 1, *o.shape)) for o in task.observations}
     upright = {f"{arm}/tool_quaternion_in_base": np.eye(4)[[0] * (ticks + 1)] for arm in task.arm_names}
     return made | upright

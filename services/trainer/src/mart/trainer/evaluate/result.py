@@ -16,7 +16,7 @@ from mart.trainer.evaluate.statistics import Rate
 
 Outcome = Literal["success", "failure", "time"]  # time: it was up
 MAX_ROLLOUTS = 16
-_NOT_HELD = "success"  # where an episode failed that had done every subtask
+NOT_HELD = "success"  # where an episode failed that had done every subtask
 
 
 class Played(BaseModel):
@@ -66,14 +66,14 @@ class Evaluation(BaseModel):
     def failures(self) -> dict[str, int]:
         """The first subtask that was missing → in how many episodes; `success` where all were done but not held."""
         counted = Counter(self._missing(played) for played in self.played if played.outcome != "success")
-        return {name: counted[name] for name in (*self._subtasks, _NOT_HELD) if counted[name]}
+        return {name: counted[name] for name in (*self._subtasks, NOT_HELD) if counted[name]}
 
     @property
     def _subtasks(self) -> tuple[str, ...]:
         return tuple(subtask.name for subtask in get_task(self.task).subtasks)
 
     def _missing(self, played: Played) -> str:
-        return next((name for name in self._subtasks if name not in played.done), _NOT_HELD)
+        return next((name for name in self._subtasks if name not in played.done), NOT_HELD)
 
 
 def append(path: Path, evaluations: Iterable[Evaluation]) -> None:

@@ -25,7 +25,7 @@ from mart.protocol.errors import InvalidInput
 
 Array = NDArray[np.float64]
 
-BINS = 20
+BINS = 10
 _FOLDS = 5
 _FEATURES = 256
 _RIDGE = 0.1  # of the number of samples; 0.0001 to 0.01 do worse on held-out episodes of two tasks

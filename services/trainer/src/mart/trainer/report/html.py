@@ -8,9 +8,12 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
+from mart.trainer.evaluate.result import NOT_HELD
 from mart.trainer.report import paper, plots
 from mart.trainer.report.coupling import Coupling
 from mart.trainer.report.results import Cell, Results
+
+_NOT_HELD = "all done, not held"
 
 
 def results_page(results: Results) -> str:
@@ -31,6 +34,7 @@ def results_page(results: Results) -> str:
 
 
 def dependence_page(couplings: Sequence[Coupling], model: str) -> str:
+    limits = plots.limits_percent(couplings)
     return _page(
         "dependence.html",
         title="Dependence between arms",
@@ -42,7 +46,7 @@ def dependence_page(couplings: Sequence[Coupling], model: str) -> str:
                 "overall": ", ".join(
                     f"{arm.name} {100 * own.overall:.1f} %" for arm, own in coupling.found.items()
                 ),
-                "figure": plots.dependences(coupling.found, coupling.reached, coupling.reliance),
+                "figure": plots.dependences(coupling, limits),
             }
             for coupling in couplings
         ],
@@ -81,7 +85,8 @@ def _failures(cells: Mapping[str, Cell], models: Sequence[str]) -> dict[str, Any
     rows = [
         (model, [f"{100 * cells[model].failures.get(name, 0.0):.0f}" for name in names]) for model in models
     ]
-    return {"names": names, "rows": rows}
+    titles = [_NOT_HELD if name == NOT_HELD else name for name in names]
+    return {"names": titles, "rows": rows}
 
 
 def _cell(results: Results, model: str, task: str) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -11,12 +11,13 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from mart.protocol.tasks import Arm
-from mart.trainer.report.dependence import BINS, Dependence
+from mart.trainer.report.coupling import Coupling
+from mart.trainer.report.dependence import BINS
 from mart.trainer.report.results import Results
 
 _QUIET, _LINE, _ACCENT = "#6b7280", "#d8dbe0", "#0072B2"  # as in calm.mplstyle and the pages
 _STYLE = Path(__file__).with_name("calm.mplstyle")
+_MARKERS = {"circle": "o", "square": "s", "triangle": "^", "diamond": "D"}  # of an arm's symbol
 # Of lines that differ in kind: Okabe and Ito's colours, each with a dash of its own.
 _LINES = (
     ("#0072B2", "-"), ("#D55E00", "-"), ("#009E73", "-"), ("#CC79A7", "-"), ("#0072B2", "--"), ("#D55E00", "--"),
@@ -27,7 +28,7 @@ _LINES = (
 def success(results: Results, task: str) -> str:
     """Ours in fresh worlds with its interval, ours by the paper's protocol, and the paper's; a row a model."""
     models = results.models(task)
-    with _figure(6.4, 0.9 + 0.42 * len(models)) as (figure, axes):
+    with _figure(5.4, 0.9 + 0.36 * len(models)) as (figure, axes):
         for row, model in enumerate(models):
             judged, reported = results.cells[task][model].judgement, results.paper(model, task)
             if reported is not None:
@@ -45,7 +46,7 @@ def success(results: Results, task: str) -> str:
 
 def learning(results: Results, task: str) -> str:
     """Success of checkpoints over training, a line a model."""
-    with _figure(6.4, 2.8) as (figure, axes):
+    with _figure(5.4, 3.2) as (figure, axes):
         for (color, dash), model in zip(_LINES, results.models(task), strict=False):
             course = results.cells[task][model].course
             axes.plot(
@@ -59,48 +60,49 @@ def learning(results: Results, task: str) -> str:
         return _svg(figure, f"Success over training on {task}")
 
 
-def dependences(
-    found: Mapping[Arm, Dependence],
-    reached: Sequence[tuple[str, float, bool]],
-    reliance: Mapping[Arm, Sequence[float]],
-) -> str:
-    """Dependence over an episode, a line an arm.
-
-    reached: subtask, the share of an episode when it is done, whether it is coordinated. reliance: of a model.
-    """
-    with _figure(6.4, 3.0) as (figure, axes):
+def dependences(coupling: Coupling, limits_percent: tuple[float, float]) -> str:
+    """Dependence over an episode, a line an arm; dotted, what a model relies on. Equal limits make tasks comparable."""
+    with _figure(7.2, 3.2) as (figure, axes):
         middle = [100 * (i + 0.5) / BINS for i in range(BINS)]
-        for arm, own in found.items():
+        for arm, own in coupling.found.items():
             axes.fill_between(middle, 100 * own.low, 100 * own.high, color=arm.color, alpha=0.12, linewidth=0)
-            axes.plot(middle, 100 * own.score, color=arm.color)
-            axes.annotate(
-                arm.name,
-                (middle[-1], 100 * own.score[-1]),
-                (6, 0),
-                textcoords="offset points",
-                color=arm.color,
+            marker = _MARKERS[arm.symbol]
+            axes.plot(middle, 100 * own.score, marker=marker, markersize=5, color=arm.color, label=arm.name)
+        for arm, used in coupling.reliance.items():
+            axes.plot(
+                middle, [100 * share for share in used], ":", color=arm.color, label=f"{arm.name}, the model"
             )
-        for arm, used in reliance.items():
-            axes.plot(middle, [100 * share for share in used], ":", color=arm.color)
         axes.axhline(0, color=_LINE, linewidth=1, zorder=0)
-        for name, share, coordinated in reached:
-            axes.axvline(
-                100 * share, color=_QUIET, linewidth=0.8, linestyle="-" if coordinated else (0, (1, 3))
-            )
-            axes.annotate(
-                name,
-                (100 * share, 1.0),
-                (0, 3),
-                xycoords=("data", "axes fraction"),
-                textcoords="offset points",
-                rotation=35,
-                fontsize=8,
-                color=_QUIET,
-            )
+        for name, share, coordinated in coupling.reached:
+            _event(axes, name, 100 * share, solid=coordinated)
         axes.set_xlim(0, 100)
+        axes.set_ylim(*limits_percent)
         axes.set_xlabel("share of the episode, %")
         axes.set_ylabel("error that knowing\nthe others removes, %")
-        return _svg(figure, "Dependence on the other arms over an episode")
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        return _svg(figure, f"Dependence on the other arms over an episode of {coupling.task.title}")
+
+
+def limits_percent(couplings: Sequence[Coupling]) -> tuple[float, float]:
+    """That hold every line of these tasks."""
+    values = [value for c in couplings for own in c.found.values() for value in (*own.low, *own.high)]
+    values += [share for c in couplings for used in c.reliance.values() for share in used]
+    return 100 * min(-0.1, *values) - 2, 100 * max(0.3, *values) + 2
+
+
+def _event(axes: Axes, name: str, at: float, *, solid: bool) -> None:
+    """An upright line with its name on top."""
+    axes.axvline(at, color=_QUIET, linewidth=0.8, linestyle="-" if solid else (0, (1, 3)))
+    axes.annotate(
+        name,
+        (at, 1.0),
+        (0, 4),
+        xycoords=("data", "axes fraction"),
+        textcoords="offset points",
+        rotation=30,
+        fontsize=9,
+        color=_QUIET,
+    )
 
 
 def _bar(axes: Axes, row: float, value: float, reach: tuple[float, float], *, filled: bool) -> None:
