@@ -1,0 +1,86 @@
+"""The process of a job: how it ends, and that a kill in the middle of a checkpoint tears none."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from mart.protocol import clock
+from mart.trainer.jobs.job import End, Judging
+from mart.trainer.jobs.order import WorkOrder, why_ended
+from mart.trainer.jobs.work import work
+from mart.trainer.policies import load_policy
+from mart.trainer.request import TrainRequest
+from mart.trainer.runs import RunDirectory
+from tests.support.processes import free_port
+from tests.trainer.conftest import Recorded
+from tests.trainer.recorded import TASK
+
+pytestmark = pytest.mark.timeout(300)
+_WAIT_S = 120.0
+
+
+def order(episodes: Recorded, run: Path, judging: Judging, **changes: int) -> None:
+    request = TrainRequest(model="BC", data=(episodes.root,), preset="debug", changes=changes)
+    WorkOrder(request=request, judging=judging).save(run)
+
+
+def test_without_worlds_it_trains_to_the_end_and_asks_to_be_tried_again(
+    episodes: Recorded, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("MART_ROUTER", f"tcp/127.0.0.1:{free_port()}")
+    order(episodes, tmp_path, Judging(task=TASK, replicas=("replica-9",)))
+    assert work(tmp_path, threading.Event()) is End.AWAY
+    assert "Could not reach a router" in why_ended(tmp_path, End.AWAY)
+    assert RunDirectory(tmp_path).checkpointed() == (10, 20)
+
+
+def test_asked_to_stop_it_stops(episodes: Recorded, tmp_path: Path) -> None:
+    order(episodes, tmp_path, Judging(task=TASK, episodes=0))
+    stop = threading.Event()
+    stop.set()
+    assert work(tmp_path, stop) is End.STOPPED
+
+
+def test_what_cannot_be_trained_is_refused(episodes: Recorded, tmp_path: Path) -> None:
+    order(episodes, tmp_path, Judging(task=TASK), batch_size=0)
+    assert work(tmp_path, threading.Event()) is End.REFUSED
+    assert "batch_size" in why_ended(tmp_path, End.REFUSED)
+    (tmp_path / "job.json").write_text("{}")
+    assert work(tmp_path, threading.Event()) is End.REFUSED
+    assert "cannot be read" in why_ended(tmp_path, End.REFUSED)
+
+
+def test_an_end_is_put_into_words(tmp_path: Path) -> None:
+    assert why_ended(tmp_path, -9) == "its process was killed (SIGKILL)"
+    assert "exit status 2" in why_ended(tmp_path, 2)
+
+
+def test_a_kill_in_the_middle_of_a_checkpoint_tears_none(episodes: Recorded, tmp_path: Path) -> None:
+    order(episodes, tmp_path, Judging(task=TASK, episodes=0), checkpoints=20)
+    run = RunDirectory(tmp_path)
+    with subprocess.Popen([sys.executable, "-m", "mart.trainer.jobs.work", str(tmp_path)]) as process:
+        half = _wait_for_half(run, process)
+        process.kill()
+    assert process.returncode == -9, f"{half} was seen too late"
+    survived = run.checkpointed()
+    assert 0 < len(survived) < 20
+    for updates in survived:
+        for seed in run.seeds(updates):
+            load_policy(run.checkpoint(updates, seed))
+    assert work(tmp_path, threading.Event()) is End.DONE
+    assert len(run.checkpointed()) == 20
+    assert not list(tmp_path.rglob("*.half"))
+
+
+def _wait_for_half(run: RunDirectory, process: subprocess.Popen[bytes]) -> Path:
+    """A checkpoint that is being written now, after some that are whole."""
+    deadline_s = clock.monotonic_s() + _WAIT_S
+    while clock.monotonic_s() < deadline_s and process.poll() is None:
+        if len(run.checkpointed()) > 1 and (found := list(run.checkpoints.glob("*.half"))):
+            return found[0]
+    raise AssertionError(f"no checkpoint was caught; the process ended with {process.poll()}")
