@@ -152,9 +152,15 @@ def label(
 @episodes.command()
 @_paths
 @click.option(
-    "--format", "file_format", type=click.Choice(["robomimic"]), required=True, help="Whose file it is."
+    "--format",
+    "file_format",
+    type=click.Choice(["robomimic", "lerobot"]),
+    required=True,
+    help="Whose data set it is.",
 )
-@click.option("--out", type=click.Path(path_type=Path), required=True, help="The file to be written.")
+@click.option(
+    "--out", type=click.Path(path_type=Path), required=True, help="The file or folder to be written."
+)
 @click.option("--outcome", type=click.Choice([*_OUTCOMES, "any"]), multiple=True, help="[default: success]")
 @click.option("--verdict", type=click.Choice([*_VERDICTS, "any"]), multiple=True, help="[default: verified]")
 @json_option
@@ -162,11 +168,15 @@ def export(paths: tuple[Path, ...], out: Path, as_json: bool, **wanted: Any) -> 
     """Write episodes of one task as a data set of another project; dropped ones are left out."""
     from mart.recorder import files
     from mart.recorder.export.choice import choose
-    from mart.recorder.export.robomimic import write_robomimic
+
+    if wanted["file_format"] == "robomimic":
+        from mart.recorder.export.robomimic import write_robomimic as write
+    else:
+        from mart.recorder.export.lerobot import write_lerobot as write
 
     rows = files.rows(_given(paths))
     choice = choose(rows, _any(wanted["outcome"], "success"), _any(wanted["verdict"], "verified"))
-    ticks = write_robomimic(choice, out)
+    ticks = write(choice, out)
     count, task = len(choice.episodes), choice.task.name
     result = {
         "path": str(out),
