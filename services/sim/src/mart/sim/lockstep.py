@@ -23,7 +23,8 @@ from mart.sim import publish
 from mart.sim.world import ACTION_SIZE, Diverged, World, WorldBatch
 
 MAX_SESSIONS = 8
-MAX_WORLDS = 4096  # of all sessions: by their sizes, states kept six times and poses take 150 MB with three arms
+# Of all sessions. By calculation 150 MB with three arms: states, kept six times, and poses.
+MAX_WORLDS = 4096
 MAX_TICKS = 100_000  # a re-simulation: over an hour at 20 Hz
 IDLE_S = 600.0
 _DIGEST_BYTES = 16
