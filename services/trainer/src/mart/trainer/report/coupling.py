@@ -126,8 +126,8 @@ def _seen(task: Task, states: Sequence[State]) -> dict[str, Array]:
 def _reliance(task: Task, policy: Policy, episodes: Sequence[Mapping[str, Array]]) -> dict[Arm, list[float]]:
     """For each arm and part of the episode: how far its action moves when the others' part is another episode's.
 
-    As a share of how far it would be from the action of another episode altogether. All episodes are stretched to
-    one length, and the policy is led along them: it sees what was recorded, whatever it would have done.
+    Squared, as a share of how far it would be from the action in that other episode altogether. All episodes are
+    stretched to one length, and the policy is led along them: it sees what was recorded, whatever it would have done.
     """
     ticks = max(len(next(iter(episode.values()))) for episode in episodes)
     stretched = {
@@ -144,9 +144,7 @@ def _reliance(task: Task, policy: Policy, episodes: Sequence[Mapping[str, Array]
         moved = np.square(_led(policy, swapped)[:, :, index] - real[:, :, index]).sum(axis=(0, 2))
         apart = np.square(other[:, :, index] - real[:, :, index]).sum(axis=(0, 2))
         bins = np.arange(ticks) * BINS // ticks
-        found[arm] = [
-            float(np.sqrt(moved[bins == b].sum() / max(apart[bins == b].sum(), 1e-9))) for b in range(BINS)
-        ]
+        found[arm] = [float(moved[bins == b].sum() / max(apart[bins == b].sum(), 1e-9)) for b in range(BINS)]
     return found
 
 

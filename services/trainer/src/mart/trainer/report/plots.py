@@ -6,17 +6,20 @@ import io
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from mart.protocol.tasks import Arm
 from mart.trainer.report.coupling import Coupling
 from mart.trainer.report.dependence import BINS
 from mart.trainer.report.results import Results
 
 _QUIET, _LINE, _ACCENT = "#6b7280", "#d8dbe0", "#0072B2"  # as in calm.mplstyle and the pages
 _STYLE = Path(__file__).with_name("calm.mplstyle")
+_MIDDLES = [100 * (i + 0.5) / BINS for i in range(BINS)]  # of the parts of an episode, in per cent
 _MARKERS = {"circle": "o", "square": "s", "triangle": "^", "diamond": "D"}  # of an arm's symbol
 # Of lines that differ in kind: Okabe and Ito's colours, each with a dash of its own.
 _LINES = (
@@ -61,33 +64,39 @@ def learning(results: Results, task: str) -> str:
 
 
 def dependences(coupling: Coupling, limits_percent: tuple[float, float]) -> str:
-    """Dependence over an episode, a line an arm; dotted, what a model relies on. Equal limits make tasks comparable."""
-    with _figure(7.2, 3.2) as (figure, axes):
-        middle = [100 * (i + 0.5) / BINS for i in range(BINS)]
+    """What an arm needs to know of the others over an episode; below, what a model uses. Equal limits compare tasks."""
+    used = coupling.reliance
+    with _panels(7.2, (3.0, 2.0) if used else (3.2,)) as (figure, panels):
+        need = panels[0]
         for arm, own in coupling.found.items():
-            axes.fill_between(middle, 100 * own.low, 100 * own.high, color=arm.color, alpha=0.12, linewidth=0)
-            marker = _MARKERS[arm.symbol]
-            axes.plot(middle, 100 * own.score, marker=marker, markersize=5, color=arm.color, label=arm.name)
-        for arm, used in coupling.reliance.items():
-            axes.plot(
-                middle, [100 * share for share in used], ":", color=arm.color, label=f"{arm.name}, the model"
+            need.fill_between(
+                _MIDDLES, 100 * own.low, 100 * own.high, color=arm.color, alpha=0.12, linewidth=0
             )
-        axes.axhline(0, color=_LINE, linewidth=1, zorder=0)
+            need.plot(_MIDDLES, 100 * own.score, label=arm.name, **_line(arm))
+        need.axhline(0, color=_LINE, linewidth=1, zorder=0)
+        need.set_ylim(*limits_percent)
+        need.set_ylabel("error that knowing\nthe others removes, %")
+        need.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         for name, share, coordinated in coupling.reached:
-            _event(axes, name, 100 * share, solid=coordinated)
-        axes.set_xlim(0, 100)
-        axes.set_ylim(*limits_percent)
-        axes.set_xlabel("share of the episode, %")
-        axes.set_ylabel("error that knowing\nthe others removes, %")
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+            _event(need, name, 100 * share, solid=coordinated)
+        for panel in panels[1:]:
+            for arm, shares in used.items():
+                panel.plot(_MIDDLES, [100 * share for share in shares], **_line(arm))
+            panel.set_ylim(0, None)
+            panel.set_ylabel("what the model\ntakes from them, %")
+        panels[-1].set_xlim(0, 100)
+        panels[-1].set_xlabel("share of the episode, %")
         return _svg(figure, f"Dependence on the other arms over an episode of {coupling.task.title}")
 
 
 def limits_percent(couplings: Sequence[Coupling]) -> tuple[float, float]:
-    """That hold every line of these tasks."""
+    """That hold what all of these tasks need."""
     values = [value for c in couplings for own in c.found.values() for value in (*own.low, *own.high)]
-    values += [share for c in couplings for used in c.reliance.values() for share in used]
     return 100 * min(-0.1, *values) - 2, 100 * max(0.3, *values) + 2
+
+
+def _line(arm: Arm) -> dict[str, Any]:
+    return {"color": arm.color, "marker": _MARKERS[arm.symbol], "markersize": 5}
 
 
 def _event(axes: Axes, name: str, at: float, *, solid: bool) -> None:
@@ -122,9 +131,19 @@ def _rows(axes: Axes, labels: Sequence[str]) -> None:
 
 @contextmanager
 def _figure(width_in: float, height_in: float) -> Iterator[tuple[Figure, Axes]]:
+    with _panels(width_in, (height_in,)) as (figure, (axes,)):
+        yield figure, axes
+
+
+@contextmanager
+def _panels(width_in: float, heights_in: Sequence[float]) -> Iterator[tuple[Figure, list[Axes]]]:
+    """One above the other, with the same x."""
     with mpl.rc_context(fname=_STYLE):
-        figure = Figure(figsize=(width_in, height_in), layout="constrained")
-        yield figure, figure.subplots()
+        figure = Figure(figsize=(width_in, sum(heights_in)), layout="constrained")
+        panels = figure.subplots(
+            len(heights_in), sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights_in}
+        )
+        yield figure, list(panels[:, 0])
 
 
 def _svg(figure: Figure, label: str) -> str:
