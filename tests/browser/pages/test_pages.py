@@ -108,6 +108,20 @@ def test_the_lobby(browser: Browser, platform: Platform, size: str, scheme: str)
         ana.is_fine(f"lobby-{size}-{scheme}")
 
 
+def test_what_a_press_failed_at_stays_to_be_read(browser: Browser, platform: Platform) -> None:
+    """Though news of the rooms come five times a second."""
+    with visit(browser, platform) as ana:
+        with ana.page.expect_websocket() as live:
+            ana.join("Ana", "Join and choose a seat")
+        ana.page.route("**/seats/arm0", lambda route: route.abort())
+        ana.page.get_by_role("button", name="Try it").click()
+        message = ana.page.locator("#lobby-message")
+        expect(message).to_contain_text("cannot be reached")
+        for _ in range(3):
+            live.value.wait_for_event("framereceived")
+        expect(message).to_contain_text("cannot be reached")
+
+
 @looks
 def test_the_operators_page(browser: Browser, platform: Platform, size: str, scheme: str) -> None:
     with visit(browser, platform, size, scheme) as ana, driving(ana) as page:

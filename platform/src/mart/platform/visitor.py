@@ -11,6 +11,7 @@ import httpx
 from mart.protocol.errors import Unavailable, from_wire
 
 _TIMEOUT_S = 15.0
+_IDLE_S = 2.0  # the server ends idle connections after 5 s; a request must not meet that end
 
 
 class Visitor:
@@ -19,7 +20,11 @@ class Visitor:
     def __init__(self, url: str, certificate: Path) -> None:
         context = ssl.create_default_context(cafile=str(certificate))
         self._client = httpx.Client(
-            base_url=url, verify=context, timeout=_TIMEOUT_S, headers={"Origin": url.rstrip("/")}
+            base_url=url,
+            verify=context,
+            timeout=_TIMEOUT_S,
+            limits=httpx.Limits(keepalive_expiry=_IDLE_S),
+            headers={"Origin": url.rstrip("/")},
         )
 
     def join(self, code: str, name: str) -> None:

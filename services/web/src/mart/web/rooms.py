@@ -29,7 +29,7 @@ from mart.web.people import Person
 
 _log = logging.getLogger(__name__)
 
-QUERY_TIMEOUT_S = 3.0
+QUERY_TIMEOUT_S = 5.0
 _MAX_STATUS_BYTES = 64 * 1024
 _MAX_WAITING_EVENTS = 64
 _SETTLE_S = 2.0

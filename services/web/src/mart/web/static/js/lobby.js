@@ -8,6 +8,7 @@ import { roomCard } from "./room-card.js";
 
 const NAME_KEY = "mart.name";
 const POLICIES_MS = 5000;
+const LOST = "The connection to the server is lost; it comes back by itself.";
 const cards = new Map();
 let rooms = [];
 let policies = [];
@@ -67,7 +68,7 @@ function enter(person) {
   followRooms({
     onRooms: show,
     onEnded: askToJoin,
-    onConnection: (connected) => say(connected ? "" : "The connection to the server is lost; it comes back by itself."),
+    onConnection: tellConnection,
   });
   followPolicies();
 }
@@ -130,6 +131,12 @@ async function attempt(deed) {
     say(error.message);
     return false;
   }
+}
+
+/** Told with every news of the rooms: what a press has failed at stays until the next press. */
+function tellConnection(connected) {
+  if (!connected) say(LOST);
+  else if (byId("lobby-message").textContent === LOST) say("");
 }
 
 function say(text) {
