@@ -60,8 +60,9 @@ def act(world: World, index: int, action: NDArray[np.float64]) -> None:
 def test_the_elbow_straightens_up_to_the_longest_reach_and_no_further(world: World) -> None:
     data, joint = mujoco.MjData(world.model), world.model.joint("arm0/joint4")
     data.qpos[:] = world.data.qpos
+    lowest_rad, highest_rad = joint.range
     reach_m = []
-    for angle_rad in np.linspace(*joint.range, 200):
+    for angle_rad in np.linspace(lowest_rad, highest_rad, 200):
         data.qpos[joint.qposadr[0]] = angle_rad
         mujoco.mj_kinematics(world.model, data)
         shoulder, wrist = data.joint("arm0/joint2").xanchor, data.joint("arm0/joint6").xanchor

@@ -140,12 +140,12 @@ class TableAssembly(Scene):
         column0, column1 = (
             self._column_seated(*of_one) for of_one in zip(self._columns, (-1, 1), strict=True)
         )
-        lifted = (self._top.position[..., 2] > LIFTED_M) & (self._top.uprightness > _LEVEL)
+        up = (self._top.position[..., 2] > LIFTED_M) & (self._top.uprightness > _LEVEL)
         seated = self._top_seated() & column0 & column1
         subtasks = {
             "column0_seated": column0,
             "column1_seated": column1,
-            "tabletop_lifted": lifted,
+            "tabletop_lifted": up | seated,
             "tabletop_seated": seated,
         }
         let_go = [self._let_go(tool) for tool in self._tools.values()]

@@ -1,0 +1,109 @@
+"""Moving things and tools by hand, and watching episodes, for tests of what holds, fits and counts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import mujoco
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from mart.protocol.pose import Pose
+from mart.sim.experts.rehearsal import rehearse
+from mart.sim.world import Progress, World
+
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)
+LYING = (0.5**0.5, 0.5**0.5, 0.0, 0.0)
+
+Vector = NDArray[np.float64]
+Numbers = Sequence[float] | Vector
+
+
+def put(world: World, thing: str, position: Numbers, quaternion_wxyz: Numbers = UPRIGHT) -> None:
+    """Puts a thing somewhere in the world, at rest."""
+    joint = world.data.joint(thing)
+    joint.qpos[:], joint.qvel[:] = (*position, *quaternion_wxyz), 0.0
+    mujoco.mj_kinematics(world.model, world.data)
+
+
+def pose_of(world: World, thing: str) -> Pose:
+    body = world.data.body(thing)
+    return Pose(body.xpos.copy(), body.xquat.copy())
+
+
+def tools(world: World) -> dict[str, Pose]:
+    """Where the tools are, in their base frames: targets that hold still."""
+    return {arm: world.tool_pose_in_base(arm) for arm in world.arms}
+
+
+def tool_over(world: World, arm: str, point_in_world: Vector, height_m: float = 0.0) -> Pose:
+    """A target: the tool over a point, pointing straight down."""
+    x, y, z = world.task.arm(arm).pose_base_in_world.inverse().transform_points(point_in_world)
+    return Pose(np.array([x, y, z + height_m]), np.array(UPRIGHT))
+
+
+def steps(
+    world: World, targets: Mapping[str, Pose], ticks: int, grippers: Mapping[str, float]
+) -> Iterator[Progress]:
+    for _ in range(ticks):
+        world.step([world.action_for(arm, targets[arm], grippers.get(arm, 0.0)) for arm in world.arms])
+        yield world.progress()
+
+
+def drive(world: World, targets: Mapping[str, Pose], ticks: int, **grippers: float) -> Progress:
+    """The last of `steps`."""
+    *_, progress = steps(world, targets, ticks, grippers)
+    return progress
+
+
+def grip(world: World, points_in_world: Mapping[str, Vector]) -> dict[str, Pose]:
+    """Each of these arms goes over its point, down and closes; where all tools have been sent."""
+    targets = tools(world)
+    for height_m, ticks, closed in ((0.1, 60, 0.0), (0.0, 40, 0.0), (0.0, 12, 1.0)):
+        for arm, point in points_in_world.items():
+            targets[arm] = tool_over(world, arm, point, height_m)
+        drive(world, targets, ticks, **dict.fromkeys(points_in_world, closed))
+    return targets
+
+
+def raised(targets: Mapping[str, Pose], arms: Sequence[str], height_m: float) -> dict[str, Pose]:
+    lift = np.array([0.0, 0.0, height_m])
+    return {
+        arm: Pose(target.position + lift, target.quaternion_wxyz) if arm in arms else target
+        for arm, target in targets.items()
+    }
+
+
+def in_hand(world: World, arm: str, thing: str) -> Pose:
+    """The thing seen from the tool."""
+    tool = world.task.arm(arm).pose_base_in_world @ world.tool_pose_in_base(arm)
+    return tool.inverse() @ pose_of(world, thing)
+
+
+def record(world: World, seed: int, monkeypatch: pytest.MonkeyPatch) -> tuple[list[bytes], list[Vector]]:
+    """An episode of experts: the state before each action, and the actions."""
+    states, actions, step = [], [], world.step
+
+    def recorded(action: Vector) -> None:
+        states.append(world.integration_state())
+        actions.append(np.array(action))
+        step(action)
+
+    monkeypatch.setattr(world, "step", recorded)
+    assert rehearse(world, seed).success
+    return states, actions
+
+
+def costs(world: World, seed: int, monkeypatch: pytest.MonkeyPatch) -> tuple[Vector, Vector]:
+    """An episode of experts: rows of the constraint problem and the solver's iterations, after each tick."""
+    watched, step = [], mujoco.mj_step
+
+    def watching(model: mujoco.MjModel, data: mujoco.MjData, nstep: int) -> None:
+        step(model, data, nstep)
+        watched.append((data.nefc, data.solver_niter[0]))
+
+    monkeypatch.setattr(mujoco, "mj_step", watching)
+    assert rehearse(world, seed).success
+    rows, iterations = np.array(watched, dtype=np.float64).T
+    return rows, iterations
