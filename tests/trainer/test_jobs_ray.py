@@ -11,7 +11,9 @@ import pytest
 from ray.cluster_utils import Cluster
 
 from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import JOB_STATE_CANCELLED, JOB_STATE_DONE, JOB_STATE_QUEUED, JOB_STATE_RUNNING
+from mart.trainer.jobs.executors.ray import RayExecutor
 from tests.support.processes import free_port, running_router
 from tests.trainer.conftest import Recorded
 from tests.trainer.test_jobs import Client, trainer, watched, worker_of
@@ -61,3 +63,9 @@ def test_a_job_goes_through_the_loss_of_the_head(client: tuple[Client, str], tmp
         assert (again.job.state, again.job.attempt) == (JOB_STATE_RUNNING, 1)
         asked.ask(cancel={"job": long.id})
         assert asked.details(long.id).job.state == JOB_STATE_CANCELLED
+
+
+@pytest.mark.parametrize("address", ["", "head", "head:", ":6379", "ray://head:10001", "head:70000", "auto"])
+def test_an_address_of_another_form_is_refused(address: str, tmp_path: Path) -> None:
+    with pytest.raises(InvalidInput, match="HOST:PORT"):
+        RayExecutor(address, tmp_path / "log", lambda _: None)

@@ -2,11 +2,13 @@
 
 The driver is a process of its own: where the cluster's head is lost, Ray ends the driver and not the trainer. Its jobs
 go back into the queue and are started again once the head is there; what the lost attempts had written is gone on with.
+A driver that should have ended and hangs instead (seen with Ray 2.60) is ended by us: we look whether the head answers.
 """
 
 from __future__ import annotations
 
 import json
+import socket
 import subprocess
 import sys
 import threading
@@ -14,19 +16,26 @@ from pathlib import Path
 from typing import IO
 
 from mart.protocol import clock
+from mart.protocol.errors import InvalidInput
 from mart.trainer import leash
 from mart.trainer.jobs.executors.executor import Ended, OnEnded
 from mart.trainer.jobs.job import End
 from mart.trainer.jobs.order import why_ended
 
 _AGAIN_S = 5.0  # between attempts to reach a head that is away
+_LOOK_S = 2.0  # between looks whether it is there
+_MISSES = 5  # in a row, and it is lost
 
 
 class RayExecutor:
-    """`address`: of the head, like 10.0.0.5:6379. `log`: what the driver prints. Its methods are one thread's."""
+    """`address`: of the head, like 10.0.0.5:6379. `log`: what the driver prints. Its methods are one thread's.
+
+    Raises InvalidInput for an address of another form.
+    """
 
     def __init__(self, address: str, log: Path, ended: OnEnded) -> None:
         self._address = address
+        self._head = _host_and_port(address)
         self._log = log
         self._ended = ended
         self._lock = threading.Lock()
@@ -69,7 +78,11 @@ class RayExecutor:
                 command, log, {"RAY_gcs_rpc_server_reconnect_timeout_s": "5"}, piped=True
             )
         assert self._driver.stdout is not None
-        threading.Thread(target=self._listen, args=(self._driver, self._driver.stdout), daemon=True).start()
+        for target, arguments in (
+            (self._listen, (self._driver, self._driver.stdout)),
+            (self._look, (self._driver,)),
+        ):
+            threading.Thread(target=target, args=arguments, daemon=True).start()
 
     def _say(self, **fields: int | str) -> None:
         """A driver that is gone is told of by `_listen`, together with its jobs."""
@@ -97,6 +110,21 @@ class RayExecutor:
         for job in lost:
             self._tell(job, End.LOST)
 
+    def _look(self, driver: subprocess.Popen[bytes]) -> None:
+        misses = 0
+        while not self._ended_within(driver, _LOOK_S):
+            misses = 0 if _answers(self._head) else misses + 1
+            if misses == _MISSES:
+                driver.kill()
+
+    @staticmethod
+    def _ended_within(driver: subprocess.Popen[bytes], timeout_s: float) -> bool:
+        try:
+            driver.wait(timeout_s)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
     def _tell(self, job: int, code: int) -> None:
         with self._lock:
             run = self._runs.pop(job, None)
@@ -108,3 +136,20 @@ class RayExecutor:
             self._ended(Ended(job, code, f"waits for the Ray cluster at {self._address}, which was lost"))
         else:
             self._ended(Ended(job, code, why_ended(run, code)))
+
+
+def _host_and_port(address: str) -> tuple[str, int]:
+    host, _, port = address.rpartition(":")
+    if not host or "/" in host or not port.isdecimal() or int(port) >= 2**16:
+        raise InvalidInput(
+            f"The Ray address {address!r} was given; give the head's HOST:PORT, like 10.0.0.5:6379."
+        )
+    return host, int(port)
+
+
+def _answers(head: tuple[str, int]) -> bool:
+    try:
+        with socket.create_connection(head, timeout=_LOOK_S):
+            return True
+    except OSError:
+        return False
