@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mcap.opcode import Opcode
 
@@ -138,6 +138,7 @@ def test_a_cut_anywhere_keeps_every_whole_chunk(
 
 @settings(max_examples=80)
 @given(where=st.integers(0, 10**6), spoilt=st.binary(min_size=1, max_size=20))
+@example(where=103, spoilt=b"\x00\x00\x10")  # how many entries an index has, in its content
 def test_spoilt_bytes_cost_the_chunks_they_are_in(
     where: int,
     spoilt: bytes,

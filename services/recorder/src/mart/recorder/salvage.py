@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import mmap
+import os
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -57,7 +58,7 @@ class Salvage:
                 record = next(found)
                 if isinstance(record, Footer):
                     return None
-                if file.tell() - at != size_of(record):
+                if not _holds_together(file, at, record):
                     return at
             except StopIteration:
                 return None
@@ -95,6 +96,15 @@ class Salvage:
 def _found(channel: Channel, schema: Schema, message: Message) -> Found:
     times = message.log_time, message.publish_time, message.sequence
     return Found(channel.topic, schema.name, message.data, *times)
+
+
+def _holds_together(file: BoundedFile, at: int, record: McapRecord) -> bool:
+    """What was read from `at` on is as long as its header says and as its content takes.
+
+    A length inside the content can be spoilt too: the reader follows it, whatever the header says.
+    """
+    said = int.from_bytes(os.pread(file.fileno(), 8, at + 1), "little")
+    return size_of(record) == RECORD_HEADER_BYTES + said == file.tell() - at
 
 
 def _next_chunk(file: BoundedFile, start: int) -> int | None:
