@@ -2,7 +2,8 @@
 
 The driver is a process of its own: where the cluster's head is lost, Ray ends the driver and not the trainer. Its jobs
 go back into the queue and are started again once the head is there; what the lost attempts had written is gone on with.
-A driver that should have ended and hangs instead (seen with Ray 2.60) is ended by us: we look whether the head answers.
+A driver that should have ended and hangs instead (seen with Ray 2.60) is ended by us: we look whether the head answers,
+and whether the driver has connected in time.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from mart.trainer.jobs.order import why_ended
 _AGAIN_S = 5.0  # between attempts to reach a head that is away
 _LOOK_S = 2.0  # between looks whether it is there
 _MISSES = 5  # in a row, and it is lost
+_CONNECT_S = 30.0  # a driver that began while the head was on its way never gets there
 
 
 class RayExecutor:
@@ -112,9 +114,10 @@ class RayExecutor:
 
     def _look(self, driver: subprocess.Popen[bytes]) -> None:
         misses = 0
+        connected_by_s = clock.monotonic_s() + _CONNECT_S
         while not self._ended_within(driver, _LOOK_S):
             misses = 0 if _answers(self._head) else misses + 1
-            if misses == _MISSES:
+            if misses == _MISSES or (not self._slots and clock.monotonic_s() > connected_by_s):
                 driver.kill()
 
     @staticmethod
