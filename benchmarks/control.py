@@ -1,11 +1,11 @@
 """A control step of every task: ours beside bare MuJoCo of the same scene, and beside robosuite's TwoArmLift.
 
-Beside robosuite stands World.step, success judged and all. Beside bare mj_step(nstep=25) stands World.drive, which is
-what moves the arms in it: the command taken, 25 substeps of 2 ms with the controller in each, the new poses, the guard
-against divergence. Bare starts from the very same states with no callback, torques and finger targets held at what our
-controller ended the tick with, so that the physics has nearly the same contacts to solve. All follow a recorded episode
-of scripted experts, tick by tick in turns; robosuite takes its turn after each round. Times are the thread's processor
-time, so that other programs on a shared machine count little.
+Beside both stands World.step, success judged and all; bare is mj_step(nstep=25). World.drive, the part of it that
+moves the arms (the command taken, 25 substeps of 2 ms with the controller in each, the new poses, the guard against
+divergence), is told beside it, to see where a bar is missed. Bare starts from the very same states with no callback,
+torques and finger targets held at what our controller ended the tick with, so that the physics has nearly the same
+contacts to solve. All follow a recorded episode of scripted experts, tick by tick in turns; robosuite takes its turn
+after each round. Times are the thread's processor time, so that other programs on a shared machine count little.
 """
 
 from __future__ import annotations
@@ -51,13 +51,13 @@ def main() -> None:
             for arms in sorted(set(ARMS) & set(arm_counts(task))):
                 rounds = measure(World.build(task, arms=arms), peer)
                 step_ms = [median(taken.step) for taken in rounds]
-                over_bare = [sum(taken.drive) / sum(taken.bare) for taken in rounds]
+                over_bare = [sum(taken.step) / sum(taken.bare) for taken in rounds]
                 name = f"{task}_{arms}_arms"
                 metrics |= {
                     **spread(f"{name}_step_ms", step_ms),
-                    **spread(f"{name}_drive_over_bare", over_bare),
+                    **spread(f"{name}_step_over_bare", over_bare),
                     **spread(
-                        f"{name}_step_over_bare", [sum(taken.step) / sum(taken.bare) for taken in rounds]
+                        f"{name}_drive_over_bare", [sum(taken.drive) / sum(taken.bare) for taken in rounds]
                     ),
                 }
                 steps = [taken.peer for taken in rounds]
