@@ -81,7 +81,8 @@ def driving(visit: Visit, name: str = "Ana") -> Iterator[Page]:
     try:
         yield visit.page
     finally:
-        visit.page.evaluate("() => fetch('/api/rooms/room-1/seats/arm0', { method: 'DELETE' })")
+        left = "() => fetch('/api/rooms/room-1/seats/arm0', { method: 'DELETE' }).then(({ ok }) => ok)"
+        assert visit.page.evaluate(left)
 
 
 def tab_through(page: Page) -> list[str]:

@@ -19,6 +19,16 @@ Connect = Callable[[], Bus]
 WAIT_S = 5.0
 
 
+@pytest.fixture
+def endpoint() -> Iterator[str]:
+    """Of a real router."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    with ZenohBus.route(endpoint):
+        yield endpoint
+
+
 @pytest.fixture(params=["memory", "zenoh"])
 def connect(request: pytest.FixtureRequest) -> Iterator[Connect]:
     opened: list[Bus] = []
@@ -31,12 +41,8 @@ def connect(request: pytest.FixtureRequest) -> Iterator[Connect]:
         network = MemoryNetwork()
         yield lambda: keep(network.connect())
     else:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
-        router = ZenohBus.route(endpoint)
+        endpoint = request.getfixturevalue("endpoint")
         yield lambda: keep(ZenohBus.connect(endpoint))
-        opened.append(router)
     for bus in opened:
         bus.close()
 
@@ -135,13 +141,9 @@ def test_a_query_that_nobody_answers_says_so(connect: Connect) -> None:
         connect().query(keys.seat("room-9"), b"", 0.3)
 
 
-def test_a_query_waits_for_a_service_that_is_just_starting() -> None:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+def test_a_query_waits_for_a_service_that_is_just_starting(endpoint: str) -> None:
     topic = keys.seat("room-1")
     with (
-        ZenohBus.route(endpoint),
         ZenohBus.connect(endpoint) as asking,
         ZenohBus.connect(endpoint) as serving,
         ThreadPoolExecutor() as executor,
@@ -151,6 +153,21 @@ def test_a_query_waits_for_a_service_that_is_just_starting() -> None:
             answer.result(timeout=0.2)
         serving.serve(topic, answering(lambda payload: payload[::-1]))
         assert answer.result(timeout=WAIT_S) == b"cba"
+
+
+def test_a_request_that_was_dropped_is_asked_again(endpoint: str) -> None:
+    topic = keys.seat("room-1")
+    heard: list[bytes] = []
+
+    def answer_the_third(request: Request) -> None:
+        heard.append(request.payload)
+        if len(heard) == 3:
+            request.reply(b"cba")
+
+    with ZenohBus.connect(endpoint) as asking, ZenohBus.connect(endpoint) as serving:
+        serving.serve(topic, answer_the_third)
+        assert asking.query(topic, b"abc", WAIT_S) == b"cba"
+    assert heard == [b"abc"] * 3
 
 
 def test_liveliness_is_seen_by_early_and_late_watchers_and_ends_with_its_holder(connect: Connect) -> None:

@@ -56,7 +56,10 @@ class Bus(ABC):
 
     @abstractmethod
     def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
-        """The first answer. Blocks this thread; raises Unavailable where nobody answers in time."""
+        """The first answer. Blocks this thread; raises Unavailable where nobody answers in time.
+
+        A request whose answer is lost on the way is asked again: whoever serves it answers a repetition as well.
+        """
 
     @abstractmethod
     def announce(self, alive_key: str) -> Closable:

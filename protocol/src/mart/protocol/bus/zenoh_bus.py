@@ -33,6 +33,7 @@ _log = logging.getLogger(__name__)
 _LEASE_MS = 2000
 _QUEUED_BATCHES = 16
 _BLOCKED_AT_MOST_US = 500_000
+_FIRST_REST_S = 0.05  # before a query that was dropped is asked again; doubled each time
 
 _PRIORITY = {
     Priority.REAL_TIME: zenoh.Priority.REAL_TIME,
@@ -91,15 +92,19 @@ class ZenohBus(Bus):
 
     def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
         until_s = clock.monotonic_s() + timeout_s
-        answer = self._ask(topic, payload, timeout_s)
-        if answer is None and self._served_by(topic, until_s):
-            answer = self._ask(topic, payload, max(until_s - clock.monotonic_s(), 0.0))
-        if answer is None:
-            raise Unavailable(
-                f"Nobody answered on {topic.key} within {timeout_s:g} s; is that service running? "
-                "`mart doctor` tells."
-            )
-        return answer
+        rest_s = _FIRST_REST_S
+        while (left_s := until_s - clock.monotonic_s()) > 0.0:
+            answer = self._ask(topic, payload, left_s)
+            if answer is not None:
+                return answer
+            # Nobody serves it yet, or the link to whoever does was just lost: it is back within the time, or not.
+            self._wait_for_service(topic, until_s)
+            clock.sleep_s(min(rest_s, until_s - clock.monotonic_s()))
+            rest_s *= 2.0
+        raise Unavailable(
+            f"Nobody answered on {topic.key} within {timeout_s:g} s; is that service running? "
+            "`mart doctor` tells."
+        )
 
     def _ask(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes | None:
         """None at once where the router knows nobody who serves this."""
@@ -112,8 +117,8 @@ class ZenohBus(Bus):
         )
         return next((reply.ok.payload.to_bytes() for reply in replies if reply.ok is not None), None)
 
-    def _served_by(self, topic: Topic, until_s: float) -> bool:
-        """Waits for somebody to serve this: what a service declares may reach the router after its liveliness did."""
+    def _wait_for_service(self, topic: Topic, until_s: float) -> None:
+        """Until somebody serves this: what a service declares may reach the router after its liveliness did."""
         served = threading.Event()
         with self._session.declare_querier(topic.key) as querier:
             listener = querier.declare_matching_listener(
@@ -121,7 +126,8 @@ class ZenohBus(Bus):
             )
             try:
                 already: Any = querier.matching_status  # the stubs say bool, but it is a status
-                return already.matching or served.wait(max(until_s - clock.monotonic_s(), 0.0))
+                if not already.matching:
+                    served.wait(max(until_s - clock.monotonic_s(), 0.0))
             finally:
                 listener.undeclare()
 
