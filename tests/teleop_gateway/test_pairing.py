@@ -42,6 +42,19 @@ def test_pairing_and_offering() -> None:
     assert ask(lobby) == (PAIRING, "answer")
 
 
+def test_a_pairing_is_renewed_for_the_seat_as_it_is_now() -> None:
+    def lobby(request: httpx.Request) -> httpx.Response:
+        assert (request.method, request.url.path) == ("GET", "/api/rooms/room-1/seats/arm0/phone-token")
+        assert request.headers["authorization"] == "Bearer t0ken"
+        return httpx.Response(200, json={"token": "newer", "epoch": 5})
+
+    async def run() -> Pairing:
+        async with LobbyClient(URL, insecure=True, transport=httpx.MockTransport(lobby)) as client:
+            return await client.renew(PAIRING)
+
+    assert asyncio.run(run()) == Pairing("newer", "room-1", "arm0", 5, "Ana")
+
+
 def test_a_refusal_is_passed_on() -> None:
     error = {"error": {"code": "Forbidden", "message": "This code was used already."}}
     with pytest.raises(Forbidden, match="used already"):

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import replace
 
 import pytest
 
@@ -148,6 +149,53 @@ async def test_a_phone_is_paired_once_and_drives(enter: Enter, gateway: Gateway,
     again = await phone.post("/api/pair", json={"code": pairing["code"]})
     assert again.status_code == 403
     assert "used already" in again.json()["error"]["message"]
+
+
+async def renewed(phone: Client, token: str, seat: str = SEAT) -> tuple[int, dict[str, str]]:
+    answer = await phone.get(f"{seat}/phone-token", headers={"Authorization": f"Bearer {token}"})
+    return answer.status_code, answer.json()
+
+
+async def phone_of(person: Client, phone: Client) -> str:
+    code = (await person.post(f"{SEAT}/pair")).json()["code"]
+    return str((await phone.post("/api/pair", json={"code": code})).json()["token"])
+
+
+async def test_a_phone_goes_on_when_its_person_takes_the_seat_back(
+    enter: Enter, gateway: Gateway, room: Room, site: Site
+) -> None:
+    ana, phone = await enter("Ana"), await enter()
+    await ana.post(SEAT, json={"operator": "policy", "policy": "lifter"})
+    await ana.post(SEAT, json={"operator": "human"})
+    token = await phone_of(ana, phone)
+    await ana.post(f"{SEAT}/hand-back")
+    status, told = await renewed(phone, token)
+    assert (status, told["error"]) == (409, {"code": "Conflict", "message": told["error"]["message"]})
+    assert "lifter drives arm0 now; this phone goes on" in told["error"]["message"]
+    assert (await offer(phone, token))[0] == 403
+    await ana.post(SEAT, json={"operator": "human"})
+    assert (await offer(phone, token))[0] == 403  # the gateway and the sim know this epoch, not the old one
+    status, told = await renewed(phone, token)
+    assert (status, told["epoch"]) == (200, room.seats["arm0"].epoch)
+    assert (await offer(phone, told["token"]))[0] == 200
+    before, after = verify(token, site.secret), verify(told["token"], site.secret)
+    assert after == replace(before, epoch=after.epoch)  # no longer, no more rights
+
+
+async def test_a_phone_drives_for_nobody_but_its_person(enter: Enter, gateway: Gateway, site: Site) -> None:
+    ana, ben, phone = await seated(enter), await enter("Ben"), await enter()
+    token = await phone_of(ana, phone)
+    assert (await renewed(phone, token, "/api/rooms/room-1/seats/arm1"))[0] == 403
+    await ana.delete(SEAT)
+    assert "Nobody drives" in (await renewed(phone, token))[1]["error"]["message"]
+    await ben.post(SEAT, json={"operator": "human"})
+    assert (await renewed(phone, token))[0] == 409
+    assert (await offer(phone, token))[0] == 403
+    own = (await ben.get(f"{SEAT}/token")).json()["token"]
+    expired = sign(replace(verify(token, site.secret), expires_s=1.0), site.secret)
+    for bad in (own, expired, "", "garbage"):
+        assert (await renewed(phone, bad))[0] == 403
+    assert gateway.offers == []
 
 
 async def test_a_newer_code_replaces_the_older_one(enter: Enter, room: Room) -> None:

@@ -47,9 +47,15 @@ def phone(
 
     async def drive(service: AsyncService) -> None:
         async with LobbyClient(url, insecure) as lobby:
+
+            async def exchange(sdp: str) -> str:
+                renewed = await lobby.renew(pairing)
+                emulated.seat_epoch = renewed.epoch
+                return await lobby.offer(renewed, sdp)
+
             emulated = EmulatedPhone(
                 service.bus,
-                lambda sdp: lobby.offer(pairing, sdp),
+                exchange,
                 room=pairing.room,
                 arm=pairing.arm,
                 seat_epoch=pairing.epoch,

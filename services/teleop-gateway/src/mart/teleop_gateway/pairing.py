@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import ssl
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import httpx
@@ -39,16 +39,21 @@ class LobbyClient:
 
     async def pair(self, code: str) -> Pairing:
         """Uses up a pairing code; raises what the lobby answers, Unavailable where nobody does."""
-        answer = await self._post("/api/pair", {"code": code}, {})
+        answer = await self._ask("POST", "/api/pair", {"code": code}, {})
         with self._complete():
             return Pairing(
                 answer["token"], answer["room"], answer["arm"], int(answer["epoch"]), answer["name"]
             )
 
+    async def renew(self, pairing: Pairing) -> Pairing:
+        """For the seat as it is now; raises Conflict while somebody else holds it."""
+        answer = await self._ask("GET", f"{_seat(pairing)}/phone-token", None, _bearer(pairing))
+        with self._complete():
+            return replace(pairing, token=answer["token"], epoch=int(answer["epoch"]))
+
     async def offer(self, pairing: Pairing, sdp: str) -> str:
         """The answer's SDP."""
-        path = f"/api/rooms/{pairing.room}/seats/{pairing.arm}/offer"
-        answer = await self._post(path, {"sdp": sdp}, {"Authorization": f"Bearer {pairing.token}"})
+        answer = await self._ask("POST", f"{_seat(pairing)}/offer", {"sdp": sdp}, _bearer(pairing))
         with self._complete():
             return str(answer["sdp"])
 
@@ -58,9 +63,11 @@ class LobbyClient:
     async def __aexit__(self, *_: object) -> None:
         await self._http.aclose()
 
-    async def _post(self, path: str, body: dict[str, Any], headers: dict[str, str]) -> dict[str, Any]:
+    async def _ask(
+        self, method: str, path: str, body: dict[str, Any] | None, headers: dict[str, str]
+    ) -> dict[str, Any]:
         with self._complete():
-            response = await self._http.post(self._url + path, json=body, headers=headers)
+            response = await self._http.request(method, self._url + path, json=body, headers=headers)
             answer = response.json()
             if "error" in answer:
                 raise from_wire(answer["error"]["code"], answer["error"]["message"])
@@ -75,3 +82,11 @@ class LobbyClient:
             raise Unavailable(
                 f"{self._url} does not answer as a lobby: {error!r}. Is `mart web` running?"
             ) from error
+
+
+def _seat(pairing: Pairing) -> str:
+    return f"/api/rooms/{pairing.room}/seats/{pairing.arm}"
+
+
+def _bearer(pairing: Pairing) -> dict[str, str]:
+    return {"Authorization": f"Bearer {pairing.token}"}

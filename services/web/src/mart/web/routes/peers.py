@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import segno
@@ -9,8 +10,8 @@ from fastapi import APIRouter, Header, Request
 from pydantic import BaseModel
 
 from mart.protocol import clock
-from mart.protocol.errors import Forbidden
-from mart.protocol.messages import Seat
+from mart.protocol.errors import Conflict, Forbidden
+from mart.protocol.messages import OPERATOR_HOLD, Seat
 from mart.protocol.tokens import Role, SeatToken, sign, verify
 from mart.web.lobby import Json
 from mart.web.names import host_name, in_url, is_loopback
@@ -22,8 +23,10 @@ from mart.web.site import Site
 
 router = APIRouter(prefix="/api")
 
+Authorization = Annotated[str, Header()]
+
 _BROWSER_TOKEN_S = 300.0  # a page asks for a new one whenever it connects
-_PHONE_TOKEN_S = 12 * 3600.0  # a phone cannot ask again; the seat's epoch ends it earlier
+_PHONE_TOKEN_S = 12 * 3600.0  # however often it is renewed
 _UNREACHABLE = (
     "This service listens on this computer alone, so a phone cannot reach it. Start it with --host 0.0.0.0, or tell "
     "it with --public-host the name that phones should use."
@@ -87,23 +90,45 @@ async def redeem(body: Code, site: TheSite, address: Address) -> Json:
     }
 
 
+@router.get("/rooms/{room}/seats/{arm}/phone-token")
+async def phone_token(room: str, arm: str, site: TheSite, authorization: Authorization = "") -> Json:
+    """A phone stays with the person who paired it: its token is renewed while, and whenever, they hold the seat."""
+    paired = _claims(site, room, arm, authorization)
+    if paired.role is not Role.PHONE:
+        raise Forbidden(f"The token of a {paired.role} was given; only a phone's is renewed here.")
+    seat = _seat(site, room, arm)
+    if seat.holder_id != paired.holder_id:
+        driver = "Nobody" if seat.operator == OPERATOR_HOLD else seat.name or "A script"
+        raise Conflict(
+            f"{driver} drives {arm} now; this phone goes on when the person who paired it takes the seat again."
+        )
+    return {"token": _sign(site, replace(paired, epoch=seat.epoch)), "epoch": seat.epoch}
+
+
 @router.post("/rooms/{room}/seats/{arm}/offer")
 async def offer(
-    room: str, arm: str, body: Description, site: TheSite, authorization: Annotated[str, Header()] = ""
+    room: str, arm: str, body: Description, site: TheSite, authorization: Authorization = ""
 ) -> Json:
-    text = authorization.removeprefix("Bearer ")
-    seat_token = verify(text, site.secret)
-    if (seat_token.room, seat_token.arm) != (room, arm):
-        raise Forbidden(
-            f"This seat token is for {seat_token.arm} in {seat_token.room}, not for {arm} in {room}."
-        )
+    seat_token = _claims(site, room, arm, authorization)
     if seat_token.epoch != _seat(site, room, arm).epoch:
         raise Forbidden(
             "This seat has changed hands since you got your token; take a seat in the lobby again."
         )
     site.offers.spend(f"{seat_token.holder_id} {seat_token.role}", clock.monotonic_s())
     gateways = site.rooms.services().get("gateway", [])
-    return {"sdp": await answer_offer(site.bus, gateways, seat_token, text, body.sdp)}
+    return {"sdp": await answer_offer(site.bus, gateways, seat_token, _bearer(authorization), body.sdp)}
+
+
+def _bearer(authorization: str) -> str:
+    return authorization.removeprefix("Bearer ")
+
+
+def _claims(site: Site, room: str, arm: str, authorization: str) -> SeatToken:
+    """What the sent token says; raises Forbidden where it is not good for this seat."""
+    claims = verify(_bearer(authorization), site.secret)
+    if (claims.room, claims.arm) != (room, arm):
+        raise Forbidden(f"This seat token is for {claims.arm} in {claims.room}, not for {arm} in {room}.")
+    return claims
 
 
 def _seat(site: Site, room: str, arm: str) -> Seat:

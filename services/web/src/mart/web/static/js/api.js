@@ -36,6 +36,8 @@ export const leaveSeat = (room, arm) => request("DELETE", seat(room, arm));
 export const handBack = (room, arm) => request("POST", `${seat(room, arm)}/hand-back`);
 export const seatToken = (room, arm) => request("GET", `${seat(room, arm)}/token`);
 export const pairPhone = (room, arm) => request("POST", `${seat(room, arm)}/pair`);
+export const phoneToken = (room, arm, token) =>
+  request("GET", `${seat(room, arm)}/phone-token`, undefined, { Authorization: `Bearer ${token}` });
 export const redeemPairing = (code) => request("POST", "/pair", { code });
 export const act = (room, action, arm) =>
   request("POST", `/rooms/${encodeURIComponent(room)}/episode`, { action, arm });

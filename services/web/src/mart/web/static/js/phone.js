@@ -1,6 +1,6 @@
 // The phone: a hand that is usable without looking.
 
-import { redeemPairing } from "./api.js";
+import { phoneToken, redeemPairing } from "./api.js";
 import { armName } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
@@ -71,7 +71,11 @@ async function takePairing() {
 
 function connect(pairing) {
   link = new SeatLink({
-    fetchToken: async () => pairing,
+    fetchToken: async () => {
+      const renewed = await phoneToken(pairing.room, pairing.arm, pairing.token);
+      if (renewed.epoch !== link.epoch) status = null; // somebody else drove meanwhile: the gripper is as they left it
+      return { ...pairing, ...renewed };
+    },
     wantsVideo: false,
     onState: onLinkState,
     onStatus: heard,

@@ -11,6 +11,8 @@ const PING_MS = 1000;
 const CONNECT_MS = 15000;
 const FIRST_RETRY_MS = 250;
 const LONGEST_RETRY_MS = 4000;
+const CONFLICT = 409; // somebody else has the seat: it may be ours again at any moment
+const AWAY_RETRY_MS = 1000;
 
 export const LinkState = Object.freeze({
   CONNECTING: "connecting",
@@ -88,6 +90,7 @@ export class SeatLink {
     } catch (error) {
       if (attempt !== this.#attempt) return;
       this.problem = error.message;
+      if (error.status === CONFLICT) this.#retryMs = AWAY_RETRY_MS;
       this.#lose();
     }
   }
