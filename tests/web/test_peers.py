@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -151,7 +152,7 @@ async def test_a_phone_is_paired_once_and_drives(enter: Enter, gateway: Gateway,
     assert "used already" in again.json()["error"]["message"]
 
 
-async def renewed(phone: Client, token: str, seat: str = SEAT) -> tuple[int, dict[str, str]]:
+async def renewed(phone: Client, token: str, seat: str = SEAT) -> tuple[int, dict[str, Any]]:
     answer = await phone.get(f"{seat}/phone-token", headers={"Authorization": f"Bearer {token}"})
     return answer.status_code, answer.json()
 
