@@ -82,6 +82,17 @@ def test_people_collect_a_verified_episode_and_the_next_start_finds_it(stack: St
     assert episodes(stack) == before
 
 
+def test_a_job_learns_from_what_was_collected_and_is_judged(stack: Stack) -> None:
+    submitted = stack.inside(
+        "trainer",
+        *("mart", "jobs", "submit", "--tasks", "two_arm_multi_cube_lifting", "--models", "BC-RNN"),
+        *("--preset", "debug", "--episodes", "2", "--score-episodes", "0", "--json"),
+    )
+    (queued,) = json.loads(submitted)["jobs"]
+    (job,) = json.loads(stack.inside("trainer", "mart", "jobs", "wait", queued["sweep"], "--json"))["jobs"]
+    assert job["state"] == "JOB_STATE_DONE"
+
+
 def test_killed_parts_come_back(stack: Stack) -> None:
     for service in ("sim", "gateway", "recorder", "web"):
         stack.kill(service)

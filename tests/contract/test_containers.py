@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import Any
 
 import click
@@ -14,7 +13,7 @@ from mart.protocol.cli import cli
 from tests.contract.repository import ROOT, relative, tracked_files
 
 _SERVICES: dict[str, dict[str, Any]] = yaml.safe_load((ROOT / "docker-compose.yml").read_text())["services"]
-_DOCKERFILES = [path for path in tracked_files() if path.name == "Dockerfile"]
+_BUILDS = {name: service["build"] for name, service in _SERVICES.items() if "build" in service}
 _VARIABLE = re.compile(r"\$\{\w+:-([^}]*)\}")
 
 
@@ -24,7 +23,7 @@ def _with_defaults(text: str) -> str:
 
 @pytest.mark.parametrize("name", _SERVICES)
 def test_every_command_parses(name: str) -> None:
-    words = [_with_defaults(word) for word in _SERVICES[name].get("command", [name])]
+    words = [_with_defaults(word) for word in _SERVICES[name]["command"]]
     context = click.Context(cli)
     command = cli.get_command(context, words[0])
     assert command is not None
@@ -46,15 +45,23 @@ def test_only_the_web_service_listens_and_only_on_loopback_unless_asked() -> Non
     assert all(_with_defaults(port).startswith("127.0.0.1:") for port in listening["web"])
 
 
-@pytest.mark.parametrize("path", _DOCKERFILES, ids=relative)
-def test_every_image_is_slim_watched_and_not_root(path: Path) -> None:
-    text = path.read_text()
+def test_images_are_slim_watched_and_not_root() -> None:
+    text = (ROOT / "Dockerfile").read_text()
     assert re.findall(r"^FROM (\S+)", text, re.MULTILINE) == ["debian:bookworm-slim"] * 2
     assert "HEALTHCHECK" in text
     assert re.findall(r"^USER (\w+)", text, re.MULTILINE) == ["mart"]
     assert "://" not in text
 
 
-def test_every_dockerfile_is_built() -> None:
-    built = {service["build"]["dockerfile"] for service in _SERVICES.values() if "build" in service}
-    assert built == {relative(path) for path in _DOCKERFILES}
+@pytest.mark.parametrize("name", _BUILDS)
+def test_an_image_is_built_from_a_part_and_watches_the_service_that_it_runs(name: str) -> None:
+    arguments = _BUILDS[name]["args"]
+    assert (ROOT / arguments["PART"] / "pyproject.toml").is_file()
+    assert arguments["SERVICE"] == _SERVICES[name]["command"][0]
+    text = (ROOT / "Dockerfile").read_text()
+    assert set(arguments) <= set(re.findall(r"^ARG (\w+)", text, re.MULTILINE))
+
+
+def test_every_part_but_the_platform_has_an_image() -> None:
+    parts = {relative(path.parent) for path in tracked_files() if path.name == "pyproject.toml"}
+    assert {build["args"]["PART"] for build in _BUILDS.values()} == parts - {".", "platform"}

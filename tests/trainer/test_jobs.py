@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus.zenoh_bus import ZenohBus
@@ -27,6 +28,7 @@ from mart.protocol.messages import (
     TrainerRequest,
     raise_error,
 )
+from mart.trainer.service.cli import wait
 from tests.support.processes import Running, running_router, running_service, started
 from tests.trainer.conftest import Recorded
 from tests.trainer.recorded import TASK
@@ -112,7 +114,7 @@ def service(endpoint: str, data_dir: Path) -> Iterator[Running]:
 
 
 @pytest.mark.usefixtures("service")
-def test_a_sweep_is_one_submission(client: Client) -> None:
+def test_a_sweep_is_one_submission(client: Client, endpoint: str, monkeypatch: pytest.MonkeyPatch) -> None:
     choices = client.ask(choices=TrainerRequest.Choices()).choices
     assert [data.episodes for data in choices.data if data.path == "episodes"] == [3]
     assert {"r-HBC", "BC-RNN"} <= {model.name for model in choices.models}
@@ -131,6 +133,9 @@ def test_a_sweep_is_one_submission(client: Client) -> None:
     assert client.details(second.id).job.state == JOB_STATE_CANCELLED
     with pytest.raises(Conflict, match="nothing to cancel"):
         client.ask(cancel=TrainerRequest.Cancel(job=first.sweep))
+    monkeypatch.setenv("MART_ROUTER", endpoint)
+    waited = CliRunner().invoke(wait, [first.sweep])
+    assert (waited.exit_code, "cancelled" in waited.output) == (1, True)
 
 
 @pytest.mark.usefixtures("service")

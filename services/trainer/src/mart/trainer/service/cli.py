@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 _trainer = click.option("--trainer", default="trainer-1", show_default=True, help="Which trainer service.")
 _job = click.argument("job")
+_LOOK_EVERY_S = 1.0
 
 
 def _listed(text: str) -> list[str]:
@@ -102,6 +103,28 @@ def list_jobs(sweep: str, trainer: str, as_json: bool) -> None:
 
     wanted = TrainerRequest.List(sweep=sweep)
     _print_jobs(_ask(trainer, TrainerRequest(list=wanted)), as_json=as_json)
+
+
+@jobs.command()
+@click.argument("sweep")
+@_trainer
+@json_option
+def wait(sweep: str, trainer: str, as_json: bool) -> None:
+    """Wait until every job of a sweep is over. Exits with 1 where one failed or was cancelled."""
+    from mart.protocol import clock
+    from mart.protocol.errors import NotFound
+    from mart.protocol.messages import JOB_STATE_DONE, JOB_STATE_QUEUED, JOB_STATE_RUNNING, TrainerRequest
+
+    wanted = TrainerRequest(list=TrainerRequest.List(sweep=sweep))
+    reply = _ask(trainer, wanted)
+    while any(job.state in (JOB_STATE_QUEUED, JOB_STATE_RUNNING) for job in reply.jobs):
+        clock.sleep_s(_LOOK_EVERY_S)
+        reply = _ask(trainer, wanted)
+    if not reply.jobs:
+        raise NotFound(f"There is no sweep {sweep!r} at {trainer}; `mart jobs list` shows them.")
+    _print_jobs(reply, as_json=as_json)
+    if any(job.state != JOB_STATE_DONE for job in reply.jobs):
+        raise click.exceptions.Exit(1)
 
 
 @jobs.command()

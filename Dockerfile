@@ -1,0 +1,41 @@
+# One part of the platform; docker-compose.yml says which parts there are and what each needs.
+# A part alone: docker build --build-arg PART=services/recorder --build-arg SERVICE=recorder --tag mart-recorder .
+FROM debian:bookworm-slim AS build
+ARG PART
+ARG BUILD_PACKAGES=""
+RUN apt-get update \
+ && apt-get install -y --no-install-recommends ca-certificates python3 python3-venv ${BUILD_PACKAGES} \
+ && rm -rf /var/lib/apt/lists /var/cache/apt
+RUN python3 -m venv /opt/mart
+ENV PATH=/opt/mart/bin:$PATH PIP_NO_CACHE_DIR=1 PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_CONSTRAINT=/src/constraints.txt
+WORKDIR /src
+COPY constraints.txt ./
+ARG BUILD_REQUIREMENTS=""
+RUN pip install pip setuptools wheel ${BUILD_REQUIREMENTS}
+# What the part needs changes less often than the part, so it is a layer of its own.
+COPY protocol/pyproject.toml protocol/
+COPY ${PART}/pyproject.toml ${PART}/setup.p[y] ${PART}/
+RUN pip install --no-build-isolation --only-deps ./protocol ./${PART}
+COPY protocol protocol
+COPY ${PART} ${PART}
+RUN pip install --no-build-isolation --no-deps ./protocol ./${PART} \
+ && pip uninstall -y pip setuptools wheel
+
+FROM debian:bookworm-slim
+ARG PACKAGES=""
+RUN apt-get update \
+ && apt-get install -y --no-install-recommends python3 ${PACKAGES} \
+ && rm -rf /var/lib/apt/lists /var/cache/apt \
+ && useradd --system --uid 10001 --home-dir /data mart
+ARG FOLDERS=""
+RUN install -d -o mart -g mart -m 0750 /data ${FOLDERS}
+COPY --from=build /opt/mart /opt/mart
+ARG SERVICE
+# Parts share few cores: a pool of threads in each would only make them wait for each other. A shader cache has nowhere
+# to lie in a file system that is read-only.
+ENV PATH=/opt/mart/bin:$PATH PYTHONUNBUFFERED=1 PYTHONDONTWRITEBYTECODE=1 MART_DATA_DIR=/data \
+    OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MESA_SHADER_CACHE_DISABLE=true SERVICE=${SERVICE}
+USER mart
+WORKDIR /data
+HEALTHCHECK --interval=5s --timeout=5s --retries=3 --start-period=30s CMD mart alive "$SERVICE"
+ENTRYPOINT ["mart"]
