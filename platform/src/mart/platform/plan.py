@@ -53,6 +53,7 @@ def processes(options: Options) -> tuple[Process, ...]:
         Process(("experts",), "experts", "experts"),
         Process(("gateway", "--name", "gateway-1"), "gateway", "gateway-1"),
         _RECORDER,
+        _CATALOGUE,
         Process(tuple(web), "web", "web"),
     )
 
@@ -72,6 +73,7 @@ def lockstep_processes(options: Options, rooms: int) -> tuple[Process, ...]:
 _ROUTER = Process(("router",), "router", "router")
 _REPLICA = Process(("replica", "--name", "replica-1"), "replica", "replica-1")
 _RECORDER = Process(("recorder", "--name", "recorder-1"), "recorder", "recorder-1")
+_CATALOGUE = Process(("catalogue", "--name", "catalogue-1"), "catalogue", "catalogue-1")
 _POLICIES = Process(("policies",), "policies", "policies", awaited=False)
 _TRAINER = Process(("trainer", "--name", "trainer-1"), "trainer", "trainer-1", awaited=False)
 

@@ -117,6 +117,13 @@ def training(trainer: str) -> Topic:
     return Topic(f"{ROOT}/@trainer/{_segment('trainer', trainer)}/jobs", Priority.LOW, must_arrive=True)
 
 
+def catalogue(catalogue: str) -> Topic:
+    """Queryable: CatalogueRequest → CatalogueReply. `catalogue` is the id of a catalogue service."""
+    return Topic(
+        f"{ROOT}/@catalogue/{_segment('catalogue', catalogue)}/episodes", Priority.LOW, must_arrive=True
+    )
+
+
 def alive(kind: str, id: str) -> str:
     """Liveliness token of one running service: `kind` is sim, replica, gateway, recorder, web, router, …"""
     return f"{ROOT}/@live/{_segment('kind', kind)}/{_segment('id', id)}"

@@ -8,6 +8,15 @@ import numpy as np
 
 from mart.protocol.errors import InvalidInput, MartError, from_wire
 from mart.protocol.pose import Pose
+from mart.v1.catalogue_pb2 import (
+    CatalogueReply,
+    CatalogueRequest,
+    Lane,
+    RecordedEpisode,
+    RecordedView,
+    Span,
+    Trace,
+)
 from mart.v1.command_pb2 import (
     OPERATOR_HOLD,
     OPERATOR_HUMAN,
@@ -94,6 +103,8 @@ __all__ = [
     "Answer",
     "ArmState",
     "BarrierPhase",
+    "CatalogueReply",
+    "CatalogueRequest",
     "Command",
     "CommandStamps",
     "Curve",
@@ -107,6 +118,7 @@ __all__ = [
     "Job",
     "JobProgress",
     "JobState",
+    "Lane",
     "Model",
     "Observation",
     "Offer",
@@ -118,6 +130,8 @@ __all__ = [
     "Policy",
     "PoseMessage",
     "Progress",
+    "RecordedEpisode",
+    "RecordedView",
     "Rollout",
     "RolloutReply",
     "RolloutRequest",
@@ -125,10 +139,12 @@ __all__ = [
     "RoomStatus",
     "Seat",
     "SeatRequest",
+    "Span",
     "State",
     "Subtask",
     "SubtaskCount",
     "TickStamps",
+    "Trace",
     "TrainerReply",
     "TrainerRequest",
     "Waiting",

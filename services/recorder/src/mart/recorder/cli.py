@@ -34,6 +34,15 @@ def recorder(name: str, replica: str | None) -> None:
     serve_recorder(_settings(replica), name)
 
 
+@click.command()
+@click.option("--name", default="catalogue-1", show_default=True, help="Id of this catalogue.")
+def catalogue(name: str) -> None:
+    """Answer what the pages ask about recorded episodes."""
+    from mart.recorder.browse.serve import serve_catalogue
+
+    serve_catalogue(RecorderSettings(), name)
+
+
 @click.group(cls=Gathered, entry_group="mart.commands.episodes")
 def episodes() -> None:
     """Work on episode files or folders of them; without a path, on all that were recorded here."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from mart.protocol.bus.aio import AsyncBus
+from mart.web.catalogue import KIND as CATALOGUE
+from mart.web.catalogue import Catalogue
 from mart.web.limits import RateLimit
 from mart.web.pairing import PairingCodes
 from mart.web.people import People
@@ -35,6 +37,10 @@ class Site:
     pairing: PairingCodes = field(default_factory=PairingCodes)
     wrong_codes: RateLimit = field(default_factory=_wrong_codes)
     offers: RateLimit = field(default_factory=_offers)
+
+    @property
+    def catalogue(self) -> Catalogue:
+        return Catalogue(self.bus, lambda: self.rooms.services().get(CATALOGUE, []))
 
     @property
     def trainer(self) -> Trainer:

@@ -22,6 +22,11 @@ async def operator(room: str, arm: str) -> FileResponse:
     return page("operator")
 
 
+@router.get("/episodes", include_in_schema=False)
+async def episodes() -> FileResponse:
+    return page("episodes")
+
+
 @router.get("/training", include_in_schema=False)
 async def training() -> FileResponse:
     return page("training")

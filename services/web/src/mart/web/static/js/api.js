@@ -44,6 +44,21 @@ export const act = (room, action, arm) =>
 export const sendOffer = (room, arm, token, sdp) =>
   request("POST", `${seat(room, arm)}/offer`, { sdp }, { Authorization: `Bearer ${token}` });
 
+const episodePath = (path, part = "") => `/episode${part}?${new URLSearchParams({ path })}`;
+
+export const episodes = (query, count) => request("GET", `/episodes?${new URLSearchParams([...query, ["count", count]])}`);
+export const episode = (path) => request("GET", episodePath(path));
+export const labelEpisode = (path, said) => request("POST", episodePath(path), said);
+export const fileOf = (path) => `/api${episodePath(path, "/file")}`;
+export const pictureOf = (path) => `/api${episodePath(path, "/picture")}`;
+
+/** A recorded video, whole. */
+export async function video(path, camera) {
+  const response = await fetch(`/api${episodePath(path, "/video")}&camera=${encodeURIComponent(camera)}`);
+  if (!response.ok) throw new ApiError(response.status, "", "The recorded video cannot be had; reload the page to try again.");
+  return response.blob();
+}
+
 const job = (id) => `/training/jobs/${encodeURIComponent(id)}`;
 
 export const trainingChoices = () => request("GET", "/training/choices");

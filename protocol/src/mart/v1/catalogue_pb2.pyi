@@ -1,0 +1,246 @@
+from mart.v1 import room_pb2 as _room_pb2
+from google.protobuf.internal import containers as _containers
+from google.protobuf import descriptor as _descriptor
+from google.protobuf import message as _message
+from collections.abc import Iterable as _Iterable, Mapping as _Mapping
+from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
+
+DESCRIPTOR: _descriptor.FileDescriptor
+
+class RecordedEpisode(_message.Message):
+    __slots__ = ("path", "size_bytes", "room", "number", "task", "control_hz", "outcome", "verdict", "reason", "ticks", "simulated_s", "mode", "skill", "real_time_factor", "missing_ticks", "waited_s", "started_ns", "complete", "repaired", "interrupted", "operators", "error", "note", "dropped")
+    class OperatorsEntry(_message.Message):
+        __slots__ = ("key", "value")
+        KEY_FIELD_NUMBER: _ClassVar[int]
+        VALUE_FIELD_NUMBER: _ClassVar[int]
+        key: str
+        value: str
+        def __init__(self, key: _Optional[str] = ..., value: _Optional[str] = ...) -> None: ...
+    PATH_FIELD_NUMBER: _ClassVar[int]
+    SIZE_BYTES_FIELD_NUMBER: _ClassVar[int]
+    ROOM_FIELD_NUMBER: _ClassVar[int]
+    NUMBER_FIELD_NUMBER: _ClassVar[int]
+    TASK_FIELD_NUMBER: _ClassVar[int]
+    CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
+    OUTCOME_FIELD_NUMBER: _ClassVar[int]
+    VERDICT_FIELD_NUMBER: _ClassVar[int]
+    REASON_FIELD_NUMBER: _ClassVar[int]
+    TICKS_FIELD_NUMBER: _ClassVar[int]
+    SIMULATED_S_FIELD_NUMBER: _ClassVar[int]
+    MODE_FIELD_NUMBER: _ClassVar[int]
+    SKILL_FIELD_NUMBER: _ClassVar[int]
+    REAL_TIME_FACTOR_FIELD_NUMBER: _ClassVar[int]
+    MISSING_TICKS_FIELD_NUMBER: _ClassVar[int]
+    WAITED_S_FIELD_NUMBER: _ClassVar[int]
+    STARTED_NS_FIELD_NUMBER: _ClassVar[int]
+    COMPLETE_FIELD_NUMBER: _ClassVar[int]
+    REPAIRED_FIELD_NUMBER: _ClassVar[int]
+    INTERRUPTED_FIELD_NUMBER: _ClassVar[int]
+    OPERATORS_FIELD_NUMBER: _ClassVar[int]
+    ERROR_FIELD_NUMBER: _ClassVar[int]
+    NOTE_FIELD_NUMBER: _ClassVar[int]
+    DROPPED_FIELD_NUMBER: _ClassVar[int]
+    path: str
+    size_bytes: int
+    room: str
+    number: int
+    task: str
+    control_hz: float
+    outcome: str
+    verdict: str
+    reason: str
+    ticks: int
+    simulated_s: float
+    mode: str
+    skill: str
+    real_time_factor: float
+    missing_ticks: int
+    waited_s: float
+    started_ns: int
+    complete: bool
+    repaired: bool
+    interrupted: bool
+    operators: _containers.ScalarMap[str, str]
+    error: str
+    note: str
+    dropped: bool
+    def __init__(self, path: _Optional[str] = ..., size_bytes: _Optional[int] = ..., room: _Optional[str] = ..., number: _Optional[int] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., reason: _Optional[str] = ..., ticks: _Optional[int] = ..., simulated_s: _Optional[float] = ..., mode: _Optional[str] = ..., skill: _Optional[str] = ..., real_time_factor: _Optional[float] = ..., missing_ticks: _Optional[int] = ..., waited_s: _Optional[float] = ..., started_ns: _Optional[int] = ..., complete: _Optional[bool] = ..., repaired: _Optional[bool] = ..., interrupted: _Optional[bool] = ..., operators: _Optional[_Mapping[str, str]] = ..., error: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ...) -> None: ...
+
+class Span(_message.Message):
+    __slots__ = ("begin_s", "end_s", "text")
+    BEGIN_S_FIELD_NUMBER: _ClassVar[int]
+    END_S_FIELD_NUMBER: _ClassVar[int]
+    TEXT_FIELD_NUMBER: _ClassVar[int]
+    begin_s: float
+    end_s: float
+    text: str
+    def __init__(self, begin_s: _Optional[float] = ..., end_s: _Optional[float] = ..., text: _Optional[str] = ...) -> None: ...
+
+class Lane(_message.Message):
+    __slots__ = ("kind", "name", "spans")
+    KIND_FIELD_NUMBER: _ClassVar[int]
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    SPANS_FIELD_NUMBER: _ClassVar[int]
+    kind: str
+    name: str
+    spans: _containers.RepeatedCompositeFieldContainer[Span]
+    def __init__(self, kind: _Optional[str] = ..., name: _Optional[str] = ..., spans: _Optional[_Iterable[_Union[Span, _Mapping]]] = ...) -> None: ...
+
+class Trace(_message.Message):
+    __slots__ = ("arm", "quantity", "unit", "seconds", "values")
+    ARM_FIELD_NUMBER: _ClassVar[int]
+    QUANTITY_FIELD_NUMBER: _ClassVar[int]
+    UNIT_FIELD_NUMBER: _ClassVar[int]
+    SECONDS_FIELD_NUMBER: _ClassVar[int]
+    VALUES_FIELD_NUMBER: _ClassVar[int]
+    arm: str
+    quantity: str
+    unit: str
+    seconds: _containers.RepeatedScalarFieldContainer[float]
+    values: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, arm: _Optional[str] = ..., quantity: _Optional[str] = ..., unit: _Optional[str] = ..., seconds: _Optional[_Iterable[float]] = ..., values: _Optional[_Iterable[float]] = ...) -> None: ...
+
+class RecordedView(_message.Message):
+    __slots__ = ("camera", "start_s")
+    CAMERA_FIELD_NUMBER: _ClassVar[int]
+    START_S_FIELD_NUMBER: _ClassVar[int]
+    camera: str
+    start_s: float
+    def __init__(self, camera: _Optional[str] = ..., start_s: _Optional[float] = ...) -> None: ...
+
+class CatalogueRequest(_message.Message):
+    __slots__ = ("list", "show", "label", "file", "video", "picture")
+    class List(_message.Message):
+        __slots__ = ("task", "outcome", "verdict", "operator", "room", "offset", "count")
+        TASK_FIELD_NUMBER: _ClassVar[int]
+        OUTCOME_FIELD_NUMBER: _ClassVar[int]
+        VERDICT_FIELD_NUMBER: _ClassVar[int]
+        OPERATOR_FIELD_NUMBER: _ClassVar[int]
+        ROOM_FIELD_NUMBER: _ClassVar[int]
+        OFFSET_FIELD_NUMBER: _ClassVar[int]
+        COUNT_FIELD_NUMBER: _ClassVar[int]
+        task: str
+        outcome: str
+        verdict: str
+        operator: str
+        room: str
+        offset: int
+        count: int
+        def __init__(self, task: _Optional[str] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., operator: _Optional[str] = ..., room: _Optional[str] = ..., offset: _Optional[int] = ..., count: _Optional[int] = ...) -> None: ...
+    class Show(_message.Message):
+        __slots__ = ("path",)
+        PATH_FIELD_NUMBER: _ClassVar[int]
+        path: str
+        def __init__(self, path: _Optional[str] = ...) -> None: ...
+    class Label(_message.Message):
+        __slots__ = ("path", "outcome", "note", "dropped")
+        PATH_FIELD_NUMBER: _ClassVar[int]
+        OUTCOME_FIELD_NUMBER: _ClassVar[int]
+        NOTE_FIELD_NUMBER: _ClassVar[int]
+        DROPPED_FIELD_NUMBER: _ClassVar[int]
+        path: str
+        outcome: str
+        note: str
+        dropped: bool
+        def __init__(self, path: _Optional[str] = ..., outcome: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ...) -> None: ...
+    class File(_message.Message):
+        __slots__ = ("path", "offset")
+        PATH_FIELD_NUMBER: _ClassVar[int]
+        OFFSET_FIELD_NUMBER: _ClassVar[int]
+        path: str
+        offset: int
+        def __init__(self, path: _Optional[str] = ..., offset: _Optional[int] = ...) -> None: ...
+    class Video(_message.Message):
+        __slots__ = ("path", "camera", "offset")
+        PATH_FIELD_NUMBER: _ClassVar[int]
+        CAMERA_FIELD_NUMBER: _ClassVar[int]
+        OFFSET_FIELD_NUMBER: _ClassVar[int]
+        path: str
+        camera: str
+        offset: int
+        def __init__(self, path: _Optional[str] = ..., camera: _Optional[str] = ..., offset: _Optional[int] = ...) -> None: ...
+    class Picture(_message.Message):
+        __slots__ = ("path",)
+        PATH_FIELD_NUMBER: _ClassVar[int]
+        path: str
+        def __init__(self, path: _Optional[str] = ...) -> None: ...
+    LIST_FIELD_NUMBER: _ClassVar[int]
+    SHOW_FIELD_NUMBER: _ClassVar[int]
+    LABEL_FIELD_NUMBER: _ClassVar[int]
+    FILE_FIELD_NUMBER: _ClassVar[int]
+    VIDEO_FIELD_NUMBER: _ClassVar[int]
+    PICTURE_FIELD_NUMBER: _ClassVar[int]
+    list: CatalogueRequest.List
+    show: CatalogueRequest.Show
+    label: CatalogueRequest.Label
+    file: CatalogueRequest.File
+    video: CatalogueRequest.Video
+    picture: CatalogueRequest.Picture
+    def __init__(self, list: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ..., show: _Optional[_Union[CatalogueRequest.Show, _Mapping]] = ..., label: _Optional[_Union[CatalogueRequest.Label, _Mapping]] = ..., file: _Optional[_Union[CatalogueRequest.File, _Mapping]] = ..., video: _Optional[_Union[CatalogueRequest.Video, _Mapping]] = ..., picture: _Optional[_Union[CatalogueRequest.Picture, _Mapping]] = ...) -> None: ...
+
+class CatalogueReply(_message.Message):
+    __slots__ = ("error", "listing", "details", "episode", "piece")
+    class Listing(_message.Message):
+        __slots__ = ("episodes", "matching", "successes", "tasks", "operators")
+        EPISODES_FIELD_NUMBER: _ClassVar[int]
+        MATCHING_FIELD_NUMBER: _ClassVar[int]
+        SUCCESSES_FIELD_NUMBER: _ClassVar[int]
+        TASKS_FIELD_NUMBER: _ClassVar[int]
+        OPERATORS_FIELD_NUMBER: _ClassVar[int]
+        episodes: _containers.RepeatedCompositeFieldContainer[RecordedEpisode]
+        matching: int
+        successes: int
+        tasks: _containers.RepeatedScalarFieldContainer[str]
+        operators: _containers.RepeatedScalarFieldContainer[str]
+        def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ...) -> None: ...
+    class Details(_message.Message):
+        __slots__ = ("episode", "wall_s", "lanes", "traces", "views", "cadence", "versions", "verification")
+        class CadenceEntry(_message.Message):
+            __slots__ = ("key", "value")
+            KEY_FIELD_NUMBER: _ClassVar[int]
+            VALUE_FIELD_NUMBER: _ClassVar[int]
+            key: str
+            value: str
+            def __init__(self, key: _Optional[str] = ..., value: _Optional[str] = ...) -> None: ...
+        class VersionsEntry(_message.Message):
+            __slots__ = ("key", "value")
+            KEY_FIELD_NUMBER: _ClassVar[int]
+            VALUE_FIELD_NUMBER: _ClassVar[int]
+            key: str
+            value: str
+            def __init__(self, key: _Optional[str] = ..., value: _Optional[str] = ...) -> None: ...
+        EPISODE_FIELD_NUMBER: _ClassVar[int]
+        WALL_S_FIELD_NUMBER: _ClassVar[int]
+        LANES_FIELD_NUMBER: _ClassVar[int]
+        TRACES_FIELD_NUMBER: _ClassVar[int]
+        VIEWS_FIELD_NUMBER: _ClassVar[int]
+        CADENCE_FIELD_NUMBER: _ClassVar[int]
+        VERSIONS_FIELD_NUMBER: _ClassVar[int]
+        VERIFICATION_FIELD_NUMBER: _ClassVar[int]
+        episode: RecordedEpisode
+        wall_s: float
+        lanes: _containers.RepeatedCompositeFieldContainer[Lane]
+        traces: _containers.RepeatedCompositeFieldContainer[Trace]
+        views: _containers.RepeatedCompositeFieldContainer[RecordedView]
+        cadence: _containers.ScalarMap[str, str]
+        versions: _containers.ScalarMap[str, str]
+        verification: str
+        def __init__(self, episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., wall_s: _Optional[float] = ..., lanes: _Optional[_Iterable[_Union[Lane, _Mapping]]] = ..., traces: _Optional[_Iterable[_Union[Trace, _Mapping]]] = ..., views: _Optional[_Iterable[_Union[RecordedView, _Mapping]]] = ..., cadence: _Optional[_Mapping[str, str]] = ..., versions: _Optional[_Mapping[str, str]] = ..., verification: _Optional[str] = ...) -> None: ...
+    class Piece(_message.Message):
+        __slots__ = ("piece", "size_bytes")
+        PIECE_FIELD_NUMBER: _ClassVar[int]
+        SIZE_BYTES_FIELD_NUMBER: _ClassVar[int]
+        piece: bytes
+        size_bytes: int
+        def __init__(self, piece: _Optional[bytes] = ..., size_bytes: _Optional[int] = ...) -> None: ...
+    ERROR_FIELD_NUMBER: _ClassVar[int]
+    LISTING_FIELD_NUMBER: _ClassVar[int]
+    DETAILS_FIELD_NUMBER: _ClassVar[int]
+    EPISODE_FIELD_NUMBER: _ClassVar[int]
+    PIECE_FIELD_NUMBER: _ClassVar[int]
+    error: _room_pb2.Error
+    listing: CatalogueReply.Listing
+    details: CatalogueReply.Details
+    episode: RecordedEpisode
+    piece: CatalogueReply.Piece
+    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., listing: _Optional[_Union[CatalogueReply.Listing, _Mapping]] = ..., details: _Optional[_Union[CatalogueReply.Details, _Mapping]] = ..., episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., piece: _Optional[_Union[CatalogueReply.Piece, _Mapping]] = ...) -> None: ...

@@ -1,0 +1,1 @@
+"""What people ask about recorded episodes, answered over the bus: `mart catalogue`."""
