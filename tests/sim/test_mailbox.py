@@ -67,7 +67,7 @@ def test_a_flood_makes_one_line_a_second(caplog: pytest.LogCaptureFixture) -> No
     with caplog.at_level(logging.WARNING):
         for tenth in range(21):
             counted["old sequence"] += 5
-            complaints.say(Counter(counted), now_s=100.0 + 0.1 * tenth)
+            complaints.say(counted, now_s=100.0 + 0.1 * tenth)
     assert len(caplog.messages) == 3
     assert caplog.messages[1] == "Not used: 50 x old sequence"
 

@@ -25,4 +25,4 @@ class Complaints:
         _log.warning(
             "Not used: %s", ", ".join(f"{count} x {reason}" for reason, count in sorted(news.items()))
         )
-        self._said, self._due_s = counted, now_s + _PERIOD_S
+        self._said, self._due_s = counted.copy(), now_s + _PERIOD_S

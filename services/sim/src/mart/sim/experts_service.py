@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import threading
-from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Bus, Publisher, Sample
+from mart.protocol.bus import Bus, Publisher
 from mart.protocol.complaints import Complaints
 from mart.protocol.errors import MartError
 from mart.protocol.messages import OPERATOR_SCRIPT, RoomStatus, Seat, State
+from mart.protocol.room_watch import RoomWatch
 from mart.protocol.service import running
 from mart.protocol.tasks import get_task
 from mart.sim.experts import Skill, get_skill
 from mart.sim.operate import REPEAT_S, ScriptedOperator
 from mart.sim.settings import ExpertsSettings
-
-_MAX_STATUS_BYTES = 64 * 1024
-_MAX_STATE_BYTES = 1024 * 1024
 
 
 @dataclass
@@ -35,55 +31,24 @@ class Experts:
     def __init__(self, bus: Bus, settings: ExpertsSettings, skill: Skill) -> None:
         self._bus, self._settings, self._skill = bus, settings, skill
         self._driven: dict[tuple[str, str], _Driven] = {}
-        self._states: dict[str, bytes] = {}  # the newest of every room
-        self._statuses: dict[str, bytes] = {}
-        self._arrived = threading.Condition()
-        self._unusable: Counter[str] = Counter()
-        room = settings.room
-        self._subscriptions = (
-            bus.subscribe(keys.status(room).key if room else keys.EVERY_STATUS, self._on_status),
-            bus.subscribe(keys.state(room).key if room else keys.EVERY_STATE, self._on_state),
-        )
+        self._watch = RoomWatch(bus, settings.room)
 
     def run(self, stop: threading.Event) -> None:
-        complaints = Complaints()
+        complaints, unusable = Complaints(), self._watch.unusable
         while not stop.is_set():
-            statuses, states = self._take()
-            for room, payload in statuses.items():
-                self._guarded(self._follow_seats, room, payload)
-            for room, payload in states.items():
-                self._guarded(self._show, room, payload)
+            statuses, states = self._watch.take(REPEAT_S / 2)
+            for room, status in statuses.items():
+                try:
+                    self._follow_seats(room, status)
+                except MartError as error:
+                    unusable[f"{room}: {error}"] += 1
+            for room, state in states.items():
+                self._show(room, state)
             self._repeat(clock.monotonic_s())
-            complaints.say(self._unusable, clock.monotonic_s())
-        for subscription in self._subscriptions:
-            subscription.close()
+            complaints.say(unusable, clock.monotonic_s())
+        self._watch.close()
 
-    def _on_status(self, sample: Sample) -> None:
-        with self._arrived:
-            self._statuses[keys.room_of(sample.key)] = sample.payload
-            self._arrived.notify()
-
-    def _on_state(self, sample: Sample) -> None:
-        with self._arrived:
-            self._states[keys.room_of(sample.key)] = sample.payload
-            self._arrived.notify()
-
-    def _take(self) -> tuple[dict[str, bytes], dict[str, bytes]]:
-        with self._arrived:
-            if not self._statuses and not self._states:
-                self._arrived.wait(REPEAT_S / 2)
-            taken = self._statuses, self._states
-            self._statuses, self._states = {}, {}
-            return taken
-
-    def _guarded(self, handle: Callable[[str, bytes], None], room: str, payload: bytes) -> None:
-        try:
-            handle(room, payload)
-        except MartError as error:
-            self._unusable[f"{room}: {error}"] += 1
-
-    def _follow_seats(self, room: str, payload: bytes) -> None:
-        status = codec.decode(RoomStatus, payload, _MAX_STATUS_BYTES)
+    def _follow_seats(self, room: str, status: RoomStatus) -> None:
         for seat in status.seats:
             place = (room, seat.arm)
             driven = self._driven.get(place)
@@ -110,8 +75,7 @@ class Experts:
         topic = keys.intent(room, arm) if self._settings.intent else keys.command(room, arm)
         return self._bus.publisher(topic)
 
-    def _show(self, room: str, payload: bytes) -> None:
-        state = codec.decode(State, payload, _MAX_STATE_BYTES)
+    def _show(self, room: str, state: State) -> None:
         for (place, _), driven in self._driven.items():
             if place == room and driven.operator.see(state):
                 driven.repeat_s = 0.0  # say it now

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import contextlib
-import threading
-from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Bus, Publisher, Sample
+from mart.protocol.bus import Bus, Publisher
 from mart.protocol.complaints import Complaints
 from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import OPERATOR_HOLD, Event, RoomStatus, Seat, SeatRequest, State
+from mart.protocol.room_watch import RoomWatch
 from mart.protocol.tasks import Task, get_task
 from mart.trainer.operate.operator import PolicyOperator, parts_of
 
@@ -24,10 +23,7 @@ if TYPE_CHECKING:
 
 REPEAT_S = 0.1  # while no new state comes: the barrier hears that the policy is still there
 _QUERY_TIMEOUT_S = 3.0
-_MAX_STATUS_BYTES = 64 * 1024
-_MAX_STATE_BYTES = 1024 * 1024
 
-M = TypeVar("M", RoomStatus, State)
 CheckpointOf = Callable[[Seat], Path | None]  # of a seat that is to be driven; None: not by us
 Load = Callable[[Path], "Policy"]
 
@@ -53,57 +49,23 @@ class Crews:
         self._bus, self._checkpoint_of, self._load = bus, checkpoint_of, load
         self._crews: dict[tuple[str, Path], Crew] = {}
         self._failed: dict[tuple[str, Path], Mapping[str, int]] = {}  # with the epochs that were left
-        self._states: dict[str, bytes] = {}  # the newest of every room
-        self._statuses: dict[str, bytes] = {}
-        self._arrived = threading.Condition()
+        self._watch = RoomWatch(bus, room)
         self._complaints = Complaints()
-        self._unusable: Counter[str] = Counter()
-        self._subscriptions = (
-            bus.subscribe(keys.status(room).key if room else keys.EVERY_STATUS, self._on_status),
-            bus.subscribe(keys.state(room).key if room else keys.EVERY_STATE, self._on_state),
-        )
 
     def close(self) -> None:
-        for opened in (*self._subscriptions, *self._crews.values()):
-            opened.close()
+        self._watch.close()
+        for crew in self._crews.values():
+            crew.close()
 
     def work(self) -> None:
         """Does what has come, or what is due when nothing comes for a moment."""
-        statuses, states = self._take()
-        for room, payload in statuses.items():
-            self._read(self._follow_seats, room, RoomStatus, payload, _MAX_STATUS_BYTES)
-        for room, payload in states.items():
-            self._read(self._show, room, State, payload, _MAX_STATE_BYTES)
+        statuses, states = self._watch.take(REPEAT_S / 2)
+        for room, status in statuses.items():
+            self._follow_seats(room, status)
+        for room, state in states.items():
+            self._show(room, state)
         self._speak(clock.monotonic_s())
-        self._complaints.say(self._unusable, clock.monotonic_s())
-
-    def _read(
-        self, handle: Callable[[str, M], None], room: str, kind: type[M], payload: bytes, limit_bytes: int
-    ) -> None:
-        try:
-            message = codec.decode(kind, payload, limit_bytes)
-        except InvalidInput as error:
-            self._unusable[f"{room}: {error}"] += 1
-        else:
-            handle(room, message)
-
-    def _on_status(self, sample: Sample) -> None:
-        with self._arrived:
-            self._statuses[keys.room_of(sample.key)] = sample.payload
-            self._arrived.notify()
-
-    def _on_state(self, sample: Sample) -> None:
-        with self._arrived:
-            self._states[keys.room_of(sample.key)] = sample.payload
-            self._arrived.notify()
-
-    def _take(self) -> tuple[dict[str, bytes], dict[str, bytes]]:
-        with self._arrived:
-            if not self._statuses and not self._states:
-                self._arrived.wait(REPEAT_S / 2)
-            taken = self._statuses, self._states
-            self._statuses, self._states = {}, {}
-            return taken
+        self._complaints.say(self._watch.unusable, clock.monotonic_s())
 
     def _follow_seats(self, room: str, status: RoomStatus) -> None:
         wanted: dict[tuple[str, Path], dict[str, int]] = {}
