@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
 from mart.sim.experts.rehearsal import rehearse
+from mart.sim.experts.seeing import upright
 from mart.sim.world import Progress, World
 
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
@@ -37,10 +38,12 @@ def tools(world: World) -> dict[str, Pose]:
     return {arm: world.tool_pose_in_base(arm) for arm in world.arms}
 
 
-def tool_over(world: World, arm: str, point_in_world: Vector, height_m: float = 0.0) -> Pose:
-    """A target: the tool over a point, pointing straight down."""
+def tool_over(
+    world: World, arm: str, point_in_world: Vector, height_m: float = 0.0, yaw_rad: float = 0.0
+) -> Pose:
+    """A target: the tool over a point, pointing straight down, turned by `yaw_rad` in its base frame."""
     x, y, z = world.task.arm(arm).pose_base_in_world.inverse().transform_points(point_in_world)
-    return Pose(np.array([x, y, z + height_m]), np.array(UPRIGHT))
+    return upright((x, y, z + height_m), yaw_rad)
 
 
 def steps(
@@ -57,12 +60,12 @@ def drive(world: World, targets: Mapping[str, Pose], ticks: int, **grippers: flo
     return progress
 
 
-def grip(world: World, points_in_world: Mapping[str, Vector]) -> dict[str, Pose]:
+def grip(world: World, points_in_world: Mapping[str, Vector], yaw_rad: float = 0.0) -> dict[str, Pose]:
     """Each of these arms goes over its point, down and closes; where all tools have been sent."""
     targets = tools(world)
     for height_m, ticks, closed in ((0.1, 60, 0.0), (0.0, 40, 0.0), (0.0, 12, 1.0)):
         for arm, point in points_in_world.items():
-            targets[arm] = tool_over(world, arm, point, height_m)
+            targets[arm] = tool_over(world, arm, point, height_m, yaw_rad)
         drive(world, targets, ticks, **dict.fromkeys(points_in_world, closed))
     return targets
 

@@ -9,10 +9,8 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.sim.experts.person import Person
-from mart.sim.experts.plan import CLOSED, OPEN, Sight, Step, Waypoint, go, pick, stay
-from mart.sim.experts.seeing import See, apart_m, at
-
-Until = Callable[[Sight], bool]
+from mart.sim.experts.plan import CLOSED, OPEN, Sight, Step, Until, Waypoint, go, never, pick, stay
+from mart.sim.experts.seeing import See, across, apart_m, at
 
 _LOST_M = 0.035
 _MISSED = 0.93  # of the gripper: fingers that have closed on nothing
@@ -28,18 +26,25 @@ _OPENING_S = 0.35
 
 
 class Grip:
-    """`thing` and `tool` tell, in the own base frame, where the thing is and where a tool is that grips it well."""
+    """`thing` and `tool` tell, in the own base frame, where the thing is and where a tool is that grips it well.
 
-    def __init__(self, person: Person, thing: See, tool: See) -> None:
-        self._person, self._thing, self._tool = person, thing, tool
+    hangs: whether it turns in the hand as it likes; the hand then stays straight instead of leaning with it.
+    """
+
+    def __init__(self, person: Person, thing: See, tool: See, *, hangs: bool = False) -> None:
+        self._person, self._thing, self._tool, self._hangs = person, thing, tool, hangs
 
     def is_lost(self, now: Sight) -> bool:
         """The thing is not in the hand."""
         return now.gripper > _MISSED or apart_m(self._tool(now), now.pose_tool_in_base) > _LOST_M
 
-    def pick(self, sight: Sight) -> Step:
-        """One attempt."""
-        return (yield from pick(sight, self._person, self._tool))
+    def pick(self, sight: Sight, unless: Until = never, beside_m: float = 0.0) -> Step:
+        """One attempt, with the fingers so far beside the thing, which moves between them when they close."""
+
+        def grasp(now: Sight) -> Pose:
+            return self._tool(now) @ at(0.0, beside_m, 0.0)
+
+        return (yield from pick(sight, self._person, grasp, unless=unless))
 
     def bring(
         self,
@@ -56,6 +61,8 @@ class Grip:
         while not (until(sight) or self.is_lost(sight)) and sight.sim_time_s < give_up_s:
             tool = sight.pose_tool_in_base
             target = goal(sight) @ self._thing(sight).inverse() @ tool
+            if self._hangs:
+                target = across(target, math.tau)
             missing = target.position - tool.position
             if float(np.linalg.norm(missing)) < _TRIM_FROM_M:
                 trim = trim + _TRIM_PER_S * (sight.sim_time_s - last_s) * missing
@@ -81,9 +88,13 @@ class Grip:
         def below(now: Sight) -> Pose:
             return at(0.0, 0.0, -_PRESS_M) @ place(now)
 
+        def is_over(now: Sight) -> bool:
+            height_m = self._thing(now).position[2] - place(now).position[2]
+            return self.is_over(now, place) and height_m > clear_m / 2
+
         sight = yield from self.raise_to(sight, over(sight).position[2])
         while not (placed(sight) or self.is_lost(sight)):
-            sight = yield from self.bring(sight, over, lambda now: self.is_over(now, place))
+            sight = yield from self.bring(sight, over, is_over)
             sight = yield from self.bring(
                 sight, below, placed, pace=lambda _: _CAREFUL, patience_s=_PATIENCE_S
             )

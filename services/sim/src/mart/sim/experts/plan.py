@@ -52,16 +52,26 @@ class Sight:
 Plan = Generator[Waypoint, Sight, None]
 Step = Generator[Waypoint, Sight, Sight]
 Aim = Callable[[Sight], Waypoint]
+Until = Callable[[Sight], bool]
 
 
-def go(sight: Sight, aim: Aim, patience_s: float = math.inf, short_m: float = 0.0) -> Step:
-    """Until the tool is there, or `short_m` before it, or `patience_s` have passed; the aim follows what is seen."""
+def never(_: Sight) -> bool:
+    return False
+
+
+def go(
+    sight: Sight, aim: Aim, patience_s: float = math.inf, short_m: float = 0.0, unless: Until = never
+) -> Step:
+    """Until the tool is there, or `short_m` before it, or `patience_s` have passed; the aim follows what is seen.
+
+    unless: what makes it pointless to go on.
+    """
     give_up_s = sight.sim_time_s + patience_s
     while True:
         waypoint = aim(sight)
         sight = yield waypoint
         left_m, _ = waypoint.pose_tool_in_base.distance_to(sight.pose_tool_in_base)
-        if sight.arrived or left_m < short_m or sight.sim_time_s >= give_up_s:
+        if sight.arrived or left_m < short_m or sight.sim_time_s >= give_up_s or unless(sight):
             return sight
 
 
@@ -73,17 +83,24 @@ def stay(sight: Sight, waypoint: Waypoint, duration_s: float) -> Step:
     return sight
 
 
-def wait(sight: Sight, waypoint: Waypoint, person: Person, until: Callable[[Sight], bool]) -> Step:
+def wait(sight: Sight, waypoint: Waypoint, person: Person, until: Until) -> Step:
     """At `waypoint`, until `until` holds; acted upon as late as this person notices things."""
     while not until(sight):
         sight = yield waypoint
     return (yield from stay(sight, waypoint, person.notices_s()))
 
 
-def pick(sight: Sight, person: Person, grasp: Callable[[Sight], Pose], over_m: float = 0.10) -> Step:
+def pick(
+    sight: Sight,
+    person: Person,
+    grasp: Callable[[Sight], Pose],
+    over_m: float = 0.10,
+    unless: Until = never,
+) -> Step:
     """One attempt to grip something: over it, down onto it, close. Look afterwards whether it is in the hand.
 
     grasp: the tool's pose (base frame) that would grip it well; followed until the tool goes down, fixed from then on.
+    unless: what makes the attempt pointless while it is under way.
     """
     miss = person.aims()
     above = Pose(np.array([0.0, 0.0, person.varied(over_m)]), Pose.identity().quaternion_wxyz)
@@ -91,7 +108,9 @@ def pick(sight: Sight, person: Person, grasp: Callable[[Sight], Pose], over_m: f
     def over(now: Sight) -> Waypoint:
         return Waypoint(above @ grasp(now) @ miss, OPEN)
 
-    sight = yield from go(sight, over)
+    sight = yield from go(sight, over, unless=unless)
+    if unless(sight):
+        return sight
     sight = yield from stay(sight, over(sight), person.settles_s())
     place = grasp(sight) @ miss
     down = Waypoint(place, OPEN, _CAREFUL)

@@ -19,14 +19,12 @@ from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, go,
 from mart.sim.experts.seeing import Still, across, apart_m, at, level, seen, seen_tool, standing, upright
 
 _LID_KNOB = at(0.0, 0.0, 0.024)
-_FETCHER_END, _RECEIVER_END = (
-    at(-0.055, 0.0, 0.0),
-    at(0.075, 0.0, 0.0),
-)  # where each grips the hammer's handle
+_HEAD_END, _FREE_END = at(-0.055, 0.0, 0.0), at(0.075, 0.0, 0.0)  # where a hammer's handle is gripped
 
 # In the world.
 _LID_PLACE = at(-0.27, -0.16, 0.075)
 _OFFER = at(0.0, 0.0, 0.25)  # of the hammer
+_BACK = at(-0.03, 0.0, 0.07)  # of a hammer that arm 1 lays down for arm 0
 _AWAIT, _RETREAT = at(0.25, 0.0, 0.34), at(-0.25, 0.0, 0.34)  # of arm 1's tool and of arm 0's
 _FETCHED_TO_M = 0.03  # beyond the offer: where a hammer lies further, it is arm 1 who can reach it
 _IN_THE_AIR_Z_M = 0.19
@@ -36,6 +34,11 @@ _TRAY_HALF_M, _BIN_HALF_M = (0.06, 0.06), (0.15, 0.08)  # inside, with something
 _LOW_M = 0.045  # over a floor: what is that low lies there
 _ON_FLOOR = at(0.0, 0.0, 0.02)
 _CLEAR_M = 0.09
+_BESIDE_M = (
+    0.0,
+    0.022,
+    -0.022,
+)  # one attempt after the other at a hammer that lies: a wall may be in the way
 _QUARTER_TURN = upright(np.zeros(3), math.pi / 2)
 _STILL_M, _STILL_S = 0.012, 0.3
 _PARTNER_M, _PARTNER_S, _PARTNER_GONE_M = 0.03, 0.7, 0.09
@@ -68,7 +71,8 @@ class _Fetcher:
         self._lid, self._container = seen(arm, "lid"), seen(arm, "container")
         self._hammer, self._partner = seen(arm, "hammer"), seen_tool(arm, "arm1")
         self._knob = Grip(person, self._lid, lambda now: across(self._lid(now) @ _LID_KNOB))
-        self._handle = Grip(person, self._hammer, lambda now: across(self._hammer(now) @ _FETCHER_END))
+        self._handle = Grip(person, self._hammer, lambda now: across(_own_end(self._hammer(now))))
+        self._sides = cycle(_BESIDE_M)
         self._lid_place, self._offer = to_base @ _LID_PLACE, to_base @ _OFFER
         self.retreat = Waypoint(across(to_base @ _RETREAT), OPEN)
 
@@ -89,13 +93,15 @@ class _Fetcher:
 
     def offer_hammer(self, sight: Sight) -> Step:
         """One attempt: out of the container, held out until the partner has it, let go."""
-        sight = yield from self._handle.pick(sight)
+        sight = yield from self._handle.pick(sight, beside_m=next(self._sides))
         sight = yield from self._handle.raise_to(sight, self._offer.position[2])
         still = Still(self._partner, _STILL_M, _PARTNER_S)
         sight = yield from self._handle.bring(
             sight, self._place_of_offer, lambda now: still(now) and self._is_gripped_by_partner(now)
         )
         sight = yield from self._handle.let_go(sight)
+        if self.has_to_fetch(sight):
+            return sight
         return (yield from go(sight, lambda _: self.retreat, patience_s=2.0))
 
     def _place_of_lid(self, now: Sight) -> Pose:
@@ -105,7 +111,7 @@ class _Fetcher:
         return level(self._offer, self._hammer(now))
 
     def _is_gripped_by_partner(self, now: Sight) -> bool:
-        return apart_m(self._hammer(now) @ _RECEIVER_END, self._partner(now)) < _PARTNER_M
+        return apart_m(_other_end(self._hammer(now)), self._partner(now)) < _PARTNER_M
 
 
 class _Receiver:
@@ -119,7 +125,9 @@ class _Receiver:
         along = Grip(person, self._trash, lambda now: across(self._trash(now), math.pi / 2))
         athwart = Grip(person, self._trash, lambda now: across(self._trash(now), math.pi / 2) @ _QUARTER_TURN)
         self._grips = cycle((along, athwart))
-        self._handle = Grip(person, self._hammer, lambda now: across(self._hammer(now) @ _RECEIVER_END))
+        self._handle = Grip(person, self._hammer, lambda now: across(_own_end(self._hammer(now))))
+        self._sides = cycle(_BESIDE_M)
+        self._back, self._taken = to_base @ _BACK, False
         self._reach_x_m = float((to_base @ _OFFER).position[0]) - _FETCHED_TO_M
         self.retreat = Waypoint(across(to_base @ _AWAIT), OPEN)
 
@@ -136,31 +144,65 @@ class _Receiver:
         return _lies_in(self._hammer(now), self._bin(now), _BIN_HALF_M)
 
     def take_hammer(self, sight: Sight) -> Step:
-        """One attempt: out of the partner's hand, or from where it fell on this arm's shelf, into the bin."""
+        """One attempt: out of the partner's hand into the bin.
+
+        From where it fell on this arm's shelf as well; only, a hammer that has not been handed over goes back first.
+        """
         still = Still(self._hammer, _STILL_M, _STILL_S)
         sight = yield from wait(
             sight, self.retreat, self._person, lambda now: still(now) and self._is_within_reach(now)
         )
-        sight = yield from self._handle.pick(sight)
+        offered = self._is_in_the_air(sight)
+        sight = yield from self._handle.pick(
+            sight,
+            unless=lambda now: not self._is_within_reach(now),
+            beside_m=0.0 if offered else next(self._sides),
+        )
         here = Waypoint(sight.pose_tool_in_base, CLOSED)
         sight = yield from wait(
             sight, here, self._person, lambda now: self._is_partner_gone(now) or self._handle.is_lost(now)
         )
-        return (yield from self._handle.put(sight, self._place_of_hammer, _CLEAR_M, self.has_placed))
+        self._taken |= offered and not self._handle.is_lost(sight)
+        if self._taken:
+            return (yield from self._handle.put(sight, self._place_of_hammer, _CLEAR_M, self.has_placed))
+        return (yield from self._handle.put(sight, self._place_back, _CLEAR_M, self._is_back))
 
     def _is_within_reach(self, now: Sight) -> bool:
         """Held out, or on the own shelf."""
+        return self._is_in_the_air(now) or self._hammer(now).position[0] < self._reach_x_m
+
+    def _is_in_the_air(self, now: Sight) -> bool:
+        return bool(self._hammer(now).position[2] > _IN_THE_AIR_Z_M)
+
+    def _is_back(self, now: Sight) -> bool:
         x, _, z = self._hammer(now).position
-        return z > _IN_THE_AIR_Z_M or x < self._reach_x_m
+        return bool(x > self._reach_x_m and z < self._back.position[2] + 0.01)
 
     def _is_partner_gone(self, now: Sight) -> bool:
-        return apart_m(self._hammer(now) @ _FETCHER_END, self._partner(now)) > _PARTNER_GONE_M
+        return apart_m(_other_end(self._hammer(now)), self._partner(now)) > _PARTNER_GONE_M
 
     def _place_of_trash(self, now: Sight) -> Pose:
         return standing(self._tray(now) @ _ON_FLOOR, self._trash(now), math.pi / 2)
 
+    def _place_back(self, now: Sight) -> Pose:
+        return level(self._back, self._hammer(now))
+
     def _place_of_hammer(self, now: Sight) -> Pose:
         return level(self._bin(now) @ _ON_FLOOR, self._hammer(now))
+
+
+def _own_end(hammer: Pose) -> Pose:
+    """What is nearer to the own base: mostly the head's for arm 0, but it may have fallen the other way round."""
+    return hammer @ (_HEAD_END if _points_away(hammer) else _FREE_END)
+
+
+def _other_end(hammer: Pose) -> Pose:
+    return hammer @ (_FREE_END if _points_away(hammer) else _HEAD_END)
+
+
+def _points_away(hammer: Pose) -> bool:
+    """Its head is nearer to the own base than its handle."""
+    return bool(hammer.rotation_matrix()[0, 0] > 0.0)
 
 
 def _lies_in(thing: Pose, box: Pose, half_m: tuple[float, float]) -> bool:

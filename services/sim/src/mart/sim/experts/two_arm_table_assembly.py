@@ -12,15 +12,20 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.sim.experts.grip import Grip, Until
+from mart.sim.experts.grip import Grip
 from mart.sim.experts.person import Person
-from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, wait
+from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Until, Waypoint, go, wait
 from mart.sim.experts.seeing import See, Still, across, apart_m, at, seen, seen_tool, standing, uprightness
 
 _SOCKET_X_M, _KNOB_X_M = 0.12, 0.205
 _SEATED_Z_M, _TOP_SEATED_Z_M = 0.01, 0.16  # over the base
-_NECK = at(0.0, 0.0, 0.126)  # where a column is gripped, just under its shoulder
-_OVER_SOCKET_M, _OVER_PEGS_M = 0.045, 0.05
+_NECK = at(0.0, 0.0, 0.121)  # where a column is gripped: it hangs from there
+_LOOKED_AT = at(
+    0.0, 0.0, 0.03
+)  # on a column that is brought to its socket: low, but not so low as to swing much
+_AXIS_AS_X = Pose(np.zeros(3), np.array([0.5**0.5, 0.0, -(0.5**0.5), 0.0]))
+_LYING, _STAND_UP_M = 0.7, 0.16
+_OVER_SOCKET_M, _OVER_PEGS_M = 0.06, 0.05
 _PRESS_M = 0.004
 _SEEN_SEATED_M = 0.012
 
@@ -46,7 +51,9 @@ class _Column:
     def __init__(self, arm: Arm, person: Person) -> None:
         self._base, self._column = seen(arm, "table_base"), seen(arm, arm.name.replace("arm", "column"))
         self._seat = at(_side(arm) * _SOCKET_X_M, 0.0, _SEATED_Z_M)
-        self._grip = Grip(person, self._column, lambda now: across(self._column(now) @ _NECK, math.pi / 2))
+        self._grip = Grip(
+            person, lambda now: across(self._column(now) @ _LOOKED_AT, math.tau), self._tool, hangs=True
+        )
 
     def is_seated(self, now: Sight) -> bool:
         column = self._column(now)
@@ -54,11 +61,29 @@ class _Column:
 
     def place(self, sight: Sight) -> Step:
         """One attempt."""
+        lies = self._lies(sight)
         sight = yield from self._grip.pick(sight)
-        return (yield from self._grip.put(sight, self._place, _OVER_SOCKET_M, self.is_seated))
+        if lies:
+            up = Waypoint(at(0.0, 0.0, _STAND_UP_M) @ sight.pose_tool_in_base, CLOSED)
+            sight = yield from go(sight, lambda _: up, patience_s=3.0)
+        return (yield from self._grip.put(sight, self._place_looked_at, _OVER_SOCKET_M, self.is_seated))
+
+    def _lies(self, now: Sight) -> bool:
+        return uprightness(self._column(now)) < _LYING
+
+    def _neck(self, now: Sight) -> Pose:
+        return self._column(now) @ _NECK
+
+    def _tool(self, now: Sight) -> Pose:
+        """With the fingers across a column that lies, so that it swings upright between them."""
+        neck = self._neck(now)
+        return across(neck @ _AXIS_AS_X) if self._lies(now) else across(neck, math.pi / 2)
 
     def _place(self, now: Sight) -> Pose:
         return standing(self._base(now) @ self._seat, self._column(now), math.pi / 2)
+
+    def _place_looked_at(self, now: Sight) -> Pose:
+        return self._place(now) @ _LOOKED_AT
 
 
 class _Tabletop:
@@ -67,7 +92,7 @@ class _Tabletop:
         self._base, self._top = seen(arm, "table_base"), seen(arm, "tabletop")
         self._partner = seen_tool(arm, "arm1" if arm.name == "arm0" else "arm0")
         self._own, self._other = (at(side * _KNOB_X_M, 0.0, 0.0) for side in (_side(arm), -_side(arm)))
-        self._grip = Grip(person, self._knob, self._knob)
+        self._grip = Grip(person, self._knob, self._knob, hangs=True)
 
     def is_seated(self, now: Sight) -> bool:
         top = self._top(now)
@@ -81,12 +106,17 @@ class _Tabletop:
             sight,
             here,
             self._person,
-            lambda now: (still(now) and self._is_gripped_by_partner(now)) or self._grip.is_lost(now),
+            lambda now: (
+                (still(now) and self._is_gripped_by_partner(now))
+                or self._grip.is_lost(now)
+                or self.is_seated(now)
+            ),
         )
-        up = self._raised(sight)
-        sight = yield from self._carry(
-            sight, lambda _: up, lambda now: apart_m(self._top(now), up) < _LIFTED_M
-        )
+        if not self.is_seated(sight):
+            up = self._raised(sight)
+            sight = yield from self._carry(
+                sight, lambda _: up, lambda now: apart_m(self._top(now), up) < _LIFTED_M
+            )
         while not (self.is_seated(sight) or self._grip.is_lost(sight)):
             sight = yield from self._carry(sight, self._over_pegs, self._is_over_pegs)
             sight = yield from self._carry(
