@@ -28,7 +28,7 @@ from tests.sim.tasks.driving import (
 
 TASK = "two_arm_table_assembly"
 SOCKET_X_M, SEAT_Z_M, TOP_SEATED_Z_M = 0.12, 0.01, 0.16
-NECK = (0.0, 0.0, 0.121)  # of a column
+NECK = (0.0, 0.0, 0.117)  # of a column
 KNOBS = {"arm0": (-0.205, 0.0, 0.0), "arm1": (0.205, 0.0, 0.0)}
 
 

@@ -79,8 +79,11 @@ class Grip:
             yield from self.bring(sight, lambda _: up, lambda now: apart_m(self._thing(now), up) < _LIFTED_M)
         )
 
-    def put(self, sight: Sight, place: See, clear_m: float, placed: Until) -> Step:
-        """Up to `clear_m` over the place, there and down, again where it got stuck; lets go. The thing may be lost."""
+    def put(self, sight: Sight, place: See, clear_m: float, placed: Until, *, caught: Until = never) -> Step:
+        """Up to `clear_m` over the place, there and down, again where it got stuck; lets go. The thing may be lost.
+
+        caught: that it hangs on to something, from which it is to be lifted off before it is brought any further.
+        """
 
         def over(now: Sight) -> Pose:
             return at(0.0, 0.0, clear_m) @ place(now)
@@ -90,15 +93,27 @@ class Grip:
 
         def is_over(now: Sight) -> bool:
             height_m = self._thing(now).position[2] - place(now).position[2]
-            return self.is_over(now, place) and height_m > clear_m / 2
+            return (self.is_over(now, place) and height_m > clear_m / 2) or caught(now)
+
+        def is_down(now: Sight) -> bool:
+            return placed(now) or caught(now)
 
         sight = yield from self.raise_to(sight, over(sight).position[2])
         while not (placed(sight) or self.is_lost(sight)):
+            if caught(sight):
+                sight = yield from self._lift_off(sight, clear_m)
+                if caught(sight):
+                    break
             sight = yield from self.bring(sight, over, is_over)
             sight = yield from self.bring(
-                sight, below, placed, pace=lambda _: _CAREFUL, patience_s=_PATIENCE_S
+                sight, below, is_down, pace=lambda _: _CAREFUL, patience_s=_PATIENCE_S
             )
         return (yield from self.let_go(sight))
+
+    def _lift_off(self, sight: Sight, up_m: float) -> Step:
+        up = Waypoint(at(0.0, 0.0, up_m) @ across(sight.pose_tool_in_base, math.tau), CLOSED, _PACE)
+        sight = yield from go(sight, lambda _: up, patience_s=2.0)
+        return (yield from stay(sight, up, self._person.settles_s()))
 
     def is_over(self, now: Sight, place: See) -> bool:
         """The thing is straight over its place, as far as this person can tell."""

@@ -19,12 +19,12 @@ from mart.sim.experts.seeing import See, Still, across, apart_m, at, seen, seen_
 
 _SOCKET_X_M, _KNOB_X_M = 0.12, 0.205
 _SEATED_Z_M, _TOP_SEATED_Z_M = 0.01, 0.16  # over the base
-_NECK = at(0.0, 0.0, 0.121)  # where a column is gripped: it hangs from there
+_NECK = at(0.0, 0.0, 0.117)  # where a column is gripped: it hangs from there
 _LOOKED_AT = at(
     0.0, 0.0, 0.03
 )  # on a column that is brought to its socket: low, but not so low as to swing much
 _AXIS_AS_X = Pose(np.zeros(3), np.array([0.5**0.5, 0.0, -(0.5**0.5), 0.0]))
-_LYING, _STAND_UP_M = 0.7, 0.16
+_LYING, _LEANING, _STAND_UP_M = 0.7, 0.96, 0.16
 _OVER_SOCKET_M, _OVER_PEGS_M = 0.06, 0.05
 _PRESS_M = 0.004
 _SEEN_SEATED_M = 0.012
@@ -66,7 +66,15 @@ class _Column:
         if lies:
             up = Waypoint(at(0.0, 0.0, _STAND_UP_M) @ sight.pose_tool_in_base, CLOSED)
             sight = yield from go(sight, lambda _: up, patience_s=3.0)
-        return (yield from self._grip.put(sight, self._place_looked_at, _OVER_SOCKET_M, self.is_seated))
+        return (
+            yield from self._grip.put(
+                sight, self._place_looked_at, _OVER_SOCKET_M, self.is_seated, caught=self._leans
+            )
+        )
+
+    def _leans(self, now: Sight) -> bool:
+        """More than it does when it hangs freely."""
+        return uprightness(self._column(now)) < _LEANING
 
     def _lies(self, now: Sight) -> bool:
         return uprightness(self._column(now)) < _LYING

@@ -22,17 +22,17 @@ from mart.sim.world.symbols import add_tile
 
 BASE_HALF_M = (0.18, 0.06, 0.005)
 SOCKET_X_M = 0.12  # of the sockets in the base, of the columns and of the tabletop's holes
-_SOCKET_HALF_M, _WALL_HALF_M, _WALL_HEIGHT_M = 0.037, 0.007, 0.025
+_SOCKET_HALF_M, _WALL_HALF_M, _WALL_HEIGHT_M = 0.038, 0.007, 0.025
 SEAT_Z_M = 2 * BASE_HALF_M[2]  # where a seated column's foot stands, in the base
 
-_SHAFT_HALF_M, COLUMN_HEIGHT_M = 0.014, 0.14
+_SHAFT_HALF_M, COLUMN_HEIGHT_M = 0.011, 0.14
 # A foot so broad and heavy that a column stays up when it is pushed or set down hastily. Under it four balls instead of
 # edges: four contacts, and a chamfer that finds the socket.
 _FOOT_HALF_M, _FOOT_HEIGHT_M, _BALL_RADIUS_M = 0.034, 0.018, 0.009
 # It is gripped by a round neck, from which it hangs straight down: one that lies on the table rises when it is lifted.
-NECK_Z_M, _NECK_RADIUS_M = 0.121, 0.022
-_SHOULDER_RADIUS_M, _SHOULDER_HEIGHT_M = 0.019, 0.006
-_PEG_RADIUS_M, _PEG_HEIGHT_M = 0.010, 0.018  # the palm is 45 mm above the pads, so no peg may be higher
+_NECK_Z_M, _NECK_RADIUS_M = 0.117, 0.022
+_SHOULDER_RADIUS_M, _SHOULDER_HEIGHT_M = 0.019, 0.0025
+_PEG_RADIUS_M, _PEG_HEIGHT_M = 0.010, 0.015  # the palm is 45 mm above the pads, so no peg may be higher
 
 TOP_HALF_M = (0.17, 0.10, 0.01)
 _HOLE_HALF_M = 0.016
@@ -50,6 +50,7 @@ LIFTED_M, _LEVEL = (
 _DENSITY = {"column": 340.0, "foot": 3200.0, "tabletop": 310.0}
 _FIRM = {"solref": (0.004, 1.0)}
 _SLIPPERY_SOCKET = {"priority": 1, "friction": (0.3, 0.005, 0.0001), **_FIRM}
+_SLIPPERY_FOOT = {"priority": 1, "friction": (0.15, 0.005, 0.0001), **_FIRM}  # slides where it is pushed
 _SLIPPERY_PEG = {"priority": 1, "friction": (0.2, 0.005, 0.0001), **_FIRM}
 # A pivot, in which a column swings once or twice before it hangs still.
 _PIVOT = {"priority": 1, "condim": 4, "friction": (1.0, 0.0003, 0.0001), **_FIRM}
@@ -194,7 +195,7 @@ def _add_column(spec: mujoco.MjSpec, arm: Arm, side: int) -> None:
     look = {"material": "paint", "rgba": rgba(arm.color)}
     for part, size, bottom, top in (
         ("foot", foot, radius, _FOOT_HEIGHT_M),
-        ("column", half, _FOOT_HEIGHT_M, NECK_Z_M),
+        ("column", half, _FOOT_HEIGHT_M, _NECK_Z_M),
     ):
         column.add_geom(
             type=_BOX,
@@ -215,14 +216,16 @@ def _add_column(spec: mujoco.MjSpec, arm: Arm, side: int) -> None:
     column.add_geom(
         type=_SPHERE,
         size=(_NECK_RADIUS_M, 0, 0),
-        pos=(0, 0, NECK_Z_M),
+        pos=(0, 0, _NECK_Z_M),
         density=_DENSITY["column"],
         **look,
         **_PIVOT,
     )
     inset = foot - radius
     for x, y in product((-inset, inset), repeat=2):
-        column.add_geom(type=_SPHERE, size=(radius, 0, 0), pos=(x, y, radius), mass=0, **_FIRM, **_UNSEEN)
+        column.add_geom(
+            type=_SPHERE, size=(radius, 0, 0), pos=(x, y, radius), mass=0, **_SLIPPERY_FOOT, **_UNSEEN
+        )
     column.add_geom(type=_BOX, size=(foot, foot, radius / 2), pos=(0, 0, radius / 2), **look, **_GHOST)
     column.add_geom(
         type=_CAPSULE,
@@ -234,7 +237,7 @@ def _add_column(spec: mujoco.MjSpec, arm: Arm, side: int) -> None:
     )
     for normal in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)):
         position = (half * normal[0], half * normal[1], 0.5 * height)
-        add_tile(spec, column, arm.symbol, radius_m=0.010, position=position, normal=normal)
+        add_tile(spec, column, arm.symbol, radius_m=0.008, position=position, normal=normal)
     add_shadow(spec, name, radius_m=0.055)
 
 
