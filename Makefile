@@ -88,6 +88,10 @@ check-proto: $(VENV)/.tools
 task-pages: $(VENV)/.tools ## Write docs/tasks.md and draw its pictures anew, from the catalogue and the scenes
 	@$(BIN)/python tools/task_pages.py
 
+.PHONY: operator-picture
+operator-picture: $(VENV)/.tools ## Take the picture of the operator's page anew, in a real browser
+	@$(BIN)/python tools/operator_picture.py
+
 .PHONY: constraints
 constraints: ## Pin the newest versions of everything anew, from a real installation
 	@tools/pin $(PYTHON) $(PARTS)

@@ -16,8 +16,10 @@ from mart.sim.world import World
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 SHEET = "images/tasks.jpg"
+PICTURES = DOCS.parent / "services/web/src/mart/web/static/tasks"  # of the lobby
 
 _VIEW_PX = (480, 360)
+_PICTURE_PX = (384, 288)
 _MARGIN_PX, _TITLE_PX = 12, 40
 _PAPER, _INK, _SOFT_INK = "#FFFFFF", "#1F2428", "#6A737D"
 _SEED = 4
@@ -39,6 +41,16 @@ def sheet() -> Image.Image:
         whole.paste(row, (0, top))
         top += row.height
     return whole
+
+
+def pictures(whole: Image.Image) -> Iterator[tuple[Path, Image.Image]]:
+    """Each task's shared view, out of the sheet."""
+    width, height = _VIEW_PX
+    row_px = whole.height // len(task_names())
+    for index, name in enumerate(task_names()):
+        top = index * row_px + _TITLE_PX + _MARGIN_PX
+        view = whole.crop((_MARGIN_PX, top, _MARGIN_PX + width, top + height))
+        yield PICTURES / f"{name}.jpg", view.resize(_PICTURE_PX, Image.Resampling.LANCZOS)
 
 
 def _overview(tasks: list[Task]) -> Iterator[str]:
@@ -107,4 +119,8 @@ def _in_the_middle(task: Task) -> World:
 
 if __name__ == "__main__":
     (DOCS / "tasks.md").write_text(page() + "\n")
-    sheet().save(DOCS / SHEET, quality=88, optimize=True)
+    drawn = sheet()
+    drawn.save(DOCS / SHEET, quality=88, optimize=True)
+    PICTURES.mkdir(exist_ok=True)
+    for path, picture in pictures(drawn):
+        picture.save(path, quality=82, optimize=True)

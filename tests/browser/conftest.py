@@ -8,6 +8,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from mart.platform.browser import running_browser
+from mart.platform.opening import opening_rooms
 from mart.platform.plan import Options
 from mart.platform.supervise import Platform, running_platform
 from tests.support.processes import free_port
@@ -21,7 +22,7 @@ def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
         port=free_port(),
         seed=1,
     )
-    with running_platform(options) as running:
+    with running_platform(options) as running, opening_rooms(running):
         yield running
 
 

@@ -16,6 +16,7 @@ from mart.protocol import keys
 from mart.protocol.bus.base import Sample
 from mart.protocol.codec import decode
 from mart.protocol.messages import OUTCOME_SUCCESS, ArmState, Event, State
+from tests.browser.pages.test_pages import INSPECT
 from tests.browser.people import Person, Phone, person
 
 WAIT_S = 60.0
@@ -127,6 +128,48 @@ def test_two_people_record_an_episode_and_a_third_cannot_take_their_seats(
         assert_file_tells_who_drove(platform.options.data_dir / saved.episode_saved.path)
         leaves(ben)
         leaves(ana)
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(1440, "light"), (360, "dark")])
+def test_the_episode_is_found_watched_and_labelled(
+    browser: Browser, platform: Platform, width: int, scheme: str
+) -> None:
+    with person(browser, platform, f"Researcher{width}", width, 800) as rita:
+        rita.page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+        rita.join()
+        rita.page.get_by_role("link", name="Episodes").click()
+        rita.page.get_by_label("Driven by").select_option("Ben")
+        expect(rita.page.locator(".episode")).to_have_count(1)
+        expect(rita.page.locator(".thumb img")).to_be_visible()
+        rita.shoot("episodes")
+        assert rita.page.evaluate(INSPECT) == []
+        rita.page.locator(".episode a").click()
+        seen = rita.page.locator("video")
+        expect(seen).to_have_count(2)
+        rita.page.wait_for_function(
+            "() => [...document.querySelectorAll('video')].every((one) => one.readyState >= 2)"
+        )
+        rita.page.get_by_label("Where in the episode").fill("1.5")
+        rita.page.wait_for_function(
+            "() => [...document.querySelectorAll('video')].every((one) => one.currentTime > 1.4)"
+        )
+        rita.page.keyboard.press("f")
+        expect(rita.page.get_by_role("radio", name="Failed")).to_be_checked()
+        rita.page.get_by_label("Note").fill("let go too early")
+        rita.page.get_by_label("Use for training").uncheck()
+        expect(rita.page.locator("#one")).to_contain_text("left out of data sets")
+        rita.shoot("episode")
+        assert rita.page.evaluate(INSPECT) == []
+        with rita.page.expect_download() as download:
+            rita.page.get_by_role("link", name="Download MCAP").click()
+        assert download.value.path().stat().st_size > 100_000
+        rita.page.reload()
+        expect(rita.page.get_by_label("Note")).to_have_value("let go too early")
+        rita.page.keyboard.press("s")
+        expect(rita.page.get_by_role("radio", name="Success")).to_be_checked()
+        rita.page.get_by_label("Use for training").check()
+        rita.page.get_by_role("link", name="All episodes").click()
+        expect(rita.page.locator(".episode .outcome")).to_have_text("Success")
 
 
 def third_person_is_refused(browser: Browser, platform: Platform) -> None:

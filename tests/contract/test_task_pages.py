@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mart.protocol.tasks import task_names
 from tools import task_pages
 
 
@@ -11,3 +12,4 @@ def test_the_page_is_fresh() -> None:
 
 def test_its_pictures_exist() -> None:
     assert (task_pages.DOCS / task_pages.SHEET).stat().st_size > 100_000
+    assert {path.stem for path in task_pages.PICTURES.iterdir()} == set(task_names())

@@ -4,7 +4,7 @@ import configparser
 from pathlib import Path
 
 from mart.platform.plan import Options, environment, lockstep_processes, processes, training_processes
-from mart.platform.supervise import configuration
+from mart.platform.staff import configuration
 
 
 def test_the_router_comes_first_and_the_pages_last() -> None:
@@ -43,7 +43,7 @@ def test_nothing_listens_beyond_the_loopback_unless_asked() -> None:
 def test_the_supervisor_reads_back_what_was_planned_also_from_odd_folders(tmp_path: Path) -> None:
     options = Options(tmp_path / 'a 100% "odd" folder')
     parser = configparser.ConfigParser(inline_comment_prefixes=(";",))
-    parser.read_string(configuration(options, processes(options)))
+    parser.read_string(configuration(options, enumerate(processes(options)), tmp_path / "socket"))
     programs = [section for section in parser.sections() if section.startswith("program:")]
     assert [section.removeprefix("program:") for section in programs] == [
         process.name for process in processes(options)

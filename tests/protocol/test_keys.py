@@ -17,6 +17,7 @@ def test_the_keys_are_those_of_the_spec() -> None:
     assert keys.episode("room-1").key == "mart/room-1/episode"
     assert keys.rollout("replica-1").key == "mart/replica-1/rollout"
     assert keys.training("trainer-1").key == "mart/@trainer/trainer-1/jobs"
+    assert keys.rooms("platform-1").key == "mart/@platform/platform-1/rooms"
     assert keys.catalogue("catalogue-1").key == "mart/@catalogue/catalogue-1/episodes"
     assert keys.signal("room-1", "arm0", "phone").key == "mart/room-1/signal/arm0/phone"
     assert keys.alive("sim", "room-1") == "mart/@live/sim/room-1"

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import datetime as dt
 from collections.abc import AsyncIterator, Awaitable, Callable
+from pathlib import Path
 
 import httpx
 import pytest
@@ -12,6 +14,7 @@ import pytest
 from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.bus.memory import MemoryBus, MemoryNetwork
 from mart.web.app import create_app
+from mart.web.certificate import ensure_certificate
 from mart.web.people import People
 from mart.web.rooms import Rooms
 from mart.web.site import Site
@@ -35,7 +38,7 @@ def bus() -> MemoryBus:
 
 
 @pytest.fixture
-async def site(bus: MemoryBus) -> AsyncIterator[Site]:
+async def site(bus: MemoryBus, tmp_path: Path) -> AsyncIterator[Site]:
     aio = AsyncBus(bus, asyncio.get_running_loop())
     with contextlib.closing(Rooms(aio)) as rooms, contextlib.closing(People(":memory:")) as people:
         yield Site(
@@ -46,6 +49,8 @@ async def site(bus: MemoryBus) -> AsyncIterator[Site]:
             secret=b"0123456789abcdef0123456789abcdef",
             names=("localhost", "lab.example"),
             lan_host="192.168.1.5",
+            data_dir=tmp_path,
+            certificate=ensure_certificate(tmp_path, ["localhost"], dt.datetime.now(dt.UTC)).path,
         )
 
 

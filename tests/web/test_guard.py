@@ -121,6 +121,6 @@ async def test_an_unknown_address_is_not_found(enter: Enter, path: str) -> None:
 
 
 async def test_the_wrong_method_is_told(enter: Enter) -> None:
-    answer = await (await enter()).post("/api/rooms", json={})
+    answer = await (await enter()).post("/api/me", json={})
     assert answer.status_code == 405
     assert answer.json()["error"]["code"] == "InvalidInput"

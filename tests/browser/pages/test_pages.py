@@ -228,6 +228,33 @@ def test_a_script_is_taken_over_from_and_handed_back_to(browser: Browser, platfo
         ana.page.get_by_label("Who drives the blue arm in room-1").select_option("Free")
 
 
+@pytest.mark.parametrize(("size", "scheme"), [("narrow", "dark"), ("wide", "light")])
+def test_the_health_page(browser: Browser, platform: Platform, size: str, scheme: str) -> None:
+    with visit(browser, platform, size, scheme) as ana:
+        ana.join("Ana", "Join and choose a seat")
+        ana.page.get_by_role("link", name="Health").click()
+        expect(ana.page.get_by_role("heading", name="Everything is well")).to_be_visible()
+        expect(ana.page.locator(".finding", has_text="Certificate")).to_contain_text("good for")
+        ana.is_fine(f"health-{size}-{scheme}")
+
+
+def test_a_room_is_opened_and_closed_from_the_lobby(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana:
+        ana.join("Ana", "Join and choose a seat")
+        cards = ana.page.locator("article.room")
+        expect(cards).to_have_count(1)
+        ana.page.get_by_text("New room").click()
+        ana.page.get_by_label("Task").select_option("Lift and wipe")
+        ana.is_fine("lobby-new-room")
+        ana.page.get_by_role("button", name="Open room").click()
+        expect(cards).to_have_count(2, timeout=WAIT_MS)
+        expect(cards.nth(1).locator(".seat")).to_have_count(3)
+        ana.is_fine("lobby-two-rooms")
+        for _ in range(2):
+            ana.page.get_by_role("button", name="Close room-2").click()
+        expect(cards).to_have_count(1, timeout=WAIT_MS)
+
+
 def test_a_page_that_does_not_exist_leads_home(browser: Browser, platform: Platform) -> None:
     with visit(browser, platform, "narrow", "dark") as ana:
         ana.join("Ana", "Join and choose a seat")

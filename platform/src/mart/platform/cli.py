@@ -39,6 +39,7 @@ def run(
     *, task: str, room: str, control_hz: float, host: str, port: int, public_host: str, as_json: bool
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
+    from mart.platform.opening import opening_rooms
     from mart.platform.plan import Options, processes, training_processes
     from mart.platform.supervise import running_platform
     from mart.protocol.service import stop_requested
@@ -51,7 +52,7 @@ def run(
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)
     click.echo("Starting MART …", err=True)
-    with stop_requested() as stop, running_platform(options, plan) as platform:
+    with stop_requested() as stop, running_platform(options, plan) as platform, opening_rooms(platform):
         result = {"url": platform.url, "join_code": platform.join_code, "room": room, "task": task}
         text = f"\n  Lobby      {platform.url}\n  Join code  {platform.join_code}\n\nCtrl-C stops everything."
         print_result(result, text, as_json)

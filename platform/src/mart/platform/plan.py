@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 DEFAULT_TASK = "two_arm_multi_cube_lifting"
@@ -84,6 +84,13 @@ def _sim(options: Options, room: str, *more: str) -> Process:
     for option, value in chosen.items():
         command += [] if value is None else [option, str(value)]
     return Process((*command, *more), "sim", room)
+
+
+def room(options: Options, name: str, task: str, control_hz: float) -> Process:
+    """One room more."""
+    return _sim(
+        replace(options, task=task, control_hz=control_hz, seed=None, skill=None, time_limit_s=None), name
+    )
 
 
 def environment(options: Options) -> dict[str, str]:

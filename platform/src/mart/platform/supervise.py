@@ -8,13 +8,14 @@ import os
 import signal
 import socket
 import subprocess
-import sys
+import tempfile
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from mart.platform.plan import Options, Process, environment, processes
+from mart.platform.staff import BIN, Staff, logs_dir
 from mart.protocol import clock, keys
 from mart.protocol.bus.base import Bus
 from mart.protocol.bus.zenoh_bus import ZenohBus
@@ -23,9 +24,6 @@ from mart.protocol.errors import Conflict, Unavailable
 _log = logging.getLogger(__name__)
 
 _START_TIMEOUT_S = 90.0
-# A recorder that is verifying an episode gets time to close its file.
-_STOP_TIMEOUT_S = 30
-_BIN = Path(sys.executable).parent
 
 
 @dataclass(frozen=True)
@@ -34,6 +32,7 @@ class Platform:
 
     options: Options
     bus: Bus
+    staff: Staff | None = None  # None: somebody else keeps the services running
 
     @property
     def url(self) -> str:
@@ -50,7 +49,7 @@ class Platform:
 
     @property
     def logs_dir(self) -> Path:
-        return _logs_dir(self.options)
+        return logs_dir(self.options)
 
 
 @contextlib.contextmanager
@@ -64,13 +63,19 @@ def running_platform(options: Options, plan: tuple[Process, ...] | None = None) 
     router_host, _, router_port = options.router.rpartition("/")[2].rpartition(":")
     _require_free(router_host, int(router_port), "a Zenoh router", "MART_ROUTER")
     plan = plan or processes(options)
-    run_dir = options.data_dir / "run"
-    _logs_dir(options).mkdir(parents=True, exist_ok=True)
-    run_dir.mkdir(parents=True, exist_ok=True)
-    config = run_dir / "supervisord.conf"
-    config.write_text(configuration(options, plan))
+    with tempfile.TemporaryDirectory(
+        prefix="mart-"
+    ) as private:  # whatever the data folder is called: a socket's path is short
+        staff = Staff(options, plan, Path(private) / "supervisor")
+        with _supervised(options, staff) as supervisor, _connected(options.router, supervisor) as bus:
+            _await_alive(bus, options, plan)
+            yield Platform(options, bus, staff)
+
+
+@contextlib.contextmanager
+def _supervised(options: Options, staff: Staff) -> Iterator[subprocess.Popen[bytes]]:
     supervisor = subprocess.Popen(  # noqa: S603 - our own command, from our own environment
-        [str(_BIN / "supervisord"), "--nodaemon", "--silent", "--configuration", str(config)],
+        [str(BIN / "supervisord"), "--nodaemon", "--silent", "--configuration", str(staff.config)],
         env={**os.environ, **environment(options)},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
@@ -78,48 +83,10 @@ def running_platform(options: Options, plan: tuple[Process, ...] | None = None) 
         start_new_session=True,  # a Ctrl-C is for us: we stop the others in order
     )
     try:
-        with _connected(options.router, supervisor) as bus:
-            _await_alive(bus, options, plan)
-            yield Platform(options, bus)
+        yield supervisor
     finally:
         supervisor.send_signal(signal.SIGTERM)
         supervisor.wait()
-
-
-def configuration(options: Options, plan: tuple[Process, ...]) -> str:
-    """The text of supervisord.conf."""
-    run_dir = (options.data_dir / "run").resolve()
-    head = f"""[supervisord]
-logfile={_escaped(run_dir / "supervisord.log")}
-pidfile={_escaped(run_dir / "supervisord.pid")}
-"""
-    return head + "\n".join(_program(options, process, order) for order, process in enumerate(plan))
-
-
-def _program(options: Options, process: Process, order: int) -> str:
-    command = " ".join(f'"{_escaped(word)}"' for word in (str(_BIN / "mart"), *process.command))
-    return f"""
-[program:{process.name}]
-command={command}
-priority={order}
-autorestart=true
-startretries=1000000
-stopwaitsecs={_STOP_TIMEOUT_S}
-stopasgroup=true
-killasgroup=true
-redirect_stderr=true
-stdout_logfile={_escaped(_logs_dir(options).resolve() / f"{process.name}.log")}
-stdout_logfile_maxbytes=10MB
-stdout_logfile_backups=2
-"""
-
-
-def _escaped(value: Path | str) -> str:
-    return str(value).replace("%", "%%").replace('"', r"\"")
-
-
-def _logs_dir(options: Options) -> Path:
-    return options.data_dir / "logs"
 
 
 def _require_free(host: str, port: int, what: str, setting: str) -> None:
@@ -162,6 +129,6 @@ def _await_alive(bus: Bus, options: Options, plan: tuple[Process, ...]) -> None:
         if not complete.wait(_START_TIMEOUT_S):
             missing = ", ".join(sorted(awaited - present))
             raise Unavailable(
-                f"Not up after {_START_TIMEOUT_S:g} s: {missing}. Their logs are in {_logs_dir(options)}."
+                f"Not up after {_START_TIMEOUT_S:g} s: {missing}. Their logs are in {logs_dir(options)}."
             )
     _log.info("All services are up")

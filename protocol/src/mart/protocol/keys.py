@@ -124,6 +124,13 @@ def catalogue(catalogue: str) -> Topic:
     )
 
 
+def rooms(platform: str) -> Topic:
+    """Queryable: RoomsRequest → RoomReply. `platform` is the id of what runs the rooms of a machine."""
+    return Topic(
+        f"{ROOT}/@platform/{_segment('platform', platform)}/rooms", Priority.NORMAL, must_arrive=True
+    )
+
+
 def alive(kind: str, id: str) -> str:
     """Liveliness token of one running service: `kind` is sim, replica, gateway, recorder, web, router, …"""
     return f"{ROOT}/@live/{_segment('kind', kind)}/{_segment('id', id)}"

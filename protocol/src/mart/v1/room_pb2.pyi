@@ -211,6 +211,28 @@ class EpisodeRequest(_message.Message):
     reset: EpisodeRequest.Reset
     def __init__(self, ready: _Optional[_Union[EpisodeRequest.Ready, _Mapping]] = ..., finish: _Optional[_Union[EpisodeRequest.Finish, _Mapping]] = ..., reset: _Optional[_Union[EpisodeRequest.Reset, _Mapping]] = ...) -> None: ...
 
+class RoomsRequest(_message.Message):
+    __slots__ = ("open", "close")
+    class Open(_message.Message):
+        __slots__ = ("room", "task", "control_hz")
+        ROOM_FIELD_NUMBER: _ClassVar[int]
+        TASK_FIELD_NUMBER: _ClassVar[int]
+        CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
+        room: str
+        task: str
+        control_hz: float
+        def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ...) -> None: ...
+    class Close(_message.Message):
+        __slots__ = ("room",)
+        ROOM_FIELD_NUMBER: _ClassVar[int]
+        room: str
+        def __init__(self, room: _Optional[str] = ...) -> None: ...
+    OPEN_FIELD_NUMBER: _ClassVar[int]
+    CLOSE_FIELD_NUMBER: _ClassVar[int]
+    open: RoomsRequest.Open
+    close: RoomsRequest.Close
+    def __init__(self, open: _Optional[_Union[RoomsRequest.Open, _Mapping]] = ..., close: _Optional[_Union[RoomsRequest.Close, _Mapping]] = ...) -> None: ...
+
 class Error(_message.Message):
     __slots__ = ("code", "message")
     CODE_FIELD_NUMBER: _ClassVar[int]

@@ -50,6 +50,12 @@ def ensure_certificate(folder: Path, names: Iterable[str], now: dt.datetime) -> 
     return Certificate(path, made.not_valid_after_utc)
 
 
+def days_left(path: Path, now_s: float) -> float | None:
+    """Until the certificate at `path` ends; None where there is none. `now_s`: Unix time."""
+    kept = _load(path)
+    return None if kept is None else (kept.not_valid_after_utc.timestamp() - now_s) / 86_400.0
+
+
 def _make(path: Path, names: set[x509.GeneralName], now: dt.datetime) -> x509.Certificate:
     key = ec.generate_private_key(ec.SECP256R1())
     subject = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, "MART")])

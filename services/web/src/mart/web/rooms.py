@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections import deque
+from collections import OrderedDict, deque
 from collections.abc import Iterator
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.bus.base import Closable, Sample
-from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import (
     OPERATOR_HUMAN,
     EpisodeRequest,
@@ -19,6 +19,7 @@ from mart.protocol.messages import (
     Operator,
     Outcome,
     RoomReply,
+    RoomsRequest,
     RoomStatus,
     Seat,
     SeatRequest,
@@ -29,10 +30,14 @@ from mart.web.people import Person
 
 _log = logging.getLogger(__name__)
 
+PLATFORM = "platform"
 QUERY_TIMEOUT_S = 5.0
+PLATFORM_TIMEOUT_S = 45.0  # a sim that is stopped may take its time
 _MAX_STATUS_BYTES = 64 * 1024
 _MAX_WAITING_EVENTS = 64
 _SETTLE_S = 2.0
+_MAX_DELAYS = 256
+_DELAY_FRESH_S = 10.0  # it is told once a second
 
 
 class Listener:
@@ -66,6 +71,7 @@ class Rooms:
         self._bus = bus
         self._services: dict[str, set[str]] = {}
         self._listeners: set[Listener] = set()
+        self._delays: OrderedDict[tuple[str, str], tuple[Event.Latency, float]] = OrderedDict()
         self._unreadable = 0
         self._last_warning_s = float("-inf")
         self._opened: list[Closable] = [
@@ -93,6 +99,11 @@ class Rooms:
         """Who is alive: kind → ids."""
         return {kind: sorted(ids) for kind, ids in sorted(self._services.items()) if ids}
 
+    def delays(self, now_s: float) -> list[tuple[str, Event.Latency]]:
+        """Each seat's newest report of its motion to photon, with its room; nothing where nobody looks any more."""
+        fresh = [(key, said) for key, (said, at_s) in self._delays.items() if now_s - at_s < _DELAY_FRESH_S]
+        return [(room, said) for (room, _), said in sorted(fresh, key=lambda one: one[0])]
+
     @contextlib.contextmanager
     def listen(self) -> Iterator[Listener]:
         listener = Listener()
@@ -101,6 +112,21 @@ class Rooms:
             yield listener
         finally:
             self._listeners.discard(listener)
+
+    @property
+    def opens_rooms(self) -> bool:
+        """Whether anything here opens and closes rooms."""
+        return bool(self._services.get(PLATFORM))
+
+    async def open(self, task: str, room: str, control_hz: float) -> str:
+        """The new room's name; its sim comes up within seconds."""
+        return await self._ask_platform(
+            RoomsRequest(open=RoomsRequest.Open(task=task, room=room, control_hz=control_hz))
+        )
+
+    async def shut(self, room: str) -> str:
+        """Closes a room in which no person sits."""
+        return await self._ask_platform(RoomsRequest(close=RoomsRequest.Close(room=room)))
 
     async def claim(self, room: str, arm: str, person: Person) -> Seat:
         claim = SeatRequest.Claim(
@@ -146,6 +172,17 @@ class Rooms:
         self.lobby.status(room, clock.monotonic_s())
         await self._ask(keys.episode(room), codec.encode(request))
 
+    async def _ask_platform(self, request: RoomsRequest) -> str:
+        running = self.services().get(PLATFORM, [])
+        if not running:
+            raise Unavailable(
+                "Nothing here opens or closes rooms; where each part is started by hand, start a `mart sim`."
+            )
+        payload = await self._bus.query(keys.rooms(running[0]), codec.encode(request), PLATFORM_TIMEOUT_S)
+        reply = codec.decode(RoomReply, payload, _MAX_STATUS_BYTES)
+        raise_error(reply.error)
+        return reply.status.room
+
     async def _ask(self, topic: keys.Topic, payload: bytes) -> RoomReply:
         reply = codec.decode(
             RoomReply, await self._bus.query(topic, payload, QUERY_TIMEOUT_S), _MAX_STATUS_BYTES
@@ -166,12 +203,21 @@ class Rooms:
 
     def _on_event(self, sample: Sample) -> None:
         try:
-            told = event_json(codec.decode(Event, sample.payload, _MAX_STATUS_BYTES))
+            event = codec.decode(Event, sample.payload, _MAX_STATUS_BYTES)
+            told = event_json(event)
         except MartError as error:
             self._warn(sample.key, error)
         else:
+            if event.WhichOneof("what") == "latency":
+                self._note_delay(event.room, event.latency)
             if told is not None:
                 self._tell(told)
+
+    def _note_delay(self, room: str, latency: Event.Latency) -> None:
+        self._delays[room, latency.arm] = latency, clock.monotonic_s()
+        self._delays.move_to_end((room, latency.arm))
+        if len(self._delays) > _MAX_DELAYS:
+            self._delays.popitem(last=False)
 
     def _on_alive(self, key: str, alive: bool) -> None:
         kind, name = key.split("/")[-2:]

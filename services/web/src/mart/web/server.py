@@ -59,6 +59,8 @@ async def serve(
             secret=load_or_create_secret(settings.secret_path),
             names=names,
             lan_host=_lan_host(settings),
+            data_dir=settings.data_dir,
+            certificate=settings.certificate or settings.certificates_dir / "site.pem",
         )
         await _serve_site(settings, service, site, listener)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from mart.protocol.bus.aio import AsyncBus
 from mart.web.catalogue import KIND as CATALOGUE
@@ -34,6 +35,8 @@ class Site:
     secret: bytes
     names: tuple[str, ...]
     lan_host: str
+    data_dir: Path
+    certificate: Path
     pairing: PairingCodes = field(default_factory=PairingCodes)
     wrong_codes: RateLimit = field(default_factory=_wrong_codes)
     offers: RateLimit = field(default_factory=_offers)

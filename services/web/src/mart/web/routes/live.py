@@ -1,4 +1,4 @@
-"""The rooms as they change, pushed to the pages; and who is alive."""
+"""The rooms as they change, pushed to the pages."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import asyncio
 from fastapi import APIRouter, WebSocket
 
 from mart.protocol import clock
-from mart.web.lobby import Json
 from mart.web.people import Person
 from mart.web.rooms import Listener, Rooms
 from mart.web.routes.common import TheSite, Visitor
@@ -16,7 +15,6 @@ router = APIRouter(prefix="/api")
 
 _SHORTEST_PERIOD_S = 0.1
 _LONGEST_PERIOD_S = 1.0
-_EXPECTED = ("sim", "gateway", "recorder")
 
 
 @router.websocket("/live")
@@ -32,13 +30,6 @@ async def live(socket: WebSocket, site: TheSite, visitor: Visitor) -> None:
         for task in (telling, leaving):
             task.cancel()
         await asyncio.gather(telling, leaving, return_exceptions=True)
-
-
-@router.get("/health")
-async def health(site: TheSite) -> Json:
-    """`ok`: everything that a collection session needs is there."""
-    services = site.rooms.services()
-    return {"ok": all(kind in services for kind in _EXPECTED), "services": services}
 
 
 async def _tell(socket: WebSocket, rooms: Rooms, listener: Listener, person: Person) -> None:

@@ -32,6 +32,11 @@ async def training() -> FileResponse:
     return page("training")
 
 
+@router.get("/health", include_in_schema=False)
+async def health() -> FileResponse:
+    return page("health")
+
+
 @router.get("/phone", include_in_schema=False)
 async def phone() -> FileResponse:
     return page("phone")

@@ -5,17 +5,24 @@ from __future__ import annotations
 from typing import Literal
 
 from fastapi import APIRouter
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import OUTCOME_DISCARDED, OUTCOME_FAILURE, OUTCOME_SUCCESS, operator_from_word
+from mart.protocol.tasks import get_task, task_names
 from mart.web.lobby import Json, seat_json
 from mart.web.routes.common import Joined, TheSite
 
 router = APIRouter(prefix="/api")
 
 _OUTCOMES = {"success": OUTCOME_SUCCESS, "failure": OUTCOME_FAILURE, "discard": OUTCOME_DISCARDED}
+
+
+class NewRoom(BaseModel):
+    task: str = Field(max_length=64)
+    room: str = Field("", max_length=64)  # empty: a free name
+    control_hz: float = Field(0.0, ge=0.0, le=250.0)  # 0: the usual rate
 
 
 class Take(BaseModel):
@@ -31,6 +38,21 @@ class Act(BaseModel):
 @router.get("/rooms")
 async def rooms(site: TheSite, person: Joined) -> Json:
     return {"rooms": site.rooms.lobby.rooms_json(person.holder_id, clock.monotonic_s())}
+
+
+@router.get("/tasks")
+async def tasks(site: TheSite, _person: Joined) -> Json:
+    return {"tasks": [_task_json(name) for name in task_names()], "opens_rooms": site.rooms.opens_rooms}
+
+
+@router.post("/rooms")
+async def open_room(body: NewRoom, site: TheSite, _person: Joined) -> Json:
+    return {"room": await site.rooms.open(body.task, body.room, body.control_hz)}
+
+
+@router.delete("/rooms/{room}")
+async def close_room(room: str, site: TheSite, _person: Joined) -> Json:
+    return {"room": await site.rooms.shut(room)}
 
 
 @router.post("/rooms/{room}/seats/{arm}")
@@ -67,3 +89,8 @@ async def act(room: str, body: Act, site: TheSite, person: Joined) -> Json:
         case _:
             await site.rooms.finish(room, person, _OUTCOMES[body.action])
     return {"room": site.rooms.lobby.room_json(room, person.holder_id, clock.monotonic_s())}
+
+
+def _task_json(name: str) -> Json:
+    task = get_task(name)
+    return {"name": name, "title": task.title, "instruction": task.instruction, "arms": len(task.arms)}

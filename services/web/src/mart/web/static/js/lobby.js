@@ -4,6 +4,7 @@ import * as api from "./api.js";
 import { armName, isFree } from "./arms.js";
 import { byId, keepChildren, setShown, setText } from "./dom.js";
 import { followRooms } from "./live.js";
+import { newRoom } from "./new-room.js";
 import { roomCard } from "./room-card.js";
 
 const NAME_KEY = "mart.name";
@@ -71,6 +72,15 @@ function enter(person) {
     onConnection: tellConnection,
   });
   followPolicies();
+  offerRooms();
+}
+
+/** Rooms can be opened and closed where a platform runs them. */
+async function offerRooms() {
+  const { tasks, opens_rooms: opens } = await api.tasks();
+  if (opens && byId("new-room").hidden) newRoom(tasks, attempt);
+  setShown(byId("new-room"), opens);
+  document.body.classList.toggle("opens-rooms", opens);
 }
 
 /** Promoted policies come from the trainer; without one, or while it is busy, there are none to seat. */

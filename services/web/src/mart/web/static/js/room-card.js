@@ -12,6 +12,9 @@ import { phaseText, waitingText } from "./words.js";
  */
 export function roomCard(attempt, policies) {
   const title = element("h2");
+  const picture = element("img", { class: "scene", alt: "", width: 384, height: 288 });
+  picture.addEventListener("error", () => picture.remove()); // a newer sim's task
+  const close = closing(attempt);
   const phase = element("span", { class: "soft" });
   const instruction = element("p");
   const seats = element("ul", { class: "seats" });
@@ -19,15 +22,17 @@ export function roomCard(attempt, policies) {
   const node = element(
     "article",
     { class: "room card" },
-    element("header", {}, title, phase),
-    instruction,
+    element("div", { class: "about" }, picture, element("div", {}, element("header", {}, title, phase), instruction)),
     seats,
-    element("p", { class: "room-facts figures" }, ...Object.values(facts)),
+    element("p", { class: "room-facts figures" }, ...Object.values(facts), close.node),
   );
   const rows = new Map();
 
   function update(room) {
     setText(title, room.title);
+    const source = `/static/tasks/${room.task}.jpg`;
+    if (picture.getAttribute("src") !== source) picture.src = source;
+    close.update(room);
     setText(phase, room.stale ? "Not answering" : waitingText(room) || phaseText(room.episode));
     setText(instruction, room.instruction);
     setText(facts.id, room.room);
@@ -38,6 +43,28 @@ export function roomCard(attempt, policies) {
     const holdsOne = room.seats.some((seat) => seat.mine);
     const machines = policies(room.task);
     room.seats.forEach((seat) => rows.get(seat.arm).update(seat, { room, holdsOne, machines }));
+  }
+
+  return { node, update };
+}
+
+/** For a room that nobody needs: pressed twice, and only while it is empty. */
+function closing(attempt) {
+  let room = "";
+  let sure = false;
+  const press = () => {
+    if (sure) attempt(() => api.closeRoom(room));
+    sure = !sure;
+    setText(node, sure ? "Press again to close" : "Close room");
+  };
+  const node = element("button", { type: "button", class: "quiet close", on: { click: press } }, "Close room");
+
+  function update(latest) {
+    room = latest.room;
+    node.setAttribute("aria-label", `Close ${room}`);
+    const busy = latest.seats.some((seat) => seat.operator === "human") || ["countdown", "recording"].includes(latest.episode.phase);
+    setShown(node, !busy);
+    if (busy) sure = false;
   }
 
   return { node, update };

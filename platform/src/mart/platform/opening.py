@@ -1,0 +1,131 @@
+"""Rooms that people open and close while the platform runs: each is a sim, kept running by the supervisor."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import queue
+import threading
+from collections.abc import Iterator
+
+from mart.platform.plan import Options, room
+from mart.platform.staff import Staff
+from mart.platform.supervise import Platform
+from mart.protocol import codec, keys
+from mart.protocol.bus.base import Request, Sample
+from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound
+from mart.protocol.messages import (
+    EPISODE_PHASE_COUNTDOWN,
+    EPISODE_PHASE_RECORDING,
+    OPERATOR_HUMAN,
+    RoomReply,
+    RoomsRequest,
+    RoomStatus,
+    error_message,
+)
+from mart.protocol.tasks import get_task
+
+_log = logging.getLogger(__name__)
+
+KIND = "platform"
+NAME = "platform-1"
+MAX_ROOMS = 8
+CONTROL_HZ = (20.0, 30.0, 60.0)
+_MAX_REQUEST_BYTES = 1024
+_MAX_STATUS_BYTES = 64 * 1024
+_MAX_WAITING = 16
+
+
+class Rooms:
+    """Which rooms run here. `statuses`: the newest of each room, by name. Raises MartError for what cannot be."""
+
+    def __init__(self, options: Options, staff: Staff, statuses: dict[str, RoomStatus]) -> None:
+        self._options, self._staff, self._statuses = options, staff, statuses
+
+    @property
+    def names(self) -> list[str]:
+        return sorted(process.id for process in self._staff.processes if process.kind == "sim")
+
+    def answer(self, request: RoomsRequest) -> RoomReply:
+        match request.WhichOneof("what"):
+            case "open":
+                return RoomReply(status=RoomStatus(room=self._open(request.open)))
+            case "close":
+                self._close(request.close.room)
+                return RoomReply(status=RoomStatus(room=request.close.room))
+        raise InvalidInput("An empty request was given; ask to open or to close a room.")
+
+    def _open(self, asked: RoomsRequest.Open) -> str:
+        names, control_hz = self.names, asked.control_hz or CONTROL_HZ[0]
+        name = asked.room or next(free for n in range(1, 100) if (free := f"room-{n}") not in names)
+        keys.status(name)  # raises where a room cannot be called so
+        get_task(asked.task)
+        if control_hz not in CONTROL_HZ:
+            raise InvalidInput(f"{control_hz:g} ticks a second were given; a room has 20, 30 or 60.")
+        if name in names:
+            raise Conflict(f"{name!r} is open already; give the new room another name.")
+        if len(names) >= MAX_ROOMS:
+            raise Conflict(f"{len(names)} rooms are open, which is the most; close one first.")
+        self._staff.hire(room(self._options, name, asked.task, control_hz))
+        _log.info("%s is opened for %s", name, asked.task)
+        return name
+
+    def _close(self, name: str) -> None:
+        if name not in self.names:
+            raise NotFound.named("room", name, self.names)
+        status = self._statuses.get(name, RoomStatus())
+        people = [seat.name for seat in status.seats if seat.operator == OPERATOR_HUMAN]
+        if people:
+            raise Conflict(
+                f"{name} was to be closed, but {' and '.join(people)} still sit there; leave first."
+            )
+        if status.episode.phase in (EPISODE_PHASE_COUNTDOWN, EPISODE_PHASE_RECORDING):
+            raise Conflict(f"{name} was to be closed, but an episode is being recorded; end it first.")
+        self._staff.dismiss(
+            next(one.name for one in self._staff.processes if one.id == name and one.kind == "sim")
+        )
+        self._statuses.pop(name, None)
+        _log.info("%s is closed", name)
+
+
+@contextlib.contextmanager
+def opening_rooms(platform: Platform) -> Iterator[None]:
+    """Answers while the block runs, on a thread of its own. For a platform that runs its services itself."""
+    assert platform.staff is not None
+    inbox: queue.Queue[Request | None] = queue.Queue(_MAX_WAITING)
+    statuses: dict[str, RoomStatus] = {}
+    rooms = Rooms(platform.options, platform.staff, statuses)
+
+    def on_status(sample: Sample) -> None:
+        with contextlib.suppress(InvalidInput):  # the rooms' own service tells of it
+            status = codec.decode(RoomStatus, sample.payload, _MAX_STATUS_BYTES)
+            if status.room in rooms.names:
+                statuses[status.room] = status
+
+    def take(request: Request) -> None:
+        with contextlib.suppress(queue.Full):  # whoever asks hears nothing in time, and asks again
+            inbox.put_nowait(request)
+
+    def work() -> None:
+        while (request := inbox.get()) is not None:
+            request.reply(codec.encode(_answer(rooms, request.payload)))
+
+    worker = threading.Thread(target=work, name="rooms")
+    with contextlib.ExitStack() as stack:
+        worker.start()
+        stack.callback(worker.join)
+        stack.callback(inbox.put, None)
+        for opened in (
+            platform.bus.subscribe(keys.EVERY_STATUS, on_status),
+            platform.bus.serve(keys.rooms(NAME), take),
+            platform.bus.announce(keys.alive(KIND, NAME)),
+        ):
+            stack.callback(opened.close)
+        yield
+
+
+def _answer(rooms: Rooms, payload: bytes) -> RoomReply:
+    try:
+        return rooms.answer(codec.decode(RoomsRequest, payload, _MAX_REQUEST_BYTES))
+    except MartError as error:
+        return RoomReply(error=error_message(error))

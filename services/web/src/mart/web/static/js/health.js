@@ -1,0 +1,66 @@
+// The health page: how everything does, and what to do where it does not.
+
+import * as api from "./api.js";
+import { byId, element, setText } from "./dom.js";
+
+const REFRESH_MS = 2000;
+const AREAS = { services: "Services", rooms: "Rooms", delays: "Delays", machine: "This machine" };
+const EMPTY = {
+  rooms: "No room is open. The lobby opens one.",
+  delays: "Nobody looks at a picture right now; what they see is measured while they do.",
+};
+
+let shown = "";
+
+start();
+
+async function start() {
+  try {
+    setText(byId("me"), (await api.me()).name);
+  } catch {
+    location.assign("/");
+    return;
+  }
+  document.addEventListener("visibilitychange", () => document.hidden || refresh());
+  refresh();
+}
+
+/** Everything anew, and again in a moment, while somebody looks. */
+async function refresh() {
+  try {
+    show((await api.findings()).findings);
+    setText(byId("page-message"), "");
+  } catch (error) {
+    if (error.status === 401) location.assign("/");
+    setText(byId("page-message"), error.message);
+  }
+  if (!document.hidden) setTimeout(refresh, REFRESH_MS);
+}
+
+function show(findings) {
+  const wanted = JSON.stringify(findings);
+  if (wanted === shown) return;
+  shown = wanted;
+  setText(byId("page-title"), headline(findings.filter(({ mend }) => mend).length));
+  byId("areas").replaceChildren(...Object.entries(AREAS).map(([area, title]) => card(title, findings.filter((one) => one.area === area), EMPTY[area])));
+}
+
+function headline(problems) {
+  if (problems === 0) return "Everything is well";
+  return problems === 1 ? "One thing needs attention" : `${problems} things need attention`;
+}
+
+function card(title, findings, empty) {
+  const rows = findings.map(({ name, found, mend }) =>
+    element(
+      "li",
+      { class: mend ? "finding poor" : "finding" },
+      element("span", { class: "sign", "aria-label": mend ? "Problem" : "Well", role: "img" }, mend ? "!" : "✓"),
+      element("span", { class: "name" }, name),
+      element("span", { class: "found soft figures" }, found),
+      element("span", { class: "mend" }, mend),
+    ),
+  );
+  const content = rows.length ? element("ul", {}, ...rows) : element("p", { class: "soft" }, empty);
+  return element("section", { class: "card" }, element("h2", {}, title), content);
+}

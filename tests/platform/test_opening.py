@@ -1,0 +1,120 @@
+"""Rooms opened and closed meanwhile: what is allowed, and what becomes of it. Nothing is started here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mart.platform.opening import MAX_ROOMS, Rooms
+from mart.platform.plan import DEFAULT_TASK, Options, Process, processes
+from mart.platform.staff import Staff
+from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound
+from mart.protocol.messages import (
+    EPISODE_PHASE_RECORDING,
+    OPERATOR_HUMAN,
+    OPERATOR_SCRIPT,
+    RoomsRequest,
+    RoomStatus,
+    Seat,
+)
+
+OPTIONS = Options(Path("data"), seed=7)
+Open, Close = RoomsRequest.Open, RoomsRequest.Close
+
+
+class Noted(Staff):
+    """Keeps the file's processes, and tells no supervisor."""
+
+    def _update(self) -> None:
+        self._write()
+
+
+@pytest.fixture
+def staff(tmp_path: Path) -> Staff:
+    options = Options(tmp_path, seed=7)
+    return Noted(options, processes(options), tmp_path / "socket")
+
+
+@pytest.fixture
+def statuses() -> dict[str, RoomStatus]:
+    return {"room-1": RoomStatus(room="room-1", seats=[Seat(arm="arm0", operator=OPERATOR_SCRIPT)])}
+
+
+@pytest.fixture
+def rooms(staff: Staff, statuses: dict[str, RoomStatus]) -> Rooms:
+    return Rooms(OPTIONS, staff, statuses)
+
+
+def opened(rooms: Rooms, task: str = DEFAULT_TASK, room: str = "", control_hz: float = 0.0) -> str:
+    return rooms.answer(RoomsRequest(open=Open(task=task, room=room, control_hz=control_hz))).status.room
+
+
+def close(rooms: Rooms, name: str) -> None:
+    rooms.answer(RoomsRequest(close=Close(room=name)))
+
+
+def sim(staff: Staff, name: str) -> Process:
+    return next(process for process in staff.processes if process.name == f"sim-{name}")
+
+
+def test_a_new_room_is_a_sim_that_is_kept_running(rooms: Rooms, staff: Staff) -> None:
+    assert opened(rooms, task="three_arm_lift_wiping", control_hz=60.0) == "room-2"
+    command = " ".join(sim(staff, "room-2").command)
+    assert command == "sim --room room-2 --task three_arm_lift_wiping --control-hz 60"  # a seed of its own
+    assert "[program:sim-room-2]" in staff.config.read_text()
+    assert opened(rooms, room="lab") == "lab"
+    assert rooms.names == ["lab", "room-1", "room-2"]
+
+
+def test_others_are_not_started_anew_when_one_closes(rooms: Rooms, staff: Staff) -> None:
+    def sections() -> set[str]:
+        return set(staff.config.read_text().split("\n[program:"))
+
+    opened(rooms)
+    before = sections()
+    close(rooms, "room-1")
+    assert sections() < before
+    assert rooms.names == ["room-2"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "error", "complaint"),
+    [
+        ({"task": "juggling"}, NotFound, "juggling"),
+        ({"room": "room-1"}, Conflict, "open already"),
+        ({"room": "../x"}, InvalidInput, "lower-case"),
+        ({"control_hz": 5.0}, InvalidInput, "20, 30 or 60"),
+        ({"control_hz": float("nan")}, InvalidInput, "20, 30 or 60"),
+    ],
+)
+def test_what_cannot_be_opened(
+    rooms: Rooms, asked: dict[str, Any], error: type[MartError], complaint: str
+) -> None:
+    with pytest.raises(error, match=complaint):
+        opened(rooms, **asked)
+    assert rooms.names == ["room-1"]
+
+
+def test_rooms_are_bounded(rooms: Rooms) -> None:
+    for _ in range(MAX_ROOMS - 1):
+        opened(rooms)
+    with pytest.raises(Conflict, match=f"{MAX_ROOMS} rooms are open"):
+        opened(rooms)
+
+
+def test_a_room_with_people_or_a_recording_stays(rooms: Rooms, statuses: dict[str, RoomStatus]) -> None:
+    statuses["room-1"].seats.add(arm="arm1", operator=OPERATOR_HUMAN, name="Ana")
+    with pytest.raises(Conflict, match="Ana still sit"):
+        close(rooms, "room-1")
+    del statuses["room-1"].seats[1]
+    statuses["room-1"].episode.phase = EPISODE_PHASE_RECORDING
+    with pytest.raises(Conflict, match="being recorded"):
+        close(rooms, "room-1")
+    with pytest.raises(NotFound, match="room-9"):
+        close(rooms, "room-9")
+    statuses.clear()  # a sim that never spoke
+    close(rooms, "room-1")
+    with pytest.raises(InvalidInput, match="An empty request"):
+        rooms.answer(RoomsRequest())
