@@ -4,16 +4,11 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
-import venv
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 
-BENCHMARKS = Path(__file__).parent.parent
-PEER = BENCHMARKS / "peers" / "robosuite"
-PEER_VENV = BENCHMARKS.parent / ".venv-peers" / "robosuite"
+from support.peers import program
 
 
 @dataclass(frozen=True)
@@ -44,7 +39,7 @@ class Robosuite:
             if line.startswith("{"):  # robosuite prints notes of its own
                 return Steps(**json.loads(line))
         raise SystemExit(
-            f"robosuite ended with code {self._process.wait()}: run {PEER / 'control.py'} by hand to see why."
+            f"robosuite ended with code {self._process.wait()}: run peers/robosuite/control.py by hand to see why."
         )
 
 
@@ -52,7 +47,7 @@ class Robosuite:
 def robosuite() -> Iterator[Robosuite]:
     """TwoArmLift, ready to step."""
     process = subprocess.Popen(
-        [_python(), PEER / "control.py"],
+        program("robosuite", "control.py"),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
@@ -62,15 +57,3 @@ def robosuite() -> Iterator[Robosuite]:
         yield Robosuite(process)
     finally:
         process.communicate(timeout=30)
-
-
-def _python() -> Path:
-    """The peer's own environment, made at the first call."""
-    python = PEER_VENV / "bin" / "python"
-    ready = PEER_VENV / "ready"
-    if not ready.is_file():
-        print(f"making {PEER_VENV} …", file=sys.stderr)
-        venv.create(PEER_VENV, with_pip=True)
-        subprocess.run([python, "-m", "pip", "install", "-q", "-r", PEER / "requirements.txt"], check=True)
-        ready.touch()
-    return python
