@@ -123,8 +123,10 @@ class Grip:
         return off_m < _ALIGNED_M + skill.tremor_m and off_rad < _ALIGNED_RAD + skill.tremor_rad
 
     def let_go(self, sight: Sight, up_m: float = 0.12) -> Step:
-        """Opens, and goes straight up."""
+        """Opens, and goes straight up where the thing is not far below already."""
         here = sight.pose_tool_in_base
         sight = yield from stay(sight, Waypoint(here, OPEN), _OPENING_S + self._person.settles_s())
+        if here.position[2] - self._tool(sight).position[2] > up_m:
+            return sight
         up = Waypoint(at(0.0, 0.0, up_m) @ here, OPEN)
         return (yield from go(sight, lambda _: up, patience_s=2.0))

@@ -41,7 +41,8 @@ _BESIDE_M = (
 )  # one attempt after the other at a hammer that lies: a wall may be in the way
 _QUARTER_TURN = upright(np.zeros(3), math.pi / 2)
 _STILL_M, _STILL_S = 0.012, 0.3
-_PARTNER_M, _PARTNER_S, _PARTNER_GONE_M = 0.03, 0.7, 0.09
+_PARTNER_M, _PARTNER_S = 0.03, 0.7
+_PARTNER_OFF_M, _PARTNER_GONE_M = 0.045, 0.09  # of a tool that has let go, and of one that is out of the way
 
 
 def plan(arm: Arm, person: Person, sight: Sight) -> Plan:
@@ -159,10 +160,13 @@ class _Receiver:
             beside_m=0.0 if offered else next(self._sides),
         )
         here = Waypoint(sight.pose_tool_in_base, CLOSED)
-        sight = yield from wait(
-            sight, here, self._person, lambda now: self._is_partner_gone(now) or self._handle.is_lost(now)
-        )
-        self._taken |= offered and not self._handle.is_lost(sight)
+
+        def is_alone(now: Sight) -> bool:
+            lost, off_m = self._handle.is_lost(now), self._partner_off_m(now)
+            self._taken |= offered and not lost and off_m > _PARTNER_OFF_M
+            return lost or off_m > _PARTNER_GONE_M
+
+        sight = yield from wait(sight, here, self._person, is_alone)
         if self._taken:
             return (yield from self._handle.put(sight, self._place_of_hammer, _CLEAR_M, self.has_placed))
         return (yield from self._handle.put(sight, self._place_back, _CLEAR_M, self._is_back))
@@ -178,8 +182,8 @@ class _Receiver:
         x, _, z = self._hammer(now).position
         return bool(x > self._reach_x_m and z < self._back.position[2] + 0.01)
 
-    def _is_partner_gone(self, now: Sight) -> bool:
-        return apart_m(_other_end(self._hammer(now)), self._partner(now)) > _PARTNER_GONE_M
+    def _partner_off_m(self, now: Sight) -> float:
+        return apart_m(_other_end(self._hammer(now)), self._partner(now))
 
     def _place_of_trash(self, now: Sight) -> Pose:
         return standing(self._tray(now) @ _ON_FLOOR, self._trash(now), math.pi / 2)

@@ -19,8 +19,9 @@ from mart.sim.world.symbols import add_tile
 SHELF_Z_M = 0.06
 _SHELF_X_M, _SHELF_HALF_M = 0.27, (0.23, 0.36)
 
-# Open boxes: centre (x, y), inner half sizes. The shelf is their floor.
-CONTAINER, BIN, TRASH_TRAY = (-0.27, 0.17), (0.27, 0.17), (0.27, -0.17)
+# Open boxes: centre (x, y), inner half sizes. The shelf is their floor. Far enough apart that a hammer which was
+# dropped on its way can be gripped between them.
+CONTAINER, BIN, TRASH_TRAY = (-0.27, 0.20), (0.27, 0.20), (0.27, -0.18)
 _CONTAINER_HALF_M, BIN_HALF_M, TRASH_TRAY_HALF_M = (0.155, 0.09), (0.165, 0.09), (0.07, 0.07)
 _WALL_HALF_M, _WALL_HEIGHT_M = 0.005, 0.045
 _INSIDE_Z_M = SHELF_Z_M + 0.05
