@@ -138,7 +138,7 @@ class Task:
     """One task. `horizon_ticks` and `trial_ticks` count ticks of a room at 20 Hz, whatever the room's own rate.
 
     The horizon is for people, who may take their time. A trial is what a session that collects under a clock allows:
-    three to four times what a practised operator needs (decision 0012). None: as long as the horizon.
+    three to five times what a practised operator needs (decision 0012). None: as long as the horizon.
     """
 
     name: str

@@ -40,7 +40,8 @@ def task(arms: int) -> Task:
                 for seen, by in zip(both, reversed(both), strict=True)
             ),
         ),
-        horizon_ticks=1200,  # a minute: scripts need 15 s
+        horizon_ticks=1800,
+        trial_ticks=1200,  # a minute: practised operators need 13 s
     )
 
 
