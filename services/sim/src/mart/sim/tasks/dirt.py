@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.tasks.three_arm_lift_wiping import SPOTS_M
-from mart.sim.world.data import Array, Data, Flags
+from mart.sim.world.data import Array, Data, Flags, into_frame
 from mart.sim.world.palette import MATERIALS, rgba
 
 _RADIUS_M = 0.046  # of what is painted
@@ -60,8 +60,9 @@ class Dirt:
         """wiped: 1 where it is, shape (..., spots), in the state. sponge: a view of its body."""
         self.wiped = wiped
         self._position = sponge.xpos
-        self._axes = [sponge.xmat[..., axis::3] for axis in range(3)]
-        self._half_m = sponge_half_m
+        self._rotation = sponge.xmat.reshape(*sponge.xmat.shape[:-1], 3, 3)
+        half_x, half_y, half_z = sponge_half_m
+        self._face_in_sponge, self._reach_m = np.array((0.0, 0.0, -half_z)), (half_x, half_y, _TOUCHING_M)
         self._spots = np.array([(x, y, 0.0) for x, y in SPOTS_M])
         first = int(data.model.body("dirt0").mocapid[0])
         self._heights = data.mocap_pos[..., first : first + len(SPOTS_M), 2]
@@ -71,14 +72,13 @@ class Dirt:
         self._heights[self.wiped > 0] = _HIDDEN_Z_M
 
     def is_gone(self) -> Flags:
-        return np.logical_and.reduce(self.wiped > 0, axis=-1)
+        return np.logical_and.reduce(self.wiped, axis=-1)
 
     def _touched(self) -> Flags:
         """Which spots lie under the sponge's face and against it, shape (..., spots)."""
         from_sponge = self._spots - self._position[..., None, :]
-        x, y, z = (np.sum(from_sponge * axis[..., None, :], axis=-1) for axis in self._axes)
-        half_x, half_y, half_z = self._half_m
-        return (np.abs(x) < half_x) & (np.abs(y) < half_y) & (np.abs(z + half_z) < _TOUCHING_M)
+        from_face = into_frame(self._rotation, from_sponge) - self._face_in_sponge
+        return np.logical_and.reduce(np.abs(from_face) < self._reach_m, axis=-1)
 
 
 def _smudge() -> NDArray[np.uint8]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import math
+import operator
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -85,6 +87,11 @@ class Scene(ABC):
         """One for each seat, named like its arm, and the shared one."""
         seats = tuple(seat_camera(arm, side=-1 if i % 2 == 0 else 1) for i, arm in enumerate(self.task.arms))
         return (*seats, shared_camera(self.task.arms))
+
+
+def any_of(flags: Iterable[Flags]) -> Flags:
+    """Where any of them holds, all of shape (...)."""
+    return functools.reduce(operator.or_, flags)
 
 
 def seat_camera(arm: Arm, side: int) -> Camera:

@@ -20,6 +20,8 @@ class Thing:
         self.name = name
         self.position, self.quaternion = body.xpos, body.xquat  # in the world, shapes (..., 3) and (..., 4)
         self.rotation = body.xmat.reshape(*body.xmat.shape[:-1], 3, 3)
+        self.uprightness = self.rotation[..., 2, 2]  # cosine of its tilt, shape (...)
+        self._world_to_own = np.swapaxes(self.rotation, -1, -2)
         self._data = data
 
     def put(self, position: Sequence[float], yaw_rad: float = 0.0) -> None:
@@ -35,14 +37,9 @@ class Thing:
         else:
             data.mocap_pos[mocap], data.mocap_quat[mocap] = position, turn
 
-    @property
-    def uprightness(self) -> Array:
-        """Cosine of its tilt, shape (...)."""
-        return self.rotation[..., 2, 2]
-
     def frame(self, points_in_world: Array) -> Array:
         """The same points in its own frame, shape (..., 3)."""
-        return apply(np.swapaxes(self.rotation, -1, -2), points_in_world - self.position)
+        return apply(self._world_to_own, points_in_world - self.position)
 
     def observations(self) -> dict[str, Array]:
         return {
@@ -61,4 +58,4 @@ class Tool:
     @property
     def width_m(self) -> Array:
         """Between the pads, 0 to 8 cm, shape (...)."""
-        return 2 * np.clip(self._finger[..., 0], 0.0, STROKE_M)
+        return 2 * np.minimum(np.maximum(self._finger[..., 0], 0.0), STROKE_M)

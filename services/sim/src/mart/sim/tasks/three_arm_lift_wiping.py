@@ -12,7 +12,7 @@ from mart.protocol.tasks import Arm
 from mart.protocol.tasks.three_arm_lift_wiping import ASIDE_Y_M, RACK_TOP_M, SPOTS_M, WIPER
 from mart.protocol.tasks.tray import CARRIERS
 from mart.sim.tasks.dirt import Dirt, add_dirt
-from mart.sim.tasks.scene import Judgement, Scene
+from mart.sim.tasks.scene import Judgement, Scene, any_of
 from mart.sim.tasks.tray import Tray, across, add_tray
 from mart.sim.world.data import Array, Data
 from mart.sim.world.gripper import GRASPABLE
@@ -91,7 +91,7 @@ class LiftWiping(Scene):
             **self._tray.spills(),
             "The sponge fell off the table.": self._sponge_position[..., 2] < FALLEN_Z_M,
         }
-        lifted = (self._tray.lowest_point_m() > LIFTED_M) & ~np.logical_or.reduce(list(failed.values()))
+        lifted = (self._tray.lowest_point_m() > LIFTED_M) & ~any_of(failed.values())
         aside = lifted & (self._tray.position[..., 1] < ASIDE_Y_M)
         clean = self._dirt.is_gone()
         return Judgement(

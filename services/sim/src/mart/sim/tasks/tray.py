@@ -15,7 +15,7 @@ import numpy as np
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
 from mart.protocol.tasks.tray import DRINKS, handle_of
-from mart.sim.world.data import Array, Data, Flags
+from mart.sim.world.data import Array, Data, Flags, into_frame
 from mart.sim.world.gripper import GRASPABLE
 from mart.sim.world.palette import rgba
 from mart.sim.world.shadows import add_shadow
@@ -107,7 +107,7 @@ class Tray:
     def __init__(self, data: Data, carriers: Sequence[Arm]) -> None:
         tray, drink = data.body("tray"), data.body("drink0").id
         self.position, self._quaternion = tray.xpos, tray.xquat  # shapes (..., 3) and (..., 4)
-        self._axes = [tray.xmat[..., axis::3] for axis in range(3)]  # each in the world frame, shape (..., 3)
+        self._rotation = tray.xmat.reshape(*tray.xmat.shape[:-1], 3, 3)
         self._drinks = data.xpos[..., drink : drink + DRINKS, :]
         self._uprightness = data.xmat[..., drink : drink + DRINKS, 8]
         self._joints = [data.joint(name).qpos for name in ("tray", *(f"drink{i}" for i in range(DRINKS)))]
@@ -136,18 +136,20 @@ class Tray:
 
     def lowest_point_m(self) -> Array:
         """Height of the plate's lowest corner over the table, shape (...)."""
-        leaning = sum(half * np.abs(axis[..., 2]) for half, axis in zip(HALF_M, self._axes, strict=True))
+        leaning = np.add.reduce(np.abs(self._rotation[..., 2, :]) * HALF_M, axis=-1)
         return self.position[..., 2] - leaning
 
     def spills(self) -> dict[str, Flags]:
         """What may have become of a drink, in words, and where it has."""
         tipped = self._uprightness < _UPRIGHT_MIN
         from_tray = self._drinks - self.position[..., None, :]
-        x, y, z = (np.sum(from_tray * axis[..., None, :], axis=-1) for axis in self._axes)
-        fallen = (np.abs(x) > _BESIDE_M[0]) | (np.abs(y) > _BESIDE_M[1]) | (z < _STANDING_MIN_M)
+        in_tray = into_frame(self._rotation, from_tray)
+        beside = np.logical_or.reduce(np.abs(in_tray[..., :2]) > _BESIDE_M, axis=-1)
         return {
-            "A drink tipped over.": tipped.any(axis=-1),
-            "A drink fell off the tray.": fallen.any(axis=-1),
+            "A drink tipped over.": np.logical_or.reduce(tipped, axis=-1),
+            "A drink fell off the tray.": np.logical_or.reduce(
+                beside | (in_tray[..., 2] < _STANDING_MIN_M), axis=-1
+            ),
         }
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.sim.tasks.scene import Judgement, Scene
+from mart.sim.tasks.scene import Judgement, Scene, any_of
 from mart.sim.tasks.tray import Tray, across, add_tray
 from mart.sim.world.data import Array, Data
 
@@ -34,7 +34,7 @@ class DrinkTrayLifting(Scene):
 
     def judge(self) -> Judgement:
         spills = self._tray.spills()
-        lifted = (self._tray.lowest_point_m() > LIFTED_M) & ~np.logical_or.reduce(list(spills.values()))
+        lifted = (self._tray.lowest_point_m() > LIFTED_M) & ~any_of(spills.values())
         return Judgement({"lift_tray": lifted}, lifted, spills)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from mart.protocol.tasks import Arm, Task
 from mart.sim.tasks.scene import Judgement, Scene
-from mart.sim.world.data import Array, Data
+from mart.sim.world.data import Array, Data, evenly
 from mart.sim.world.gripper import GRASPABLE
 from mart.sim.world.palette import rgba
 from mart.sim.world.shadows import add_shadow
@@ -38,6 +38,7 @@ class MultiCubeLifting(Scene):
     def __init__(self, task: Task) -> None:
         super().__init__(task)
         self._area = _FACING if len(task.arms) == 2 else _AROUND
+        self._failures = [f"Cube {index} fell off the table." for index in range(len(task.arms))]
 
     def add_objects(self, spec: mujoco.MjSpec) -> None:
         for arm in self.task.arms:
@@ -63,7 +64,9 @@ class MultiCubeLifting(Scene):
         bodies = [data.body(cube_of(arm)) for arm in self.task.arm_names]
         self._positions = [body.xpos for body in bodies]
         self._quaternions = [body.xquat for body in bodies]
-        self._upward = [body.xmat[..., 6:9] for body in bodies]  # each axis's share of up
+        rows = evenly(body.id for body in bodies)
+        self._heights = data.xpos[..., rows, 2]
+        self._upward = data.xmat[..., rows, 6:9]  # each axis's share of up
         self._joints = [data.joint(cube_of(arm)).qpos for arm in self.task.arm_names]
 
     def place_objects(self, random: np.random.Generator) -> None:
@@ -82,15 +85,14 @@ class MultiCubeLifting(Scene):
         return observations
 
     def judge(self) -> Judgement:
-        lifted, fallen = {}, {}
-        for index, subtask in enumerate(self.task.subtasks):
-            lifted[subtask.name] = self._lowest_point_m(index) > LIFTED_M
-            fallen[f"Cube {index} fell off the table."] = self._positions[index][..., 2] < FALLEN_Z_M
-        return Judgement(lifted, np.logical_and.reduce(list(lifted.values())), fallen)
+        lifted, fallen = self._lowest_points_m() > LIFTED_M, self._heights < FALLEN_Z_M
+        subtasks = {subtask.name: lifted[..., index] for index, subtask in enumerate(self.task.subtasks)}
+        failed = {text: fallen[..., index] for index, text in enumerate(self._failures)}
+        return Judgement(subtasks, np.logical_and.reduce(lifted, axis=-1), failed)
 
-    def _lowest_point_m(self, index: int) -> Array:
-        """Height of the cube's lowest corner over the table, shape (...)."""
-        return self._positions[index][..., 2] - CUBE_HALF_M * np.abs(self._upward[index]).sum(axis=-1)
+    def _lowest_points_m(self) -> Array:
+        """Height of each cube's lowest corner over the table, shape (..., cubes)."""
+        return self._heights - CUBE_HALF_M * np.add.reduce(np.abs(self._upward), axis=-1)
 
     def _start(self, arm: Arm, forward_m: float, sideways_m: float) -> tuple[float, float]:
         x, y, _ = arm.pose_base_in_world.transform_points(

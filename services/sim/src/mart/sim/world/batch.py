@@ -20,7 +20,7 @@ from mart.sim.world.data import Array, Flags
 from mart.sim.world.last_states import KEPT, Diverged
 from mart.sim.world.progress import first_reasons
 from mart.sim.world.surface import Surface
-from mart.sim.world.world import FATAL_WARNINGS, World, bounded
+from mart.sim.world.world import FATAL_WARNINGS, World
 
 _NOTHING, _POSITIONS = int(mujoco.mjtStage.mjSTAGE_NONE), int(mujoco.mjtStage.mjSTAGE_POS)
 
@@ -91,7 +91,7 @@ class WorldBatch:
             broken = error.ids
         else:
             broken = going[:0]
-        unstable = self._fatal_warnings[going].any(axis=1) | ~bounded(self._batch.qvel[going])
+        unstable = self._fatal_warnings[going].any(axis=1) | ~_bounded(self._batch.qvel[going])
         return np.union1d(going[unstable], broken)
 
     def integration_states(self) -> Array:
@@ -116,3 +116,8 @@ class WorldBatch:
             reasons=tuple(reasons),
             integration_states=self.integration_states() if integration_states else None,
         )
+
+
+def _bounded(velocities: Array) -> Flags:
+    """Whether MuJoCo will go on from these, shape (worlds, nv), as mj_checkVel finds for one world."""
+    return np.logical_and.reduce(np.abs(velocities) <= mujoco.mjMAXVAL, axis=-1)  # False for NaN

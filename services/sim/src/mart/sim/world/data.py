@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import mujoco
 import numpy as np
 from mujoco.batch import Batch
@@ -14,6 +16,14 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
+def evenly(rows: Iterable[int]) -> slice:
+    """Rows that lie equally far apart, as a slice: what it chooses is a view that follows the data."""
+    first, second, *others = rows
+    chosen = slice(first, [first, second, *others][-1] + 1, second - first)
+    assert list(range(chosen.start, chosen.stop, chosen.step)) == [first, second, *others]
+    return chosen
+
+
 def apply(matrix: Array, vectors: Array) -> Array:
     """matrix @ vectors, shapes (m, n) and (..., n).
 
@@ -24,3 +34,8 @@ def apply(matrix: Array, vectors: Array) -> Array:
     for column in range(1, matrix.shape[1]):
         total = total + terms[..., column]
     return total
+
+
+def into_frame(rotation: Array, vectors: Array) -> Array:
+    """Vectors of the world, shape (..., n, 3), in a frame whose axes are the columns of `rotation`, (..., 3, 3)."""
+    return np.add.reduce(vectors[..., :, :, None] * rotation[..., None, :, :], axis=-2)

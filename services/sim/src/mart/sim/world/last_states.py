@@ -11,7 +11,7 @@ from mart.protocol.errors import Corrupt
 from mart.sim.world.data import Array
 
 KEPT = 5
-_STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
 
 @dataclass(frozen=True, eq=False)

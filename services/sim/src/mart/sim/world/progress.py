@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mart.sim.world.data import Array, Flags
+from mart.sim.world.data import Flags
 
 
 @dataclass(frozen=True)
@@ -22,11 +22,6 @@ class Progress:
     success_ticks: int
     success: bool
     failed: str | None
-
-
-def next_success_ticks(success_ticks: Array, success_now: Flags) -> Array:
-    """The count after one more tick; all of shape (...)."""
-    return np.where(success_now, success_ticks + 1.0, 0.0)
 
 
 def first_reasons(failed: Mapping[str, Flags], worlds: int) -> list[str]:

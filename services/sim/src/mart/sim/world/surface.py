@@ -15,7 +15,6 @@ from mart.sim.world import osc
 from mart.sim.world.arm import MeasuredArm
 from mart.sim.world.data import Array, Data
 from mart.sim.world.gripper import STROKE_M
-from mart.sim.world.progress import next_success_ticks
 from mart.sim.world.shadows import Shadows
 
 if TYPE_CHECKING:  # scenes are built from parts of this package
@@ -49,7 +48,7 @@ class Surface:
         """A control period is over: what it did is remembered, judged and counted."""
         self._scene.remember()
         judgement = self.judge()
-        self.success_ticks[...] = next_success_ticks(self.success_ticks, judgement.success_now)
+        np.multiply(self.success_ticks + 1.0, judgement.success_now, out=self.success_ticks)
         return judgement
 
     def judge(self) -> Judgement:

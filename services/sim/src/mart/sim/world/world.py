@@ -23,7 +23,7 @@ from mart.protocol.tasks import Task, get_task
 from mart.sim.tasks import scene_of
 from mart.sim.world import kinematics, model, osc, panda
 from mart.sim.world.arm import MeasuredArm
-from mart.sim.world.data import Array, Flags
+from mart.sim.world.data import Array
 from mart.sim.world.last_states import Diverged, LastStates, Trail
 from mart.sim.world.meshes import Detail
 from mart.sim.world.progress import Progress, first_reasons
@@ -32,7 +32,8 @@ from mart.sim.world.surface import ACTION_SIZE, Surface
 if TYPE_CHECKING:  # scenes are built from parts of this package
     from mart.sim.tasks.scene import Scene
 
-STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+# As a number: looking an enumeration up takes longer than what is called with it.
+STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 FATAL_WARNINGS = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 
 _HOLD_OPEN = np.array([0.0] * 6 + [-1.0])
@@ -62,7 +63,6 @@ class World:
         self._surface = Surface(scene, self.model, self.data)
         self._action_shape = (len(self.arms), ACTION_SIZE)
         self._trail = Trail(self.model, self._action_shape)
-        self._velocities = self.data.qvel
         self._fatal_warnings = self.data.warning.number[FATAL_WARNINGS]
 
     @classmethod
@@ -154,7 +154,7 @@ class World:
             raise InvalidInput(
                 f"Actions of shape {actions.shape} were given; {self._action_shape} is needed."
             )
-        if not math.isfinite(actions.sum()):
+        if not math.isfinite(sum(actions.ravel().tolist())):
             raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
         begun_s = self.sim_time_s
         self._trail.note(self.data, actions)
@@ -162,7 +162,8 @@ class World:
         mujoco.mj_step(self.model, self.data, self.substeps)
         # Poses of the new state: mj_step leaves those of its last substep's beginning.
         mujoco.mj_kinematics(self.model, self.data)
-        if any(self._fatal_warnings.tolist()) or not bounded(self._velocities):
+        mujoco.mj_checkVel(self.model, self.data)  # what MuJoCo would find bad next time is told this time
+        if any(self._fatal_warnings.tolist()):
             raise Diverged(begun_s, self.last_states(*self._trail.states_and_actions()))
 
     def last_states(self, states: Array, actions: Array) -> LastStates:
@@ -212,11 +213,6 @@ class World:
 
     def _arm(self, name: str) -> MeasuredArm:
         return self._surface.arms[self.task.arm(name).name]
-
-
-def bounded(velocities: Array) -> Flags:
-    """Whether MuJoCo will go on from these, shape (..., nv): what it would find bad next time is told this time."""
-    return np.vecdot(velocities, velocities) < mujoco.mjMAXVAL**2  # False for NaN
 
 
 def _within_unit(vector: Array) -> Array:
