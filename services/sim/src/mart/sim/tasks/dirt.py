@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.tasks.three_arm_lift_wiping import SPOTS_M
-from mart.sim.world.data import Array, Data, Flags, into_frame
+from mart.sim.world.data import Array, Data, Flags, into_frame, within
 from mart.sim.world.palette import MATERIALS, rgba
 
 _RADIUS_M = 0.046  # of what is painted
@@ -77,8 +77,8 @@ class Dirt:
     def _touched(self) -> Flags:
         """Which spots lie under the sponge's face and against it, shape (..., spots)."""
         from_sponge = self._spots - self._position[..., None, :]
-        from_face = into_frame(self._rotation, from_sponge) - self._face_in_sponge
-        return np.logical_and.reduce(np.abs(from_face) < self._reach_m, axis=-1)
+        from_face = into_frame(self._rotation[..., None, :, :], from_sponge) - self._face_in_sponge
+        return within(from_face, self._reach_m)
 
 
 def _smudge() -> NDArray[np.uint8]:

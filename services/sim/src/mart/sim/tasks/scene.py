@@ -94,6 +94,11 @@ def any_of(flags: Iterable[Flags]) -> Flags:
     return functools.reduce(operator.or_, flags)
 
 
+def all_of(flags: Iterable[Flags]) -> Flags:
+    """Where all of them hold, all of shape (...)."""
+    return functools.reduce(operator.and_, flags)
+
+
 def seat_camera(arm: Arm, side: int) -> Camera:
     """Beside the own base, looking along the arm at the work; behind the shoulder the own elbow would be in the way.
 

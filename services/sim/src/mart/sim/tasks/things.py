@@ -8,7 +8,7 @@ from typing import cast
 import mujoco
 import numpy as np
 
-from mart.sim.world.data import Array, Data, apply
+from mart.sim.world.data import Array, Data, into_frame
 from mart.sim.world.gripper import STROKE_M
 
 
@@ -21,7 +21,6 @@ class Thing:
         self.position, self.quaternion = body.xpos, body.xquat  # in the world, shapes (..., 3) and (..., 4)
         self.rotation = body.xmat.reshape(*body.xmat.shape[:-1], 3, 3)
         self.uprightness = self.rotation[..., 2, 2]  # cosine of its tilt, shape (...)
-        self._world_to_own = np.swapaxes(self.rotation, -1, -2)
         self._data = data
 
     def put(self, position: Sequence[float], yaw_rad: float = 0.0) -> None:
@@ -39,7 +38,7 @@ class Thing:
 
     def frame(self, points_in_world: Array) -> Array:
         """The same points in its own frame, shape (..., 3)."""
-        return apply(self._world_to_own, points_in_world - self.position)
+        return into_frame(self.rotation, points_in_world - self.position)
 
     def observations(self) -> dict[str, Array]:
         return {

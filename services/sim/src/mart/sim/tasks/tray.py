@@ -143,7 +143,7 @@ class Tray:
         """What may have become of a drink, in words, and where it has."""
         tipped = self._uprightness < _UPRIGHT_MIN
         from_tray = self._drinks - self.position[..., None, :]
-        in_tray = into_frame(self._rotation, from_tray)
+        in_tray = into_frame(self._rotation[..., None, :, :], from_tray)
         beside = np.logical_or.reduce(np.abs(in_tray[..., :2]) > _BESIDE_M, axis=-1)
         return {
             "A drink tipped over.": np.logical_or.reduce(tipped, axis=-1),

@@ -8,9 +8,9 @@ import mujoco
 import numpy as np
 
 from mart.protocol.tasks import MAX_ARMS
-from mart.sim.tasks.scene import Judgement, Scene
+from mart.sim.tasks.scene import Judgement, Scene, all_of
 from mart.sim.tasks.things import Thing, Tool
-from mart.sim.world.data import Array, Data, Flags
+from mart.sim.world.data import Array, Data, Flags, length, within
 from mart.sim.world.gripper import GRASPABLE
 from mart.sim.world.palette import rgba
 from mart.sim.world.shadows import add_shadow
@@ -115,7 +115,7 @@ class PickPlaceHandover(Scene):
         handed_over = self._stage == _HANDED_OVER
         cleared = _inside(self._trash, self._trash_tray, TRASH_TRAY_HALF_M)
         placed = _inside(self._hammer, self._bin, BIN_HALF_M) & handed_over
-        away_m = np.linalg.norm(self._container.frame(self._lid.position)[..., :2], axis=-1)
+        away_m = length(self._container.frame(self._lid.position)[..., :2])
         subtasks = {
             "lid_removed": (away_m > _LID_AWAY_M) & (self._lid.position[..., 2] < _INSIDE_Z_M),
             "trash_cleared": cleared,
@@ -124,15 +124,16 @@ class PickPlaceHandover(Scene):
             "hammer_placed": placed,
         }
         let_go = [self._let_go(tool) for tool in self._tools.values()]
-        return Judgement(subtasks, np.logical_and.reduce([placed, cleared, *let_go]), self._failures())
+        return Judgement(subtasks, all_of([placed, cleared, *let_go]), self._failures())
 
     def _holds_hammer(self, tool: Tool) -> Flags:
         narrow, wide = _GRIP_WIDTH_M
-        at = np.all(np.abs(self._hammer.frame(tool.position)) < _GRIP_M, axis=-1)
-        return at & (tool.width_m > narrow) & (tool.width_m < wide)
+        at = within(self._hammer.frame(tool.position), _GRIP_M)
+        width_m = tool.width_m
+        return at & (width_m > narrow) & (width_m < wide)
 
     def _let_go(self, tool: Tool) -> Flags:
-        away_m = np.linalg.norm(tool.position - self._hammer.position, axis=-1)
+        away_m = length(tool.position - self._hammer.position)
         return (tool.width_m > _RELEASED_WIDTH_M) | (away_m > _RELEASED_M)
 
     def _failures(self) -> dict[str, Flags]:
@@ -147,8 +148,7 @@ SCENE = PickPlaceHandover
 
 
 def _inside(thing: Thing, box: Thing, half_m: tuple[float, float]) -> Flags:
-    within = np.all(np.abs(box.frame(thing.position)[..., :2]) < half_m, axis=-1)
-    return within & (thing.position[..., 2] < _INSIDE_Z_M)
+    return within(box.frame(thing.position)[..., :2], half_m) & (thing.position[..., 2] < _INSIDE_Z_M)
 
 
 def _add_open_box(spec: mujoco.MjSpec, name: str, half_m: tuple[float, float], **look: object) -> None:

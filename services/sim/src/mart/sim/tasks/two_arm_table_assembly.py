@@ -12,9 +12,9 @@ import mujoco
 import numpy as np
 
 from mart.protocol.tasks import Arm
-from mart.sim.tasks.scene import Judgement, Scene
+from mart.sim.tasks.scene import Judgement, Scene, all_of
 from mart.sim.tasks.things import Thing, Tool
-from mart.sim.world.data import Array, Data, Flags
+from mart.sim.world.data import Array, Data, Flags, length, within
 from mart.sim.world.palette import rgba
 from mart.sim.world.scenery import TABLE_HALF_M
 from mart.sim.world.shadows import add_shadow
@@ -156,18 +156,18 @@ class TableAssembly(Scene):
             "tabletop_seated": seated,
         }
         let_go = [self._let_go(tool) for tool in self._tools.values()]
-        return Judgement(subtasks, np.logical_and.reduce([seated, *let_go]), self._failures())
+        return Judgement(subtasks, all_of([seated, *let_go]), self._failures())
 
     def _column_seated(self, column: Thing, side: int) -> Flags:
-        off = np.abs(self._base.frame(column.position) - (SOCKET_X_M * side, 0.0, SEAT_Z_M))
-        return np.all(off < (0.020, 0.020, 0.006), axis=-1) & (column.uprightness > 0.985)
+        off = self._base.frame(column.position) - (SOCKET_X_M * side, 0.0, SEAT_Z_M)
+        return within(off, (0.020, 0.020, 0.006)) & (column.uprightness > 0.985)
 
     def _top_seated(self) -> Flags:
-        off = np.abs(self._base.frame(self._top.position) - (0.0, 0.0, TOP_SEATED_Z_M))
-        return np.all(off < (0.015, 0.015, 0.006), axis=-1) & (self._top.uprightness > 0.995)
+        off = self._base.frame(self._top.position) - (0.0, 0.0, TOP_SEATED_Z_M)
+        return within(off, (0.015, 0.015, 0.006)) & (self._top.uprightness > 0.995)
 
     def _let_go(self, tool: Tool) -> Flags:
-        away_m = np.linalg.norm(tool.position - self._top.position, axis=-1)
+        away_m = length(tool.position - self._top.position)
         return (tool.width_m > _RELEASED_WIDTH_M) | (away_m > _RELEASED_M)
 
     def _failures(self) -> dict[str, Flags]:
@@ -254,5 +254,4 @@ def _add_knob(spec: mujoco.MjSpec, top: mujoco.MjsBody, arm: Arm, side: int) -> 
 
 
 def _off_the_table(thing: Thing) -> Flags:
-    outside = np.any(np.abs(thing.position[..., :2]) > TABLE_HALF_M, axis=-1)
-    return outside | (thing.position[..., 2] < -0.05)
+    return ~within(thing.position[..., :2], TABLE_HALF_M) | (thing.position[..., 2] < -0.05)

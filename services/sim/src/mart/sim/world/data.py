@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import mujoco
 import numpy as np
 from mujoco.batch import Batch
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 # The same names in both; in a batch, every array has the worlds as its first axis.
 Data = mujoco.MjData | Batch
@@ -37,5 +37,15 @@ def apply(matrix: Array, vectors: Array) -> Array:
 
 
 def into_frame(rotation: Array, vectors: Array) -> Array:
-    """Vectors of the world, shape (..., n, 3), in a frame whose axes are the columns of `rotation`, (..., 3, 3)."""
-    return np.add.reduce(vectors[..., :, :, None] * rotation[..., None, :, :], axis=-2)
+    """Vectors of the world, shape (..., 3), in a frame whose axes are the columns of `rotation`, (..., 3, 3)."""
+    return np.add.reduce(vectors[..., None] * rotation, axis=-2)
+
+
+def within(vectors: Array, limits: ArrayLike) -> Flags:
+    """Whether no component of a vector, shape (..., n), is further from 0 than its limit."""
+    return np.logical_and.reduce(np.abs(vectors) < limits, axis=-1)
+
+
+def length(vectors: Array) -> Array:
+    """Of vectors of shape (..., n)."""
+    return np.sqrt(np.add.reduce(vectors * vectors, axis=-1))
