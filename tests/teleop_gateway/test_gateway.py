@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+import select
 import signal
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from pathlib import Path
@@ -128,6 +129,25 @@ def test_a_claim_is_served_by_a_warm_process(platform: Platform) -> None:
             assert all(tick is not None for tick in ticks)
 
     on_platform(platform, body)
+
+
+def test_a_seat_that_is_left_while_it_is_watched_ends_quietly(platform: Platform) -> None:
+    async def body(platform: Platform, bus: AsyncBus) -> None:
+        epoch = await platform.claim(bus)
+        async with (
+            connected(platform.exchange(bus, Role.BROWSER, epoch)) as browser,
+            connected(platform.exchange(bus, Role.PHONE, epoch), Role.PHONE),
+        ):
+            await browser.next_tick()
+            process = os.pidfd_open(serving(platform.gateway))
+            await platform.release(bus)
+            ended, _, _ = await asyncio.to_thread(select.select, [process], [], [], 10)
+            assert ended
+
+    on_platform(platform, body)
+    log = platform.gateway.log()
+    for symptom in ("Traceback", "was destroyed", "never retrieved", "Undeclared"):
+        assert symptom not in log, log
 
 
 def test_a_seat_that_nobody_holds_cannot_be_opened(platform: Platform) -> None:

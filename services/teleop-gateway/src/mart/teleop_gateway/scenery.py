@@ -46,6 +46,7 @@ class Scenery:
         self._codecs: frozenset[Codec] = frozenset()
         self._view: View | None = None
         self._fetching: asyncio.Task[None] | None = None
+        self._stopping: asyncio.Future[None] | None = None  # the view before
 
     def offer(self, state: State, received_ns: int) -> None:
         view = self._view
@@ -74,9 +75,12 @@ class Scenery:
         return self._view.frames_per_s() if self._view is not None else 0.0
 
     async def close(self) -> None:
+        """No picture comes after it."""
         if self._fetching is not None:
             self._fetching.cancel()
         await self._replace(None)
+        if self._stopping is not None:  # where the fetching was replacing a view just then
+            await self._stopping
 
     async def _fetch(self) -> None:
         while True:
@@ -106,7 +110,8 @@ class Scenery:
     async def _replace(self, view: View | None) -> None:
         before, self._view = self._view, None
         if before is not None:
-            await asyncio.to_thread(before.stop)
+            self._stopping = asyncio.ensure_future(asyncio.to_thread(before.stop))
+            await asyncio.shield(self._stopping)
         if view is not None:
             view.start()
         self._view = view

@@ -37,25 +37,37 @@ def _serve(assignment: Assignment) -> None:
         secret = tokens.load_or_create_secret(settings.secret_path)
         with contextlib.closing(await asyncio.to_thread(ZenohBus.connect, settings.router)) as video_bus:
             seat = Seat(service.bus, video_bus, settings, assignment, secret)
-            await _until_gateway_ends(asyncio.ensure_future(seat.run()))
+            await _until_gateway_ends(asyncio.create_task(seat.run()))
 
     logging.getLogger("aioice").setLevel(logging.WARNING)  # it tells about every candidate pair
     run_async(settings, SEAT_KIND, assignment.id, run)
 
 
-async def _until_gateway_ends(seat: asyncio.Future[None]) -> None:
-    """Standard input ends with the gateway, even when it is killed."""
+async def _until_gateway_ends(seat: asyncio.Task[None]) -> None:
+    """Standard input ends with the gateway, even when it is killed.
+
+    The seat is told to end once, whoever says so and how often: it takes its time to close peers, view and publishers
+    in that order, and another cancellation would tear it out of that.
+    """
     loop, reader = asyncio.get_running_loop(), sys.stdin.fileno()
+
+    def end() -> None:
+        loop.remove_reader(reader)
+        if not seat.cancelling():
+            seat.cancel()
 
     def on_readable() -> None:
         if not os.read(reader, 4096):
-            seat.cancel()
+            end()
 
     loop.add_reader(reader, on_readable)
-    try:
-        await seat
-    finally:
-        loop.remove_reader(reader)
+    while not seat.done():
+        try:
+            await asyncio.wait([seat])
+        except asyncio.CancelledError:
+            end()
+    loop.remove_reader(reader)
+    await seat
 
 
 if __name__ == "__main__":
