@@ -18,7 +18,7 @@ from mart.protocol.errors import Unavailable
 from mart.protocol.messages import barrier_word
 from mart.protocol.settings import Settings
 
-_NEEDED_KINDS = ("sim", "replica", "experts", "gateway", "recorder", "web")
+_NEEDED_KINDS = ("sim", "replica", "experts", "gateway", "recorder", "catalogue", "web")
 _LEAST_FREE_BYTES = 2 * 1024**3
 
 
