@@ -106,7 +106,7 @@ def test_rooms_are_bounded(rooms: Rooms) -> None:
 
 def test_a_room_with_people_or_a_recording_stays(rooms: Rooms, statuses: dict[str, RoomStatus]) -> None:
     statuses["room-1"].seats.add(arm="arm1", operator=OPERATOR_HUMAN, name="Ana")
-    with pytest.raises(Conflict, match="Ana still sit"):
+    with pytest.raises(Conflict, match="Ana can still drive"):
         close(rooms, "room-1")
     del statuses["room-1"].seats[1]
     statuses["room-1"].episode.phase = EPISODE_PHASE_RECORDING

@@ -77,7 +77,7 @@ class Rooms:
         people = [seat.name for seat in status.seats if seat.operator == OPERATOR_HUMAN]
         if people:
             raise Conflict(
-                f"{name} was to be closed, but {' and '.join(people)} still sit there; leave first."
+                f"{name} was to be closed, but {' and '.join(people)} can still drive there; leave first."
             )
         if status.episode.phase in (EPISODE_PHASE_COUNTDOWN, EPISODE_PHASE_RECORDING):
             raise Conflict(f"{name} was to be closed, but an episode is being recorded; end it first.")
