@@ -1,7 +1,8 @@
 """Last command in → state out, less the physics: what the sim adds to a bare round trip over the bus.
 
-A router, a sim and an echo run as processes of their own. This one plays all operators. All but one stream 60 commands
-a second, as phones do; when the pace allows the next tick, the last one sends its command and waits for the state.
+A router, a sim and an echo run as processes of their own, and one plays all operators but the last: each streams 60
+commands a second, as a phone does. This one plays the last operator alone, because gateways are processes of their own
+too: when the pace allows the next tick, it sends its command and waits for the state.
 Between two ticks it sends a command of the same size to the echo, which answers at once with as many bytes as a state
 has. Physics time is taken from the state's own stamps. A p99 is that of a block of rounds and hangs on four of them, so
 the bar takes the median of several blocks.
@@ -13,6 +14,7 @@ world, stepped one after the other.
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
 import queue
 import signal
@@ -26,8 +28,9 @@ from pathlib import Path
 from typing import cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from report import Bar, report, spread
+from support.pair_of_worlds import PairOfWorlds
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus import Bus, Publisher
@@ -41,10 +44,9 @@ from mart.protocol.messages import (
     State,
     raise_error,
 )
-from mart.protocol.pose import Pose
 from mart.protocol.service import announced, connected
 from mart.sim.serving import serve_world
-from mart.sim.settings import DEFAULT_TASK, SimSettings
+from mart.sim.settings import SimSettings
 from mart.sim.world import World
 
 CONTROL_HZ = 100.0  # the rhythm only spaces the samples
@@ -104,14 +106,42 @@ def _measure(arms: int, endpoint: str, folder: Path) -> Times:
     ):
         for kind, name in (("sim", room), ("bench", ECHO)):
             _await_alive(bus, keys.alive(kind, name))
-        return Operators(bus, room, arms).measure()
+        *early, last = (f"arm{index}" for index in range(arms))
+        seats = [f"{arm}:{_seat(bus, room, arm)}" for arm in early]
+        with _child(sys.executable, __file__, "stream", room, *seats, **environment):
+            return LastOperator(bus, room, last).measure()
 
 
-class Operators:
-    """All operators of a room, and the one who waits for its states. All but the last stream as phones do."""
+def stream(room: str, *seats: str) -> None:
+    """The operators of all `seats` ("ARM:EPOCH") but the last one's: 60 commands a second each."""
+    epochs = {arm: int(epoch) for arm, _, epoch in (seat.partition(":") for seat in seats)}
+    with connected(SimSettings(), "bench", "bench-stream") as service:
+        publishers = {arm: service.bus.publisher(keys.command(room, arm)) for arm in epochs}
+        for sequence in itertools.count(1):
+            for arm, publisher in publishers.items():
+                publisher.put(_command(arm, epochs[arm], sequence))
+                if service.stop.wait(1.0 / (PHONE_HZ * len(publishers))):
+                    return
 
-    def __init__(self, bus: Bus, room: str, arms: int) -> None:
-        *early, self._last = (f"arm{index}" for index in range(arms))
+
+def _command(arm: str, epoch: int, sequence: int) -> bytes:
+    """The tool half a metre ahead of the base."""
+    return codec.encode(
+        Command(
+            arm=arm,
+            seat_epoch=epoch,
+            sequence=sequence,
+            target_tool_in_base=PoseMessage(x=0.5, z=0.2, qw=1.0),
+            engaged=True,
+        )
+    )
+
+
+class LastOperator:
+    """The operator who completes the barrier, and who waits for the states."""
+
+    def __init__(self, bus: Bus, room: str, arm: str) -> None:
+        self._arm = arm
         self._states: queue.SimpleQueue[tuple[int, bytes]] = queue.SimpleQueue()
         self._echoes: queue.SimpleQueue[tuple[int, bytes]] = queue.SimpleQueue()
         self._subscriptions = (
@@ -123,17 +153,14 @@ class Operators:
             ),
         )
         self._echo = bus.publisher(keys.command(ECHO, "arm0"))
-        self._publishers = {arm: bus.publisher(keys.command(room, arm)) for arm in (*early, self._last)}
-        self._epochs = {arm: _seat(bus, room, arm) for arm in self._publishers}
-        self._sequences = dict.fromkeys(self._publishers, 0)
-        self._stop = threading.Event()
-        self._stream = threading.Thread(target=self._give_again_and_again, args=(early,))
+        self._publisher = bus.publisher(keys.command(room, arm))
+        self._epoch = _seat(bus, room, arm)
+        self._sequence = 0
 
     def measure(self) -> Times:
         state = self._next_state()[1]
         sim: list[float] = []
         bare: list[float] = []
-        self._stream.start()
         while len(sim) < WARM_UP + BLOCKS * ROUNDS:
             # Under load the bus drops a command now and then, which is its right: such a round is begun again.
             with contextlib.suppress(queue.Empty):
@@ -141,38 +168,21 @@ class Operators:
                 echo_ms = self._round_trip(size=state.ByteSize())
                 bare.append(echo_ms)
                 sim.append(tick_ms)
-        self._stop.set()
-        self._stream.join()
         return Times(*(np.reshape(figures[WARM_UP:], (BLOCKS, ROUNDS)) for figures in (sim, bare)))
-
-    def _give_again_and_again(self, arms: list[str]) -> None:
-        while not self._stop.is_set():
-            for arm in arms:
-                self._publishers[arm].put(self._command(arm))
-                clock.sleep_s(1.0 / (PHONE_HZ * len(arms)))
 
     def _tick(self) -> tuple[float, State]:
         """Milliseconds from the last command to the next state, less the physics; that state."""
         clock.sleep_s(1.5 / CONTROL_HZ)
-        payload = self._command(self._last)
+        payload = self._next_command()
         sent_ns = clock.monotonic_ns()
-        self._publishers[self._last].put(payload)
+        self._publisher.put(payload)
         arrived_ns, after = self._next_state()
         physics_ns = after.stamps.stepped_ns - after.stamps.fired_ns
         return (arrived_ns - sent_ns - physics_ns) / 1e6, after
 
-    def _command(self, arm: str) -> bytes:
-        """The next one: the tool half a metre ahead of the base."""
-        self._sequences[arm] += 1
-        return codec.encode(
-            Command(
-                arm=arm,
-                seat_epoch=self._epochs[arm],
-                sequence=self._sequences[arm],
-                target_tool_in_base=PoseMessage(x=0.5, z=0.2, qw=1.0),
-                engaged=True,
-            )
-        )
+    def _next_command(self) -> bytes:
+        self._sequence += 1
+        return _command(self._arm, self._epoch, self._sequence)
 
     def _next_state(self) -> tuple[int, State]:
         """When the state came that used the last arm's newest command, and the state. Raises queue.Empty if none."""
@@ -180,7 +190,7 @@ class Operators:
         while True:
             at_ns, payload = self._states.get(timeout=max(0.0, deadline_s - clock.monotonic_s()))
             state = codec.decode(State, payload)
-            if state.arms[-1].sequence == self._sequences[self._last]:
+            if state.arms[-1].sequence == self._sequence:
                 return at_ns, state
 
     def _round_trip(self, size: int) -> float:
@@ -188,7 +198,7 @@ class Operators:
         while not self._echoes.empty():
             self._echoes.get()
         clock.sleep_s(1.5 / CONTROL_HZ)  # both trips begin on a machine that has rested as long
-        payload = self._command(self._last) + size.to_bytes(4, "little")
+        payload = self._next_command() + size.to_bytes(4, "little")
         sent_ns = clock.monotonic_ns()
         self._echo.put(payload)
         return (self._echoes.get(timeout=LOST_AFTER_S)[0] - sent_ns) / 1e6
@@ -214,61 +224,8 @@ def echo() -> None:
             service.stop.wait()
 
 
-class PairOfWorlds:
-    """Two worlds of four arms, told apart by numbering the second one's arms on. A World by what it does."""
-
-    def __init__(self) -> None:
-        self._worlds = [World.build(DEFAULT_TASK, CONTROL_HZ, 4) for _ in range(2)]
-        first = self._worlds[0]
-        self._home = {
-            f"arm{index}": (first if index < 4 else self._worlds[1], f"arm{index % 4}") for index in range(8)
-        }
-        self.arms = tuple(self._home)
-        self.task = first.task
-        self.control_period_s = first.control_period_s
-        self.model_sha256 = first.model_sha256
-        self.model_bytes = first.model_bytes
-        self.progress = first.progress
-
-    @property
-    def sim_time_s(self) -> float:
-        return self._worlds[0].sim_time_s
-
-    def reset(self, seed: int) -> None:
-        for world in self._worlds:
-            world.reset(seed)
-
-    def tool_pose_in_base(self, arm: str) -> Pose:
-        world, name = self._home[arm]
-        return world.tool_pose_in_base(name)
-
-    def gripper(self, arm: str) -> float:
-        world, name = self._home[arm]
-        return world.gripper(name)
-
-    def action_for(self, arm: str, target_tool_in_base: Pose, gripper: float) -> NDArray[np.float64]:
-        world, name = self._home[arm]
-        return world.action_for(name, target_tool_in_base, gripper)
-
-    def step(self, actions: ArrayLike) -> None:
-        for world, share in zip(self._worlds, np.split(np.asarray(actions), 2), strict=True):
-            world.step(share)
-
-    def integration_state(self) -> bytes:
-        return b"".join(world.integration_state() for world in self._worlds)
-
-    def observations(self) -> dict[str, NDArray[np.float64]]:
-        second = {_renumbered(name): value for name, value in self._worlds[1].observations().items()}
-        return {**self._worlds[0].observations(), **second}
-
-
-def _renumbered(name: str) -> str:
-    thing, _, rest = name.partition("/")
-    return f"{thing[:-1]}{int(thing[-1]) + 4}/{rest}"
-
-
 def serve_pair(room: str) -> None:
-    serve_world(SimSettings(room=room, seed=1), cast("World", PairOfWorlds()))
+    serve_world(SimSettings(room=room, seed=1), cast("World", PairOfWorlds(CONTROL_HZ)))
 
 
 @contextlib.contextmanager
@@ -293,6 +250,8 @@ if __name__ == "__main__":
     match sys.argv[1:]:
         case ["echo"]:
             echo()
+        case ["stream", room, *seats]:
+            stream(room, *seats)
         case ["serve-pair", room]:
             serve_pair(room)
         case _:
