@@ -1,56 +1,78 @@
-"""One arm's part of a world's state, measured in its own frames."""
+"""The arms' part of a world's state, measured in their own frames."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
 
-from mart.protocol.pose import Pose
-from mart.sim.world.data import Array, Data, apply
+from mart.sim.world.data import Array, Data, evenly, into_frame
 from mart.sim.world.gripper import STROKE_M
 
 
+class MeasuredArms:
+    """Several arms at once, each in its own frames: shapes are (..., arms, n). Views into the data of a world or a
+    batch; they follow it."""
+
+    def __init__(self, model: mujoco.MjModel, data: Data, names: Sequence[str]) -> None:
+        bases = [model.body(f"{name}/base").id for name in names]
+        tools = [model.site(f"{name}/tool").id for name in names]
+        hands = [int(model.site_bodyid[tool]) for tool in tools]
+        first, fingers = (
+            [int(model.joint(f"{name}/{joint}").qposadr[0]) for name in names]
+            for joint in ("joint1", "left_finger")
+        )
+        turns = [_conjugate(model.body_quat[base]) for base in bases]
+        self._axes = np.stack([_matrix(turn).T for turn in turns])  # of the bases, each a column
+        self._positions_base_in_world = model.body_pos[bases].copy()
+        self._hands_to_tools = np.stack(
+            [_between(turn, model.site_quat[tool]).T for turn, tool in zip(turns, tools, strict=True)]
+        )
+        self._tool_positions = data.site_xpos[..., evenly(tools), :]
+        self._hand_quaternions = data.xquat[..., evenly(hands), :]
+        self._fingers = [data.qpos[..., evenly(fingers)], data.qpos[..., evenly(f + 1 for f in fingers)]]
+        self.joint_positions = [data.qpos[..., start : start + 7] for start in first]  # radians; of each arm
+
+    def tools_in_base(self) -> tuple[Array, Array]:
+        """Positions, shape (..., arms, 3); quaternions wxyz, shape (..., arms, 4), w >= 0."""
+        positions = into_frame(self._axes, self._tool_positions - self._positions_base_in_world)
+        quaternions = into_frame(self._hands_to_tools, self._hand_quaternions)
+        return positions, quaternions * np.copysign(1.0, quaternions[..., :1])
+
+    def grippers(self) -> Array:
+        """0 open … 1 closed, shape (..., arms)."""
+        left, right = self._fingers
+        return np.minimum(np.maximum(1.0 - (left + right) / (2 * STROKE_M), 0.0), 1.0)
+
+
 class MeasuredArm:
-    """Views into the data of a world or a batch; they follow it."""
+    """One arm of a single world."""
 
-    def __init__(self, model: mujoco.MjModel, data: Data, name: str) -> None:
-        base, tool = model.body(f"{name}/base").id, model.site(f"{name}/tool").id
-        hand = int(model.site_bodyid[tool])
-        joints = int(model.joint(f"{name}/joint1").qposadr[0])
-        fingers = [int(model.joint(f"{name}/{side}_finger").qposadr[0]) for side in ("left", "right")]
-        turn_world_to_base = np.empty(4)
-        mujoco.mju_negQuat(turn_world_to_base, model.body_quat[base])
-        self._rotation_world_to_base = _matrix(turn_world_to_base)
-        self._position_base_in_world = model.body_pos[base].copy()
-        self._hand_to_tool = _between(turn_world_to_base, model.site_quat[tool])
-        self._tool_position = data.site_xpos[..., tool, :]
-        self._hand_quaternion = data.xquat[..., hand, :]
-        self._joints = data.qpos[..., joints : joints + 7]
-        self._fingers = data.qpos[..., fingers[0] : fingers[1] + 1]
-
-    def tool_pose_in_base(self) -> Pose:
-        """Of a single world."""
-        return Pose(*self.tool_in_base())
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, name: str) -> None:
+        self._alone = MeasuredArms(model, data, [name])
+        fingers = int(model.joint(f"{name}/left_finger").qposadr[0])
+        self._fingers = data.qpos[fingers : fingers + 2]
 
     def tool_in_base(self) -> tuple[Array, Array]:
-        """Position, shape (..., 3); quaternion wxyz, shape (..., 4), w >= 0."""
-        position = apply(self._rotation_world_to_base, self._tool_position - self._position_base_in_world)
-        quaternion = apply(self._hand_to_tool, self._hand_quaternion)
-        return position, quaternion * np.copysign(1.0, quaternion[..., :1])
+        """Position, shape (3,); quaternion wxyz, shape (4,), w >= 0."""
+        positions, quaternions = self._alone.tools_in_base()
+        return positions[0], quaternions[0]
 
-    def gripper(self) -> Array:
-        """0 open … 1 closed, shape (...)."""
-        opening = (self._fingers[..., 0] + self._fingers[..., 1]) / (2 * STROKE_M)
-        return np.minimum(np.maximum(1.0 - opening, 0.0), 1.0)
-
-    def joint_positions(self) -> Array:
-        """Shape (..., 7), radians; a view."""
-        return self._joints
+    def gripper(self) -> float:
+        """0 open … 1 closed."""
+        return float(self._alone.grippers()[0])
 
     def place(self, joint_positions: Array) -> None:
         """At rest at these joint positions, shape (7,), gripper open."""
-        self._joints[:] = joint_positions
+        self._alone.joint_positions[0][:] = joint_positions
         self._fingers[:] = STROKE_M
+
+
+def _conjugate(quaternion_wxyz: Array) -> Array:
+    conjugate = np.empty(4)
+    mujoco.mju_negQuat(conjugate, quaternion_wxyz)
+    return conjugate
 
 
 def _matrix(quaternion_wxyz: Array) -> Array:

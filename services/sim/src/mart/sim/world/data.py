@@ -18,26 +18,18 @@ Flags = NDArray[np.bool_]
 
 def evenly(rows: Iterable[int]) -> slice:
     """Rows that lie equally far apart, as a slice: what it chooses is a view that follows the data."""
-    first, second, *others = rows
-    chosen = slice(first, [first, second, *others][-1] + 1, second - first)
-    assert list(range(chosen.start, chosen.stop, chosen.step)) == [first, second, *others]
+    first, *others = rows
+    step = others[0] - first if others else 1
+    chosen = slice(first, first + step * len(others) + 1, step)
+    assert list(range(chosen.start, chosen.stop, step)) == [first, *others]
     return chosen
 
 
-def apply(matrix: Array, vectors: Array) -> Array:
-    """matrix @ vectors, shapes (m, n) and (..., n).
+def into_frame(rotation: Array, vectors: Array) -> Array:
+    """Vectors of the world, shape (..., 3), in a frame whose axes are the columns of `rotation`, (..., 3, 3).
 
     Sums in one fixed order, so that a world gives the same bits alone and in a batch; a matrix product does not.
     """
-    terms = vectors[..., None, :] * matrix
-    total = terms[..., 0]
-    for column in range(1, matrix.shape[1]):
-        total = total + terms[..., column]
-    return total
-
-
-def into_frame(rotation: Array, vectors: Array) -> Array:
-    """Vectors of the world, shape (..., 3), in a frame whose axes are the columns of `rotation`, (..., 3, 3)."""
     return np.add.reduce(vectors[..., None] * rotation, axis=-2)
 
 

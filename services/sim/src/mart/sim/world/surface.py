@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 
 from mart.sim.world import osc
-from mart.sim.world.arm import MeasuredArm
+from mart.sim.world.arm import MeasuredArms
 from mart.sim.world.data import Array, Data
 from mart.sim.world.gripper import STROKE_M
 from mart.sim.world.shadows import Shadows
@@ -30,11 +30,11 @@ class Surface:
         scene.attach(data)
         self._scene = scene
         self._shadows = Shadows(model, data)
-        self.arms = {arm.name: MeasuredArm(model, data, arm.name) for arm in scene.task.arms}
+        self._arms = MeasuredArms(model, data, scene.task.arm_names)
         limits = scene.task.limits
         self._action_scale = np.array([limits.step_m] * 3 + [limits.step_rad] * 3 + [-STROKE_M])
-        blocks = data.userdata[..., : osc.BLOCK_SIZE * len(self.arms)]
-        blocks = blocks.reshape(*blocks.shape[:-1], len(self.arms), osc.BLOCK_SIZE)
+        blocks = data.userdata[..., : osc.BLOCK_SIZE * len(scene.task.arms)]
+        blocks = blocks.reshape(*blocks.shape[:-1], len(scene.task.arms), osc.BLOCK_SIZE)
         self.modes, self.commands = blocks[..., osc.MODE], blocks[..., osc.COMMAND]
         self.postures = blocks[..., osc.POSTURE]
         self.success_ticks = data.userdata[..., -1]  # here, so that it is saved and replayed with the state
@@ -60,10 +60,11 @@ class Surface:
     def observations(self) -> dict[str, Array]:
         """All that any operator sees, in the catalogue's order, each of shape (..., *its own). Copies."""
         seen = self._scene.observe()
-        for name, arm in self.arms.items():
-            seen[f"{name}/tool_position_in_base"], seen[f"{name}/tool_quaternion_in_base"] = (
-                arm.tool_in_base()
-            )
-            seen[f"{name}/joint_positions"] = arm.joint_positions()
-            seen[f"{name}/gripper"] = arm.gripper()[..., None]
+        positions, quaternions = self._arms.tools_in_base()
+        grippers = self._arms.grippers()
+        for index, name in enumerate(self._scene.task.arm_names):
+            seen[f"{name}/tool_position_in_base"] = positions[..., index, :]
+            seen[f"{name}/tool_quaternion_in_base"] = quaternions[..., index, :]
+            seen[f"{name}/joint_positions"] = self._arms.joint_positions[index]
+            seen[f"{name}/gripper"] = grippers[..., index : index + 1]
         return {o.name: np.array(seen[o.name], dtype=np.float64) for o in self._scene.task.observations}

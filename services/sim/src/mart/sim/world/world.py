@@ -61,6 +61,7 @@ class World:
         self.model = model.build(scene, timestep_s, detail)
         self.data = mujoco.MjData(self.model)
         self._surface = Surface(scene, self.model, self.data)
+        self._measured = {arm: MeasuredArm(self.model, self.data, arm) for arm in self.arms}
         self._action_shape = (len(self.arms), ACTION_SIZE)
         self._trail = Trail(self.model, self._action_shape)
         self._fatal_warnings = self.data.warning.number[FATAL_WARNINGS]
@@ -107,18 +108,18 @@ class World:
         for index, arm in enumerate(self.task.arms):
             tool_in_world = arm.pose_base_in_world @ self._scene.start_pose_in_base(arm, random)
             joints = kinematics.solve(self.model, arm.name, tool_in_world, np.array(panda.HOME_RAD))
-            self._surface.arms[arm.name].place(joints)
+            self._measured[arm.name].place(joints)
             self._surface.postures[index] = joints
         self._surface.command(np.tile(_HOLD_OPEN, (len(self.arms), 1)))
         mujoco.mj_forward(self.model, self.data)
 
     def tool_pose_in_base(self, arm: str) -> Pose:
         """Measured."""
-        return self._arm(arm).tool_pose_in_base()
+        return Pose(*self._arm(arm).tool_in_base())
 
     def gripper(self, arm: str) -> float:
         """Measured, 0 open … 1 closed."""
-        return float(self._arm(arm).gripper())
+        return self._arm(arm).gripper()
 
     def action_for(self, arm: str, target_tool_in_base: Pose, gripper: float) -> Array:
         """The action, shape (7,), that goes towards an absolute target as far as workspace and limits allow.
@@ -212,7 +213,7 @@ class World:
         )
 
     def _arm(self, name: str) -> MeasuredArm:
-        return self._surface.arms[self.task.arm(name).name]
+        return self._measured[self.task.arm(name).name]
 
 
 def _within_unit(vector: Array) -> Array:
