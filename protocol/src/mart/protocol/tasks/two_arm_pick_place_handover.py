@@ -45,7 +45,7 @@ def task(arms: int) -> Task:
             Observation(f"{receiver.name}/tool_position_in_world", (3,), "m", (fetcher.name,)),
         ),
         horizon_ticks=2000,
-        trial_ticks=1500,  # 75 s: practised operators need 19 s
+        trial_ticks=1440,  # 72 s: practised operators need 19 s
     )
 
 

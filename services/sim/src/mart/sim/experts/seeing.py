@@ -51,12 +51,16 @@ def standing(place: Pose, like: Pose, symmetry_rad: float) -> Pose:
 
 
 def level(place: Pose, like: Pose) -> Pose:
-    """At a place, with its x axis along the place's, either way round; rolled about it as `like` is."""
+    """At a place, with its x axis along the place's, either way round, and on that of its four sides `like` is near."""
     along, x = place.rotation_matrix()[:, 0], like.rotation_matrix()[:, 0]
-    axis = np.cross(x, along if along @ x > 0.0 else -along)
+    along = along if along @ x > 0.0 else -along
+    axis = np.cross(x, along)
     sine = max(float(np.linalg.norm(axis)), 1e-9)
     turn = quaternion_exp(axis / sine * math.asin(min(sine, 1.0)))
-    return Pose(place.position, quaternion_multiply(turn, like.quaternion_wxyz))
+    rolled = Pose(place.position, quaternion_multiply(turn, like.quaternion_wxyz))
+    _, up_of_y, up_of_z = rolled.rotation_matrix()[2]
+    roll = math.remainder(math.atan2(up_of_y, up_of_z), math.pi / 2)
+    return Pose(place.position, quaternion_multiply(quaternion_exp(-roll * along), rolled.quaternion_wxyz))
 
 
 def across(thing: Pose, symmetry_rad: float = math.pi) -> Pose:

@@ -40,8 +40,8 @@ _BESIDE_M = (
     -0.022,
 )  # one attempt after the other at a hammer that lies: a wall may be in the way
 _QUARTER_TURN = upright(np.zeros(3), math.pi / 2)
-_STILL_M, _STILL_S = 0.012, 0.3
-_PARTNER_M, _PARTNER_S = 0.03, 0.7
+_STILL_M, _STILL_S = 0.02, 0.3
+_PARTNER_M, _PARTNER_S = 0.04, 0.6
 _PARTNER_OFF_M, _PARTNER_GONE_M = 0.045, 0.09  # of a tool that has let go, and of one that is out of the way
 
 
