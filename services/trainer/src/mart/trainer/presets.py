@@ -1,4 +1,4 @@
-"""Sizes and rates of training, as data: `debug` takes seconds, `fast` minutes on two cores, `paper` is as published.
+"""Sizes and rates of training, as data: `debug` takes seconds, `fast` a minute or two, `paper` is as published.
 
 Published: robomimic's tuned BC-RNN and HBC for low-dimensional human data (scripts/generate_paper_configs.py), of the
 paper's own group and the nearest to what the paper leaves unsaid: batch 100, sequences of 10, LSTM 2 x 400, VAE
@@ -78,10 +78,13 @@ PRESETS: dict[str, Hyperparameters] = {
         flow_steps=2,
     ),
     "fast": Hyperparameters(
-        updates=4_000,
-        residual_updates=1_000,
-        checkpoints=10,
+        updates=2_000,
+        residual_updates=500,
+        checkpoints=5,
+        batch_size=64,
+        learning_rate=2e-3,
         schedule="cosine",
+        ema=0.99,
         rnn_hidden=128,
         mlp_hidden=(256, 256),
         vae_hidden=(256, 256),
