@@ -44,7 +44,7 @@ def test_it_serves_until_it_is_asked_to_stop_and_leaves_nothing_behind(
         assert second.returncode != 0
         assert "is MART running already?" in second.stderr
         children = _supervised(tmp_path)
-        assert len(children) == 9
+        assert len(children) == 10
         process.send_signal(number)
         assert process.wait(60) == 0
     assert not [pid for pid in children if Path(f"/proc/{pid}").exists()]
