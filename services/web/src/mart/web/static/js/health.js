@@ -50,17 +50,25 @@ function headline(problems) {
   return problems === 1 ? "One thing needs attention" : `${problems} things need attention`;
 }
 
+/** What does not run and is not needed is neither well nor a problem. */
+function lookOf({ found, mend }) {
+  if (mend) return ["poor", "!", "Problem"];
+  return found === "not running" ? ["idle", "–", "Not needed"] : ["well", "✓", "Well"];
+}
+
 function card(title, findings, empty) {
-  const rows = findings.map(({ name, found, mend }) =>
-    element(
+  const rows = findings.map((finding) => {
+    const { name, found, mend } = finding;
+    const [kind, sign, words] = lookOf(finding);
+    return element(
       "li",
-      { class: mend ? "finding poor" : "finding" },
-      element("span", { class: "sign", "aria-label": mend ? "Problem" : "Well", role: "img" }, mend ? "!" : "✓"),
+      { class: `finding ${kind}` },
+      element("span", { class: "sign", "aria-label": words, role: "img" }, sign),
       element("span", { class: "name" }, name),
       element("span", { class: "found soft figures" }, found),
       element("span", { class: "mend" }, mend),
-    ),
-  );
+    );
+  });
   const content = rows.length ? element("ul", {}, ...rows) : element("p", { class: "soft" }, empty);
   return element("section", { class: "card" }, element("h2", {}, title), content);
 }
