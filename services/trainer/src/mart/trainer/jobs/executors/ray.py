@@ -2,8 +2,8 @@
 
 The driver is a process of its own: where the cluster's head is lost, Ray ends the driver and not the trainer. Its jobs
 go back into the queue and are started again once the head is there; what the lost attempts had written is gone on with.
-A driver that should have ended and hangs instead (seen with Ray 2.60) is ended by us: we look whether the head answers,
-and whether the driver has connected in time.
+Ray is slow to end its driver, and the driver takes jobs until then; so we end it: where a job was lost and the head
+does not answer, where the head has not answered for a while, and where the driver has not connected in time.
 """
 
 from __future__ import annotations
@@ -23,9 +23,10 @@ from mart.trainer.jobs.executors.executor import Ended, OnEnded
 from mart.trainer.jobs.job import End
 from mart.trainer.jobs.order import why_ended
 
-_AGAIN_S = 5.0  # between attempts to reach a head that is away
+_AGAIN_S = 2.0  # between attempts to reach a head that is away
 _LOOK_S = 2.0  # between looks whether it is there
 _MISSES = 5  # in a row, and it is lost
+_SOON_S = 0.5  # a head that is there answers
 _CONNECT_S = 30.0  # a driver that began while the head was on its way never gets there
 
 
@@ -48,9 +49,12 @@ class RayExecutor:
 
     @property
     def slots(self) -> int:
-        """0 until a driver is connected; asking for it starts one."""
+        """0 until a driver is connected; asking for it starts one, where the head answers."""
         if self._driver is None and clock.monotonic_s() >= self._not_before_s:
-            self._connect()
+            if _answers(self._head, _SOON_S):
+                self._connect()
+            else:
+                self._not_before_s = clock.monotonic_s() + _AGAIN_S
         return self._slots
 
     @property
@@ -59,8 +63,12 @@ class RayExecutor:
 
     def start(self, job: int, run: Path) -> None:
         with self._lock:
+            has_driver = self._driver is not None
             self._runs[job] = run
-        self._say(start=job, run=str(run))
+        if has_driver:
+            self._say(start=job, run=str(run))
+        else:
+            self._tell(job, End.LOST)
 
     def stop(self, job: int) -> None:
         self._say(stop=job)
@@ -102,12 +110,15 @@ class RayExecutor:
             if "slots" in said:
                 self._slots = said["slots"]
             else:
+                if said["code"] == End.LOST and not _answers(self._head, _LOOK_S):
+                    driver.kill()
+                    self._slots = 0
                 self._tell(said["ended"], said["code"])
         driver.wait()
         self._slots = 0
         self._not_before_s = clock.monotonic_s() + _AGAIN_S
-        self._driver = None
         with self._lock:
+            self._driver = None
             lost = list(self._runs)
         for job in lost:
             self._tell(job, End.LOST)
@@ -116,7 +127,7 @@ class RayExecutor:
         misses = 0
         connected_by_s = clock.monotonic_s() + _CONNECT_S
         while not self._ended_within(driver, _LOOK_S):
-            misses = 0 if _answers(self._head) else misses + 1
+            misses = 0 if _answers(self._head, _LOOK_S) else misses + 1
             if misses == _MISSES or (not self._slots and clock.monotonic_s() > connected_by_s):
                 driver.kill()
 
@@ -150,9 +161,9 @@ def _host_and_port(address: str) -> tuple[str, int]:
     return host, int(port)
 
 
-def _answers(head: tuple[str, int]) -> bool:
+def _answers(head: tuple[str, int], timeout_s: float) -> bool:
     try:
-        with socket.create_connection(head, timeout=_LOOK_S):
+        with socket.create_connection(head, timeout_s):
             return True
     except OSError:
         return False

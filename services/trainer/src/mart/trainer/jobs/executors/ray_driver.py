@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import json
 import logging
+import os
 import queue
 import sys
 import threading
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import ray
 
@@ -37,7 +38,8 @@ def _work(run: str) -> int:
 class _Tasks:
     """Tasks that are not over."""
 
-    def __init__(self) -> None:
+    def __init__(self, wire: TextIO) -> None:
+        self._wire = wire
         self._jobs: dict[ray.ObjectRef[int], int] = {}
 
     def obey(self, order: dict[str, Any]) -> None:
@@ -53,7 +55,7 @@ class _Tasks:
             ray.wait(list(self._jobs), num_returns=len(self._jobs), timeout=0) if self._jobs else ([], [])
         )
         for task in ended:
-            _tell(ended=self._jobs.pop(task), code=_code(task))
+            _tell(self._wire, ended=self._jobs.pop(task), code=_code(task))
 
 
 def _code(task: ray.ObjectRef[int]) -> int:
@@ -71,8 +73,15 @@ def _cluster_resources() -> dict[str, float]:
     return found
 
 
-def _tell(**fields: int) -> None:
-    print(json.dumps(fields), flush=True)  # noqa: T201 - standard output is the wire here
+def _take_stdout() -> TextIO:
+    """Standard output for our lines alone; what Ray prints there (at times a node's death) goes to standard error."""
+    wire = os.fdopen(os.dup(sys.stdout.fileno()), "w", buffering=1)
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    return wire
+
+
+def _tell(wire: TextIO, **fields: int) -> None:
+    wire.write(json.dumps(fields) + "\n")
 
 
 def _read_orders(orders: queue.SimpleQueue[dict[str, Any] | None]) -> None:
@@ -82,11 +91,12 @@ def _read_orders(orders: queue.SimpleQueue[dict[str, Any] | None]) -> None:
 
 
 def main() -> None:
+    wire = _take_stdout()
     ray.init(address=sys.argv[1], log_to_driver=False, logging_level=logging.ERROR, namespace="mart")
-    _tell(slots=max(1, int(_cluster_resources().get("CPU", 1))))
+    _tell(wire, slots=max(1, int(_cluster_resources().get("CPU", 1))))
     orders: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
     threading.Thread(target=_read_orders, args=(orders,), daemon=True).start()
-    tasks = _Tasks()
+    tasks = _Tasks(wire)
     while True:
         try:
             order = orders.get(timeout=_POLL_S)
