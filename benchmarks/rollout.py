@@ -4,7 +4,7 @@
 failure back. The same requests are answered in this process as well, and what the bus adds to that is the wire's share.
 Bare is mujoco.batch.Batch.step of the same scene from the very same states: no controller, nothing observed; torques
 and finger targets are held at what our controller ended the tick with, so that the physics has nearly the same contacts
-to solve. All three take turns, tick by tick, along recorded episodes of scripted experts, five worlds an episode.
+to solve. All three take turns, tick by tick, along recorded episodes of scripted experts, ten worlds an episode.
 Each tick counts to one of several series, and the spread is that of the series.
 
 robosuite steps one environment a process; its users run as many processes as they have cores.
@@ -44,7 +44,7 @@ from mart.sim.world import World, osc
 ENDPOINT = "tcp/127.0.0.1:17561"
 REPLICA = "bench"
 WORLDS = 50
-EPISODES = 10
+EPISODES = 5
 MOST_TICKS = 250
 SERIES = 5
 PEER_STEPS = 60
