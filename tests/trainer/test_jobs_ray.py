@@ -1,21 +1,25 @@
-"""Jobs on a real Ray cluster of two nodes."""
+"""Jobs on a real Ray cluster of two nodes, whose head is lost in the middle of a sweep."""
 
 from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from ray.cluster_utils import Cluster
 
+from mart.protocol import clock
 from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.errors import InvalidInput
-from mart.protocol.messages import JOB_STATE_CANCELLED, JOB_STATE_DONE, JOB_STATE_RUNNING
+from mart.protocol.messages import JOB_STATE_CANCELLED, JOB_STATE_DONE, JOB_STATE_QUEUED, JOB_STATE_RUNNING
 from mart.trainer.jobs.executors.ray import RayExecutor
+from mart.trainer.jobs.order import LOG
+from mart.trainer.runs import RunDirectory
 from tests.support.processes import free_port, running_router
 from tests.trainer.conftest import Recorded
-from tests.trainer.test_jobs import Client, trainer
+from tests.trainer.test_jobs import Client, trainer, watched, worker_of
 
 pytestmark = pytest.mark.timeout(300)  # Ray's processes take their time on a busy machine
 
@@ -34,24 +38,54 @@ def cluster(port: int, nodes: int) -> Iterator[Cluster]:
 
 
 @pytest.fixture
-def client(episodes: Recorded, tmp_path: Path) -> Iterator[tuple[Client, str]]:
+def endpoint(episodes: Recorded, tmp_path: Path) -> Iterator[str]:
     (tmp_path / "episodes").symlink_to(episodes.root)
-    with running_router() as endpoint, ZenohBus.connect(endpoint) as bus:
-        yield Client(bus, "trainer-1"), endpoint
+    with running_router() as endpoint:
+        yield endpoint
 
 
-def test_a_sweep_is_spread_over_the_nodes(client: tuple[Client, str], tmp_path: Path) -> None:
-    asked, endpoint = client
-    with (
-        cluster(free_port(), nodes=2) as nodes,
-        trainer(endpoint, tmp_path, "trainer-1", "--ray", nodes.address),
-    ):
-        (long,) = asked.submit("BC", executor="ray", preset="fast")
-        (short,) = asked.submit("BC", executor="ray")
-        assert asked.wait_until_over(short.id).job.state == JOB_STATE_DONE
-        assert asked.details(long.id).job.state == JOB_STATE_RUNNING  # beside the other: there are two nodes
-        asked.ask(cancel={"job": long.id})
-        assert asked.details(long.id).job.state == JOB_STATE_CANCELLED
+@contextlib.contextmanager
+def asking(endpoint: str) -> Iterator[Client]:
+    """Not held while a cluster starts in this process: Ray may keep the interpreter for longer than a link lives."""
+    with ZenohBus.connect(endpoint) as bus:
+        yield Client(bus, "trainer-1")
+
+
+def wait_for_another_checkpoint(run: RunDirectory) -> None:
+    """The files tell: asking the trainer costs time that Ray's many processes need to start."""
+    had, deadline_s = run.checkpointed(), clock.monotonic_s() + 120.0
+    while run.checkpointed() == had:
+        assert clock.monotonic_s() < deadline_s, (run.path / LOG).read_text()
+        clock.sleep_s(0.1)
+
+
+def test_a_job_goes_through_the_loss_of_the_head(
+    endpoint: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("RAY_gcs_rpc_server_reconnect_timeout_s", "5")  # what is left of the cluster ends soon
+    port = free_port()
+    with contextlib.ExitStack() as stack:
+        nodes = stack.enter_context(cluster(port, nodes=2))
+        stack.enter_context(trainer(endpoint, tmp_path, "trainer-1", "--ray", nodes.address))
+        with asking(endpoint) as asked:
+            (long,) = asked.submit("BC-RNN", executor="ray", preset="fast")
+            (short,) = asked.submit("BC", executor="ray")
+            assert asked.wait_until_over(short.id).job.state == JOB_STATE_DONE
+            before = asked.wait_for(long.id, lambda found: len(found.checkpoints) > 0).job
+            assert before.state == JOB_STATE_RUNNING  # beside the other: there are two nodes
+            with watched(worker_of(tmp_path / before.run)) as died:
+                head: Any = nodes.head_node
+                nodes.remove_node(head, allow_graceful=False)
+                lost = asked.wait_for(long.id, lambda found: found.job.state == JOB_STATE_QUEUED)
+                assert died()
+            assert "Ray cluster" in lost.job.detail
+        stack.enter_context(cluster(port, nodes=1))
+        wait_for_another_checkpoint(RunDirectory(tmp_path / before.run))
+        with asking(endpoint) as asked:
+            again = asked.details(long.id).job
+            assert (again.state, again.attempt) == (JOB_STATE_RUNNING, 1)
+            asked.ask(cancel={"job": long.id})
+            assert asked.details(long.id).job.state == JOB_STATE_CANCELLED
 
 
 @pytest.mark.parametrize("address", ["", "head", "head:", ":6379", "ray://head:10001", "head:70000", "auto"])
