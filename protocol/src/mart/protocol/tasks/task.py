@@ -96,16 +96,16 @@ class Workspace:
 
     def clamp(self, pose_tool_in_base: Pose) -> Pose:
         """An allowed pose close to the given one; an allowed one is returned as it is, but for rounding."""
-        position = self._position(*pose_tool_in_base.position)
-        azimuth = math.atan2(position[1], position[0])
-        return Pose(position, self._turn(azimuth, *pose_tool_in_base.quaternion_wxyz))
+        x, y, z = self._position(*pose_tool_in_base.position.tolist())
+        turn = self._turn(math.atan2(y, x), *pose_tool_in_base.quaternion_wxyz.tolist())
+        return Pose(np.array([x, y, z]), turn)
 
-    def _position(self, x: float, y: float, z: float) -> NDArray[np.float64]:
+    def _position(self, x: float, y: float, z: float) -> tuple[float, float, float]:
         z = _clip(z, self.z_min_m, self.z_max_m)
         farthest_m = math.sqrt(self.reach_m**2 - (z - self.reach_center_z_m) ** 2)
         radius = _clip(math.hypot(x, y), self.radius_min_m, farthest_m)
         azimuth = _clip(math.atan2(y, x), -self.azimuth_max_rad, self.azimuth_max_rad)
-        return np.array([radius * math.cos(azimuth), radius * math.sin(azimuth), z])
+        return radius * math.cos(azimuth), radius * math.sin(azimuth), z
 
     def _turn(self, azimuth: float, w: float, x: float, y: float, z: float) -> NDArray[np.float64]:
         """Every rotation is a turn about the vertical axis and then a tilt about a level one: limits each by itself."""

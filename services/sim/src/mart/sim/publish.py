@@ -13,15 +13,13 @@ from mart.protocol.messages import (
     Episode,
     Event,
     Model,
-    Progress,
     Seat,
-    Subtask,
     Waiting,
 )
 from mart.sim.admission import Arrival
 from mart.sim.episode import EpisodeCourse
 from mart.sim.seats import SeatHolder
-from mart.sim.world import Progress as WorldProgress
+from mart.sim.world import Progress
 from mart.sim.world import World
 
 # What any operator sees, by name: see mart.protocol.tasks.
@@ -64,14 +62,15 @@ def observations(seen: Seen) -> list[Fields]:
     return [{"name": name, "value": value.ravel().tolist()} for name, value in seen.items()]
 
 
-def progress(progress: WorldProgress) -> Progress:
-    return Progress(
-        subtasks=[Subtask(name=name, done=done) for name, done in progress.subtasks.items()],
-        success_now=progress.success_now,
-        success_ticks=progress.success_ticks,
-        success=progress.success,
-        failed=progress.failed or "",
-    )
+def progress(progress: Progress) -> Fields:
+    """The message of the same name."""
+    return {
+        "subtasks": [{"name": name, "done": done} for name, done in progress.subtasks.items()],
+        "success_now": progress.success_now,
+        "success_ticks": progress.success_ticks,
+        "success": progress.success,
+        "failed": progress.failed or "",
+    }
 
 
 def seat(holder: SeatHolder, ready: bool, newest: Arrival | None) -> Seat:

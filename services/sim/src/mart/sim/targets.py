@@ -37,14 +37,13 @@ class Targets:
         self._aimed[arrival.arm] = (arrival, action)
         return action
 
-    def step(self, arrivals: Mapping[str, Arrival]) -> NDArray[np.float64]:
-        """Advances the world; returns what was done, shape (arms, 7).
+    def actions(self, arrivals: Mapping[str, Arrival]) -> NDArray[np.float64]:
+        """What is to be done next, shape (arms, 7).
 
         arrivals: the commands of the arms that are driven; the others hold, gripper included.
         """
         actions = np.array([self._action(arm, arrivals.get(arm)) for arm in self._world.arms])
         self._aimed.clear()
-        self._world.step(actions)
         return actions
 
     def _action(self, arm: str, arrival: Arrival | None) -> NDArray[np.float64]:

@@ -47,6 +47,7 @@ class Ticker:
         """The world as it is, before it begins to run."""
         self._real_time_factor.restart(now_s)
         wall_ns = clock.wall_ns()
+        self.progress = self._world.progress()
         return self._state(seats, course, now_s, stamps=TickStamps(fired_ns=wall_ns, stepped_ns=wall_ns))
 
     def aim(self, arrival: Arrival) -> None:
@@ -56,13 +57,15 @@ class Ticker:
     def advance(self, firing: Firing, seats: SeatTable, course: EpisodeCourse, now_s: float) -> State:
         """One control period. Raises Diverged where the physics left its bounds."""
         fired_ns = clock.wall_ns()
-        actions = self._targets.step(firing.arrivals)
+        actions = self._targets.actions(firing.arrivals)
+        judgement = self._world.step(actions)
         stamps = TickStamps(
             due_ns=fired_ns - round((now_s - firing.due_s) * 1e9),
             fired_ns=fired_ns,
             stepped_ns=clock.wall_ns(),
         )
         self._real_time_factor.ticked(now_s)
+        self.progress = self._world.progress(judgement)
         state = self._state(seats, course, now_s, stamps=stamps, arrivals=firing.arrivals, actions=actions)
         state.straggler = firing.straggler or ""
         state.straggler_late_s = firing.late_s
@@ -81,7 +84,6 @@ class Ticker:
         actions: NDArray[np.float64] | None = None,
     ) -> State:
         self.tick += 1
-        self.progress = self._world.progress()
         seen = self._world.observations()
         return State(
             room=self._room,

@@ -28,17 +28,14 @@ class Shadows:
         sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{name}/tool") for name in casters}
         tools = [name for name in casters if sites[name] >= 0]
         things = [name for name in casters if sites[name] < 0]
-        self._data = data
-        self._sites, self._tool_spots = [sites[name] for name in tools], [casters[name] for name in tools]
-        self._bodies, self._thing_spots = (
-            [model.body(name).id for name in things],
-            [casters[name] for name in things],
-        )
+        places = {name: data.site_xpos[..., sites[name], :2] for name in tools} | {
+            name: data.body(name).xpos[..., :2] for name in things
+        }
+        self._follow = [(data.mocap_pos[..., casters[name], :2], place) for name, place in places.items()]
 
     def follow(self) -> None:
-        data = self._data
-        data.mocap_pos[..., self._tool_spots, :2] = data.site_xpos[..., self._sites, :2]
-        data.mocap_pos[..., self._thing_spots, :2] = data.xpos[..., self._bodies, :2]
+        for spot, place in self._follow:
+            np.copyto(spot, place)
 
 
 def add_shadow_material(spec: mujoco.MjSpec) -> None:

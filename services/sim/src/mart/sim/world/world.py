@@ -30,7 +30,7 @@ from mart.sim.world.progress import Progress, first_reasons
 from mart.sim.world.surface import ACTION_SIZE, Surface
 
 if TYPE_CHECKING:  # scenes are built from parts of this package
-    from mart.sim.tasks.scene import Scene
+    from mart.sim.tasks.scene import Judgement, Scene
 
 # As a number: looking an enumeration up takes longer than what is called with it.
 STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
@@ -139,14 +139,14 @@ class World:
             ]
         )
 
-    def step(self, actions: ArrayLike) -> None:
-        """Advances one control period.
+    def step(self, actions: ArrayLike) -> Judgement:
+        """Advances one control period; returns how the task stands then.
 
         Raises InvalidInput where the shape is not (arms, 7) or a number is not finite, Diverged where the physics left
         its bounds.
         """
         self.drive(actions)
-        self._surface.settle()
+        return self._surface.settle()
 
     def drive(self, actions: ArrayLike) -> None:
         """The part of a step that moves the arms: physics and control; nothing is remembered or judged."""
@@ -176,7 +176,7 @@ class World:
         self._surface.cast_shadows()
         state = np.empty(mujoco.mj_stateSize(self.model, STATE))
         mujoco.mj_getState(self.model, self.data, state, STATE)
-        return state.astype("<f8").tobytes()
+        return state.astype("<f8", copy=False).tobytes()
 
     def set_integration_state(self, state: bytes) -> None:
         """Raises InvalidInput where the size is not this model's or a number is not finite."""
@@ -200,8 +200,9 @@ class World:
         seen = self.observations()
         return {observation.name: seen[observation.name] for observation in self.task.observations_of(arm)}
 
-    def progress(self) -> Progress:
-        judgement = self._surface.judge()
+    def progress(self, judgement: Judgement | None = None) -> Progress:
+        """judgement: what `step` returned, where nothing has changed since; without it, this instant is judged."""
+        judgement = judgement or self._surface.judge()
         ticks = int(self._surface.success_ticks)
         (reason,) = first_reasons(judgement.failed, worlds=1)
         return Progress(
