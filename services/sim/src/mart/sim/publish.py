@@ -19,8 +19,7 @@ from mart.protocol.messages import (
 from mart.sim.admission import Arrival
 from mart.sim.episode import EpisodeCourse
 from mart.sim.seats import SeatHolder
-from mart.sim.world import Progress
-from mart.sim.world import World
+from mart.sim.world import Progress, World
 
 # What any operator sees, by name: see mart.protocol.tasks.
 Seen = Mapping[str, NDArray[np.float64]]
