@@ -110,7 +110,7 @@ def bare_step_ms(world: World) -> float:
         osc.install()
 
 
-def milliseconds(call: Callable[[], None]) -> float:
+def milliseconds(call: Callable[[], object]) -> float:
     begun_ns = time.thread_time_ns()
     call()
     return (time.thread_time_ns() - begun_ns) / 1e6

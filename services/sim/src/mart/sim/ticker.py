@@ -47,8 +47,8 @@ class Ticker:
         """The world as it is, before it begins to run."""
         self._real_time_factor.restart(now_s)
         wall_ns = clock.wall_ns()
-        self.progress = self._world.progress()
-        return self._state(seats, course, now_s, stamps=TickStamps(fired_ns=wall_ns, stepped_ns=wall_ns))
+        stamps = TickStamps(fired_ns=wall_ns, stepped_ns=wall_ns)
+        return self._state(seats, course, now_s, self._world.progress(), stamps=stamps)
 
     def aim(self, arrival: Arrival) -> None:
         """Works out beforehand what an accepted command asks for."""
@@ -65,8 +65,10 @@ class Ticker:
             stepped_ns=clock.wall_ns(),
         )
         self._real_time_factor.ticked(now_s)
-        self.progress = self._world.progress(judgement)
-        state = self._state(seats, course, now_s, stamps=stamps, arrivals=firing.arrivals, actions=actions)
+        progress = self._world.progress(judgement)
+        state = self._state(
+            seats, course, now_s, progress, stamps=stamps, arrivals=firing.arrivals, actions=actions
+        )
         state.straggler = firing.straggler or ""
         state.straggler_late_s = firing.late_s
         if course.recording:
@@ -78,12 +80,14 @@ class Ticker:
         seats: SeatTable,
         course: EpisodeCourse,
         now_s: float,
+        progress: Progress,
         *,
         stamps: TickStamps,
         arrivals: Mapping[str, Arrival] = NOBODY,
         actions: NDArray[np.float64] | None = None,
     ) -> State:
         self.tick += 1
+        self.progress = progress
         seen = self._world.observations()
         return State(
             room=self._room,
@@ -102,7 +106,7 @@ class Ticker:
                 for index, seat in enumerate(seats)
             ],
             observations=publish.observations(seen),
-            progress=publish.progress(self.progress),
+            progress=publish.progress(progress),
             episode=course.number if course.recording else 0,
             boot=self._boot_ns,
         )
