@@ -46,13 +46,13 @@ def endpoint(episodes: Recorded, tmp_path: Path) -> Iterator[str]:
 
 @contextlib.contextmanager
 def asking(endpoint: str) -> Iterator[Client]:
-    """Not held while a cluster starts in this process: Ray may keep the interpreter for longer than a link lives."""
+    """A client of the trainer."""
     with ZenohBus.connect(endpoint) as bus:
         yield Client(bus, "trainer-1")
 
 
 def wait_for_another_checkpoint(run: RunDirectory) -> None:
-    """The files tell: asking the trainer costs time that Ray's many processes need to start."""
+    """The files tell, whether or not the trainer can be asked meanwhile."""
     had, deadline_s = run.checkpointed(), clock.monotonic_s() + 120.0
     while run.checkpointed() == had:
         assert clock.monotonic_s() < deadline_s, (run.path / LOG).read_text()
