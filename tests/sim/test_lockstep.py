@@ -98,6 +98,24 @@ def test_worlds_that_do_not_run_stay_as_they_are(lockstep: Lockstep) -> None:
     assert states(last)[1] == states(all_run[0])[1]
 
 
+def test_a_step_that_comes_again_is_only_answered(lockstep: Lockstep) -> None:
+    session, actions = reset(lockstep).session, some_actions(2)
+
+    def numbered(number: int) -> RolloutReply:
+        payload = actions[number - 1].tobytes()
+        message = RolloutRequest.Step(session=session, actions=payload, number=number)
+        return lockstep.answer(RolloutRequest(step=message), 0.0)
+
+    first = numbered(1)
+    assert numbered(1) == first
+    second = numbered(2)
+    assert second != first
+    assert numbered(2) == second
+    with pytest.raises(Conflict, match="one by one"):
+        numbered(1)
+    close(lockstep, session)
+
+
 def step_some(lockstep: Lockstep, session: str, actions: NDArray[np.float64], running: list[int]) -> Worlds:
     message = RolloutRequest.Step(session=session, actions=actions.tobytes(), running=bytes(running))
     return worlds_of(lockstep.answer(RolloutRequest(step=message), 0.0))

@@ -62,6 +62,7 @@ class RolloutClient:
         self._executor = ThreadPoolExecutor(len(replicas), thread_name_prefix="rollout")
         self._shares: list[_Share] = []
         self._task: Task | None = None
+        self._steps = 0
         self._busy = threading.Lock()
 
     def reset(
@@ -94,7 +95,7 @@ class RolloutClient:
                 )
                 calls.append(partial(self._open, share, RolloutRequest(reset=begin), timeout_s))
             replies = self._all(calls)
-            self._task = known
+            self._task, self._steps = known, 0
             self._shares.sort(key=operator.attrgetter("first"))
             return self._unpack(known, replies)
 
@@ -115,9 +116,12 @@ class RolloutClient:
                     session=share.session,
                     actions=packed[share.first : share.end].tobytes(),
                     running=going[share.first : share.end].tobytes(),
+                    number=self._steps + 1,
                 )
                 calls.append(partial(self._query, share.replica, RolloutRequest(step=step), timeout_s))
-            return self._unpack(task, self._all(calls))
+            replies = self._all(calls)
+            self._steps += 1
+            return self._unpack(task, replies)
 
     def model(self, task: str, control_hz: float = 20.0, arms: int | None = None) -> Model:
         """What such worlds are compiled to. Raises as `reset`; worlds that there are stay as they are."""

@@ -24,14 +24,16 @@ class RolloutRequest(_message.Message):
         integration_states: bool
         def __init__(self, task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., seeds: _Optional[_Iterable[int]] = ..., integration_states: _Optional[bool] = ...) -> None: ...
     class Step(_message.Message):
-        __slots__ = ("session", "actions", "running")
+        __slots__ = ("session", "actions", "running", "number")
         SESSION_FIELD_NUMBER: _ClassVar[int]
         ACTIONS_FIELD_NUMBER: _ClassVar[int]
         RUNNING_FIELD_NUMBER: _ClassVar[int]
+        NUMBER_FIELD_NUMBER: _ClassVar[int]
         session: str
         actions: bytes
         running: bytes
-        def __init__(self, session: _Optional[str] = ..., actions: _Optional[bytes] = ..., running: _Optional[bytes] = ...) -> None: ...
+        number: int
+        def __init__(self, session: _Optional[str] = ..., actions: _Optional[bytes] = ..., running: _Optional[bytes] = ..., number: _Optional[int] = ...) -> None: ...
     class Close(_message.Message):
         __slots__ = ("session",)
         SESSION_FIELD_NUMBER: _ClassVar[int]

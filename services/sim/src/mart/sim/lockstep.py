@@ -45,6 +45,7 @@ class _Session:
     arms: int
     integration_states: bool
     used_s: float
+    steps: int = 0
 
     def reply(self, name: str) -> RolloutReply:
         standing = self.worlds.standing(integration_states=self.integration_states)
@@ -98,10 +99,15 @@ class Lockstep:
     def _step(self, step: RolloutRequest.Step, now_s: float) -> RolloutReply:
         session = self._session(step.session)
         session.used_s = now_s
+        if step.number and step.number == session.steps:
+            return session.reply(step.session)
+        if step.number not in (0, session.steps + 1):
+            raise Conflict(f"Step {step.number} was asked for after {session.steps}; steps come one by one.")
         count = len(session.worlds)
         actions = _actions(step.actions, (count, session.arms, ACTION_SIZE))
         check_actions(actions)
         session.worlds.step(actions, _running(step.running, count))
+        session.steps += 1
         return session.reply(step.session)
 
     def _resimulate(self, request: RolloutRequest.Resimulate) -> RolloutReply:
