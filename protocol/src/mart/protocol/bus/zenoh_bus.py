@@ -2,8 +2,8 @@
 
 Settings and their reasons (measured on Zenoh 1.10.2):
 
-- A lease of 4 s, with a sign of life every 0.25 s: on a busy machine a link of 2 s expired while both ends were well, and
-  with 10 s a frozen recorder held up the world (decision 0022). A peer that dies is noticed at once, by its socket.
+- A lease of 4 s, with a sign of life every 0.25 s: on a busy machine a link of 2 s expired while both ends were well,
+  and with 10 s a frozen recorder held up the world (decision 0022). A peer that dies is noticed at once, by its socket.
 - Multicast is off, or any peer on the network joins.
 - Shared memory is off, because a receiver that is descheduled for 100 ms silently loses messages over it.
 - `connect/timeout_ms` -1 keeps a client trying until a router is there, at first every 0.1 s and at least every second,
