@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, expect
 
 from mart.platform.browser import running_browser
 from mart.platform.opening import opening_rooms
 from mart.platform.plan import Options
 from mart.platform.supervise import Platform, running_platform
 from tests.support.processes import free_port
+
+_WAIT_MS = 30_000  # the pages share two cores with the platform behind them, and with two renderers
 
 
 @pytest.fixture(scope="module")
@@ -28,5 +30,6 @@ def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
+    expect.set_options(timeout=_WAIT_MS)
     with running_browser() as running:
         yield running

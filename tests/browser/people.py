@@ -14,7 +14,6 @@ from mart.platform.supervise import Platform
 
 SCREENSHOTS = Path("test-output/browser")
 _XR_STAND_IN = Path(__file__).parent / "pages" / "xr_stand_in.js"
-_WAIT_MS = 30_000  # everything below shares two cores with two renderers and up to five pages
 
 _MOVE_PHONE = """
 async ([x, y, z, durationMs]) => {
@@ -56,7 +55,6 @@ class Person:
         self._context = browser.new_context(
             viewport={"width": width, "height": height}, ignore_https_errors=True, reduced_motion="reduce"
         )
-        self._context.set_default_timeout(_WAIT_MS)
         self.page = self._context.new_page()
 
     def join(self) -> None:
@@ -64,7 +62,7 @@ class Person:
         self.page.get_by_label("Your name").fill(self.name)
         self.page.get_by_label("Join code").fill(self._platform.join_code)
         self.page.get_by_role("button", name="Join and choose a seat").click()
-        expect(self.page.locator(".seat").first).to_be_visible(timeout=_WAIT_MS)
+        expect(self.page.locator(".seat").first).to_be_visible()
 
     def seat(self, arm: str) -> Locator:
         """The seat's row in the lobby."""
@@ -77,7 +75,7 @@ class Person:
     def await_picture(self) -> None:
         """The video runs and the page says where the room stands."""
         self.page.wait_for_function("() => document.querySelector('video')?.videoWidth > 0")
-        expect(self.page.locator("#no-picture")).to_be_hidden(timeout=_WAIT_MS)
+        expect(self.page.locator("#no-picture")).to_be_hidden()
 
     def pair_phone(self) -> Phone:
         self.page.get_by_role("button", name="Pair a phone").click()
@@ -89,13 +87,12 @@ class Person:
         context = self._browser.new_context(
             viewport={"width": 360, "height": 740}, has_touch=True, is_mobile=True, ignore_https_errors=True
         )
-        context.set_default_timeout(_WAIT_MS)
         context.add_init_script(path=_XR_STAND_IN)
         page = context.new_page()
         # The code names the address that people use; here that is this machine.
         page.goto(f"{self._platform.url}phone#{urlsplit(url).fragment}")
         page.get_by_role("button", name="Start").click()
-        expect(page.locator("#link")).to_contain_text("tracking good", timeout=_WAIT_MS)
+        expect(page.locator("#link")).to_contain_text("tracking good")
         return Phone(page)
 
     def press(self, command: str) -> None:
@@ -104,7 +101,7 @@ class Person:
 
     def sees(self, label: str) -> None:
         """The state strip says so."""
-        expect(self.page.locator("#state-label")).to_have_text(label, timeout=_WAIT_MS)
+        expect(self.page.locator("#state-label")).to_have_text(label)
 
     def shoot(self, what: str) -> None:
         SCREENSHOTS.mkdir(parents=True, exist_ok=True)

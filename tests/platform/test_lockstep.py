@@ -129,13 +129,13 @@ def test_no_more_is_asked_for_than_can_be_saved(
         episodes = session.run()
         first = threading.Thread(target=lambda: next(episodes))
         first.start()
-        assert all(arrivals.acquire(timeout=10.0) for _ in range(4))
+        assert all(arrivals.acquire(timeout=30.0) for _ in range(4))
         assert not arrivals.acquire(timeout=0.3)
         room = next(room for room in rooms.values() if room.asked)
         room.save(room.asked[0])
         first.join(10.0)
         assert not first.is_alive()
-        assert arrivals.acquire(timeout=10.0)
+        assert arrivals.acquire(timeout=30.0)
 
 
 def test_what_the_recorder_complains_of_ends_the_session(bus: Bus, rooms: dict[str, ActedRoom]) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import queue
-import socket
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -22,16 +21,7 @@ from mart.protocol.tasks import get_task
 from mart.protocol.worlds import Worlds, pack
 
 TASK = get_task("two_arm_multi_cube_lifting")
-WAIT_S = 5.0
-
-
-@pytest.fixture
-def endpoint() -> Iterator[str]:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        address = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
-    with ZenohBus.route(address):
-        yield address
+WAIT_S = 30.0
 
 
 @pytest.fixture

@@ -28,7 +28,7 @@ from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.errors import Unavailable
 
 _START_TIMEOUT_S = 60.0
-_STOP_TIMEOUT_S = 10.0
+_STOP_TIMEOUT_S = 30.0
 _MART = Path(sys.executable).with_name("mart")
 
 

@@ -24,7 +24,7 @@ from mart.protocol.messages import (
 )
 from tests.support.mailbox import Mailbox, NothingCame
 
-_TIMEOUT_S = 10.0
+_TIMEOUT_S = 30.0
 _AHEAD = PoseMessage(x=0.5, y=0.0, z=0.2, qw=1.0)
 
 

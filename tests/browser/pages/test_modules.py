@@ -171,3 +171,23 @@ def test_arm_colours_are_those_of_the_task_catalogue() -> None:
     pages = dict(re.findall(r"--(arm\d): (#[0-9a-f]{6});", tokens))
     catalogue = {arm.name: arm.color.lower() for arm in get_task("two_arm_multi_cube_lifting", 4).arms}
     assert pages == catalogue
+
+
+REPEAT = """async ({ repeating }) => {
+  const due = new Map();
+  const { setTimeout, clearTimeout } = globalThis;
+  globalThis.setTimeout = (deed, afterMs) => due.set(due.size + 1, afterMs).size;
+  globalThis.clearTimeout = (timer) => due.delete(timer);
+  try {
+    const again = repeating(() => Promise.resolve(), 200);
+    await Promise.all([again(), again(), again()]);
+    return [...due.values()];
+  } finally {
+    Object.assign(globalThis, { setTimeout, clearTimeout });
+  }
+}"""
+
+
+def test_what_is_asked_for_thrice_is_repeated_once(run: Run) -> None:
+    """A page asks meanwhile, too: when it is looked at again, and after every press."""
+    assert run("repeating.js", REPEAT) == [200]

@@ -21,7 +21,6 @@ INSPECT = (HERE / "inspect_page.js").read_text()
 SCREENSHOTS = Path("test-output/browser/pages")
 SIZES = {"narrow": (360, 740), "wide": (1440, 900), "wall": (3840, 2160)}
 LOOKS = [("narrow", "dark"), ("narrow", "light"), ("wide", "dark"), ("wide", "light"), ("wall", "light")]
-WAIT_MS = 30_000
 
 looks = pytest.mark.parametrize(("size", "scheme"), LOOKS)
 
@@ -43,7 +42,7 @@ class Visit:
     def try_it(self, name: str) -> None:
         """Drives arm0 and sees the picture."""
         self.join(name, "Try it")
-        expect(self.page.locator("#picture.live")).to_be_visible(timeout=WAIT_MS)
+        expect(self.page.locator("#picture.live")).to_be_visible()
 
     def is_fine(self, what: str) -> None:
         SCREENSHOTS.mkdir(parents=True, exist_ok=True)
@@ -127,7 +126,7 @@ def test_what_a_press_failed_at_stays_to_be_read(browser: Browser, platform: Pla
 def test_the_operators_page(browser: Browser, platform: Platform, size: str, scheme: str) -> None:
     with visit(browser, platform, size, scheme) as ana, driving(ana) as page:
         expect(page.get_by_role("button", name="Ready")).to_be_visible()
-        expect(page.locator("#delay")).not_to_contain_text("–", timeout=WAIT_MS)
+        expect(page.locator("#delay")).not_to_contain_text("–")
         ana.is_fine(f"operator-{size}-{scheme}")
         page.locator("#health summary").click()
         page.get_by_role("button", name="Pair a phone").click()
@@ -158,15 +157,15 @@ def test_an_outcome_takes_two_presses_and_a_moving_hand_none(browser: Browser, p
     with visit(browser, platform) as ana, driving(ana) as page:
         label = page.locator("#state-label")
         page.keyboard.press("n")
-        expect(label).to_have_text("Recording", timeout=WAIT_MS)
+        expect(label).to_have_text("Recording")
         page.keyboard.down("Space")
         page.keyboard.down("KeyS")
-        expect(page.locator("#clutch")).to_have_text("Moving", timeout=WAIT_MS)
+        expect(page.locator("#clutch")).to_have_text("Moving")
         page.keyboard.up("KeyS")
         page.keyboard.up("Space")
         page.keyboard.press("s")
         page.keyboard.press("s")  # right after letting go: still meant to move
-        expect(page.locator("#clutch")).to_contain_text("Hold space", timeout=WAIT_MS)
+        expect(page.locator("#clutch")).to_contain_text("Hold space")
         expect(label).to_have_text("Recording")
         page.locator("#state-label").click()
         page.wait_for_timeout(600)  # the time after which letters command again is what is tested
@@ -174,8 +173,8 @@ def test_an_outcome_takes_two_presses_and_a_moving_hand_none(browser: Browser, p
         expect(page.get_by_role("button", name="Press again: Discard")).to_be_visible()
         expect(label).to_have_text("Recording")
         page.keyboard.press("r")
-        expect(label).to_have_text("Discarded", timeout=WAIT_MS)
-        expect(page.locator("#state-detail")).to_contain_text("labelled discarded", timeout=WAIT_MS)
+        expect(label).to_have_text("Discarded")
+        expect(page.locator("#state-detail")).to_contain_text("labelled discarded")
 
 
 def test_help_and_gripper_have_keys(browser: Browser, platform: Platform) -> None:
@@ -194,10 +193,10 @@ def test_help_and_gripper_have_keys(browser: Browser, platform: Platform) -> Non
 def test_whoever_stops_everything_lets_it_go_on(browser: Browser, platform: Platform) -> None:
     with visit(browser, platform) as ana, driving(ana) as page:
         page.keyboard.press("p")
-        expect(page.locator("#state-label")).to_have_text("Stopped", timeout=WAIT_MS)
+        expect(page.locator("#state-label")).to_have_text("Stopped")
         ana.is_fine("operator-stopped")
         page.get_by_role("button", name="Go on").click()
-        expect(page.locator("#state-label")).to_have_text("Practice", timeout=WAIT_MS)
+        expect(page.locator("#state-label")).to_have_text("Practice")
 
 
 def test_dragging_the_picture_moves_the_arm(browser: Browser, platform: Platform) -> None:
@@ -205,9 +204,9 @@ def test_dragging_the_picture_moves_the_arm(browser: Browser, platform: Platform
         page.mouse.move(720, 400)
         page.mouse.down()
         page.mouse.move(760, 380, steps=5)
-        expect(page.locator("#clutch")).to_have_text("Moving", timeout=WAIT_MS)
+        expect(page.locator("#clutch")).to_have_text("Moving")
         page.mouse.up()
-        expect(page.locator("#clutch")).to_contain_text("Hold space", timeout=WAIT_MS)
+        expect(page.locator("#clutch")).to_contain_text("Hold space")
 
 
 def test_a_script_is_taken_over_from_and_handed_back_to(browser: Browser, platform: Platform) -> None:
@@ -216,13 +215,13 @@ def test_a_script_is_taken_over_from_and_handed_back_to(browser: Browser, platfo
         ana.page.get_by_label("Who drives the blue arm in room-1").select_option("Script")
         expect(ana.page.get_by_role("button", name="Take over: Blue arm")).to_be_visible()
         ana.page.goto(f"{platform.url}rooms/room-1/arms/arm0")
-        expect(ana.page.get_by_role("button", name="Take over")).to_be_visible(timeout=WAIT_MS)
+        expect(ana.page.get_by_role("button", name="Take over")).to_be_visible()
         ana.page.keyboard.press("n")
-        expect(ana.page.locator("#picture.live")).to_be_visible(timeout=WAIT_MS)
+        expect(ana.page.locator("#picture.live")).to_be_visible()
         expect(ana.page.get_by_role("button", name="Hand back")).to_be_visible()
         ana.is_fine("operator-taken-over")
         ana.page.keyboard.press("b")
-        expect(ana.page.get_by_role("button", name="Take over")).to_be_visible(timeout=WAIT_MS)
+        expect(ana.page.get_by_role("button", name="Take over")).to_be_visible()
         ana.is_fine("operator-beside-a-script")
         ana.page.goto(platform.url)
         ana.page.get_by_label("Who drives the blue arm in room-1").select_option("Free")
@@ -247,12 +246,12 @@ def test_a_room_is_opened_and_closed_from_the_lobby(browser: Browser, platform: 
         ana.page.get_by_label("Task").select_option("Lift and wipe")
         ana.is_fine("lobby-new-room")
         ana.page.get_by_role("button", name="Open room").click()
-        expect(cards).to_have_count(2, timeout=WAIT_MS)
+        expect(cards).to_have_count(2)
         expect(cards.nth(1).locator(".seat")).to_have_count(3)
         ana.is_fine("lobby-two-rooms")
         for _ in range(2):
             ana.page.get_by_role("button", name="Close room-2").click()
-        expect(cards).to_have_count(1, timeout=WAIT_MS)
+        expect(cards).to_have_count(1)
 
 
 def test_a_page_that_does_not_exist_leads_home(browser: Browser, platform: Platform) -> None:

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mart.platform.supervise import Platform
-from tests.browser.pages.test_pages import HERE, INSPECT, SCREENSHOTS, WAIT_MS, driving, listen, visit
+from tests.browser.pages.test_pages import HERE, INSPECT, SCREENSHOTS, driving, listen, visit
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Phone:
     def start(self) -> None:
         self.page.get_by_role("button", name="Start").click()
         expect(self.page.locator("#begin")).to_be_hidden()
-        expect(self.page.locator("#link")).to_contain_text("tracking good", timeout=WAIT_MS)
+        expect(self.page.locator("#link")).to_contain_text("tracking good")
 
     def press(self, control: str) -> None:
         box = self.page.locator(control).bounding_box()
@@ -73,27 +73,27 @@ def test_it_fits_every_phone(browser: Browser, platform: Platform, xr: bool, wid
         phone.start()
         phone.is_fine(name)
         phone.press("#hold")
-        expect(phone.page.locator("#hold-text")).to_contain_text("2 of 4", timeout=WAIT_MS)
+        expect(phone.page.locator("#hold-text")).to_contain_text("2 of 4")
         phone.is_fine(f"{name}-held")
 
 
 def test_the_arm_follows_only_while_held_and_tracked(browser: Browser, platform: Platform) -> None:
     with paired(browser, platform, xr=True) as phone:
         phone.start()
-        expect(phone.operator.locator("#input")).to_have_text("Phone, tracking good", timeout=WAIT_MS)
+        expect(phone.operator.locator("#input")).to_have_text("Phone, tracking good")
         expect(phone.operator.locator("#qr")).to_be_hidden()
         clutch = phone.operator.locator("#clutch")
         phone.press("#hold")
-        expect(clutch).to_have_text("Moving", timeout=WAIT_MS)
+        expect(clutch).to_have_text("Moving")
         phone.page.evaluate("() => { xrDevice.tracked = false }")
-        expect(clutch).not_to_have_text("Moving", timeout=WAIT_MS)
+        expect(clutch).not_to_have_text("Moving")
         expect(phone.page.locator("#hold")).to_have_attribute("aria-pressed", "false")
         phone.page.evaluate("() => { xrDevice.tracked = true }")
-        expect(phone.page.locator("#link")).to_contain_text("tracking good", timeout=WAIT_MS)
+        expect(phone.page.locator("#link")).to_contain_text("tracking good")
         expect(clutch).not_to_have_text("Moving")  # the finger is still down: it has to be put down anew
         phone.page.mouse.up()
         phone.press("#hold")
-        expect(clutch).to_have_text("Moving", timeout=WAIT_MS)
+        expect(clutch).to_have_text("Moving")
 
 
 def test_the_end_of_tracking_is_said_and_can_be_mended(browser: Browser, platform: Platform) -> None:
@@ -114,12 +114,12 @@ def test_stop_takes_half_a_second_of_holding(browser: Browser, platform: Platfor
         phone.press("#stop")
         expect(stop).to_have_attribute("aria-pressed", "true")
         phone.page.mouse.up()
-        expect(phone.operator.locator("#state-label")).to_have_text("Stopped", timeout=WAIT_MS)
+        expect(phone.operator.locator("#state-label")).to_have_text("Stopped")
         phone.is_fine("phone-stopped")
         phone.press("#stop")
         expect(stop).to_have_attribute("aria-pressed", "false")
         phone.page.mouse.up()
-        expect(phone.operator.locator("#state-label")).to_have_text("Practice", timeout=WAIT_MS)
+        expect(phone.operator.locator("#state-label")).to_have_text("Practice")
 
 
 def test_the_gripper_bar_slides_and_taps(browser: Browser, platform: Platform) -> None:

@@ -98,7 +98,7 @@ def test_without_a_trainer_it_says_how_to_start_one_and_goes_on_by_itself(
         expect(page.locator("#absent")).to_contain_text("mart trainer")
         assert page.evaluate(INSPECT) == []
         with contextlib.closing(Trainer(site.bus, jobs=False)):
-            expect(page.locator("#no-runs")).to_be_visible(timeout=15_000)
+            expect(page.locator("#no-runs")).to_be_visible()
 
 
 def test_the_grid_tells_the_papers_name_and_the_name_sets_the_grid(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import queue
-import socket
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 
@@ -14,19 +13,10 @@ from mart.protocol.bus.base import Bus, Request, Sample
 from mart.protocol.bus.memory import MemoryNetwork
 from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.errors import Unavailable
+from tests.support.processes import free_port
 
 Connect = Callable[[], Bus]
-WAIT_S = 5.0
-
-
-@pytest.fixture
-def endpoint() -> Iterator[str]:
-    """Of a real router."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
-    with ZenohBus.route(endpoint):
-        yield endpoint
+WAIT_S = 30.0
 
 
 @pytest.fixture(params=["memory", "zenoh"])
@@ -199,8 +189,5 @@ def test_only_the_watched_kind_is_reported(connect: Connect) -> None:
 
 
 def test_a_client_that_does_not_wait_says_that_there_is_no_router() -> None:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
     with pytest.raises(Unavailable, match="router"):
-        ZenohBus.connect(endpoint, wait_for_router=False)
+        ZenohBus.connect(f"tcp/127.0.0.1:{free_port()}", wait_for_router=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from mart.protocol.pose import Pose
 from mart.sim.experts.rehearsal import rehearse
 from mart.sim.experts.seeing import upright
+from mart.sim.tasks.scene import Judgement
 from mart.sim.world import Progress, World
 
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
@@ -84,29 +86,32 @@ def in_hand(world: World, arm: str, thing: str) -> Pose:
     return tool.inverse() @ pose_of(world, thing)
 
 
-def record(world: World, seed: int, monkeypatch: pytest.MonkeyPatch) -> tuple[list[bytes], list[Vector]]:
-    """An episode of experts: the state before each action, and the actions."""
-    states, actions, step = [], [], world.step
+@dataclass(frozen=True)
+class Watched:
+    """An episode: the state before each action, the actions, how it ended; what the physics of each tick took."""
 
-    def recorded(action: Vector) -> None:
+    task: str
+    progress: Progress
+    states: list[bytes]
+    actions: list[Vector]
+    constraint_rows: list[int]
+    solver_iterations: list[int]
+
+
+def watch(world: World, seed: int) -> Watched:
+    """An episode of experts, which succeeds."""
+    states, actions, rows, iterations, step = [], [], [], [], world.step
+
+    def watched(action: Vector) -> Judgement:
         states.append(world.integration_state())
         actions.append(np.array(action))
-        step(action)
+        judgement = step(action)
+        rows.append(world.data.nefc)
+        iterations.append(int(world.data.solver_niter[0]))
+        return judgement
 
-    monkeypatch.setattr(world, "step", recorded)
-    assert rehearse(world, seed).success
-    return states, actions
-
-
-def costs(world: World, seed: int, monkeypatch: pytest.MonkeyPatch) -> tuple[Vector, Vector]:
-    """An episode of experts: rows of the constraint problem and the solver's iterations, after each tick."""
-    watched, step = [], mujoco.mj_step
-
-    def watching(model: mujoco.MjModel, data: mujoco.MjData, nstep: int) -> None:
-        step(model, data, nstep)
-        watched.append((data.nefc, data.solver_niter[0]))
-
-    monkeypatch.setattr(mujoco, "mj_step", watching)
-    assert rehearse(world, seed).success
-    rows, iterations = np.array(watched, dtype=np.float64).T
-    return rows, iterations
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(world, "step", watched)
+        progress = rehearse(world, seed)
+    assert progress.success
+    return Watched(world.task.name, progress, states, actions, rows, iterations)

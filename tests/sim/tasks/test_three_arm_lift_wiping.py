@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from mart.protocol.tasks.three_arm_lift_wiping import RACK_TOP_M, SPOTS_M
-from mart.sim.experts.rehearsal import rehearse
 from mart.sim.world import World
 from mart.sim.world.batch import WorldBatch
 from tests.sim.tasks.tray import lift_alone, shift, tilt
@@ -133,23 +132,6 @@ def test_one_carrier_alone_cannot_lift_the_tray(world: World, arm: str) -> None:
     lifted, failed = lift_alone(world, arm)
     assert not lifted
     assert failed == "A drink tipped over."
-
-
-def test_an_episode_replays_bit_for_bit_from_any_state_of_it(world: World) -> None:
-    rehearse(world, 2, until_s=8.0)
-    assert 0 < len(wiped(world)) < len(SPOTS_M)
-    state, actions = world.integration_state(), np.random.default_rng(0).uniform(-0.2, 0.2, (40, 3, 7))
-    ends = []
-    for _ in range(2):
-        world.set_integration_state(state)
-        for action in actions:
-            world.step(action)
-        ends.append(world.integration_state())
-    again = World.build(TASK)
-    again.set_integration_state(state)
-    for action in actions:
-        again.step(action)
-    assert ends[0] == ends[1] == again.integration_state()
 
 
 def test_a_batch_wipes_as_its_worlds_alone_do(world: World) -> None:

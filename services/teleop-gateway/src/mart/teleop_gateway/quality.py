@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Literal
 
 import numpy as np
@@ -17,7 +18,9 @@ _SQUARES = 40  # of the strip, side by side
 
 @dataclass(frozen=True)
 class Quality:
-    """`width_px` is a multiple of 80. `samples` a pixel smooth edges; `detailed` asks the room for detailed meshes."""
+    """`width_px` is a multiple of 80, also at every share of it that is drawn. `samples` a pixel smooth edges;
+    `detailed` asks the room for detailed meshes.
+    """
 
     width_px: int
     samples: int
@@ -32,6 +35,10 @@ class Quality:
     def height_px(self) -> int:
         """With the strip."""
         return self.view_height_px + self.width_px // _SQUARES
+
+    def sized(self, share: Fraction) -> Quality:
+        """The same at a share of the width."""
+        return replace(self, width_px=int(self.width_px * share))
 
     def blank_picture(self) -> Image:
         """Shape (height_px, width_px, 3)."""

@@ -83,14 +83,19 @@ class Renderer:
         self._scene = mujoco.MjvScene(model, maxgeom=_MAX_GEOMS)
         # The floor fills every view, so the sky would only be drawn to be covered: 1 ms of 10 without a GPU.
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = 0
-        width, height = quality.width_px, quality.view_height_px
-        self._viewport = mujoco.MjrRect(0, 0, width, height)
-        self._upside_down = np.empty((height, width, 3), np.uint8)
-        self._gl = GLContext(width, height)
+        self._gl = GLContext(quality.width_px, quality.view_height_px)
         self._gl.make_current()
         self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
         _filter_textures_cheaply(self._context)
+        self.resize(quality)
+
+    def resize(self, quality: Quality) -> None:
+        """Draws pictures of this size from now on."""
+        width, height = quality.width_px, quality.view_height_px
+        mujoco.mjr_resizeOffscreen(width, height, self._context)
+        self._viewport = mujoco.MjrRect(0, 0, width, height)
+        self._upside_down = np.empty((height, width, 3), np.uint8)
 
     def draw(self, integration_state: bytes, tick: int, picture_rgb: Image) -> None:
         """Fills `picture_rgb`, a picture of this quality: the view, and the strip with the tick below it.

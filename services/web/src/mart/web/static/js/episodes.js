@@ -1,10 +1,10 @@
 // The episodes page: what was recorded, one of them in full, and what people say about it.
 
-import * as api from "./api.js";
 import { byId, setShown, setText } from "./dom.js";
 import { EpisodeList } from "./episodes/list.js";
 import { EpisodeView } from "./episodes/one.js";
 import { followRooms } from "./live.js";
+import { isMember, toLobby } from "./member.js";
 
 const RETRY_MS = 2000;
 
@@ -12,17 +12,11 @@ const list = new EpisodeList({ onChange: (query) => go(query), onOpen: (path) =>
 const one = new EpisodeView({ attempt, onBack: () => go(list.query) });
 let timer = 0;
 
-start();
+if (await isMember()) start();
 
-async function start() {
-  try {
-    setText(byId("me"), (await api.me()).name);
-  } catch {
-    location.assign("/");
-    return;
-  }
+function start() {
   addEventListener("popstate", () => show());
-  followRooms({ onRooms: () => {}, onEvent, onEnded: () => location.assign("/") });
+  followRooms({ onRooms: () => {}, onEvent, onEnded: toLobby });
   show();
 }
 

@@ -2,6 +2,8 @@
 
 import * as api from "./api.js";
 import { byId, element, setText } from "./dom.js";
+import { isMember, toLobby } from "./member.js";
+import { repeating } from "./repeating.js";
 
 const REFRESH_MS = 2000;
 const AREAS = { services: "Services", rooms: "Rooms", delays: "Delays", machine: "This machine" };
@@ -12,29 +14,16 @@ const EMPTY = {
 
 let shown = "";
 
-start();
+if (await isMember()) repeating(refresh, REFRESH_MS)();
 
-async function start() {
-  try {
-    setText(byId("me"), (await api.me()).name);
-  } catch {
-    location.assign("/");
-    return;
-  }
-  document.addEventListener("visibilitychange", () => document.hidden || refresh());
-  refresh();
-}
-
-/** Everything anew, and again in a moment, while somebody looks. */
 async function refresh() {
   try {
     show((await api.findings()).findings);
     setText(byId("page-message"), "");
   } catch (error) {
-    if (error.status === 401) location.assign("/");
+    if (error.status === 401) toLobby();
     setText(byId("page-message"), error.message);
   }
-  if (!document.hidden) setTimeout(refresh, REFRESH_MS);
 }
 
 function show(findings) {

@@ -12,6 +12,7 @@ import { Strip } from "./hud/strip.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
+import { toLobby } from "./member.js";
 import { waitingText } from "./words.js";
 
 const NOTICE_MS = 6000;
@@ -61,7 +62,7 @@ function begin() {
     link.tell({ type: "seen", tick, t_us: displayedMs * 1000 });
   });
   driver.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));
-  followRooms({ onRooms, onEvent, onEnded: () => location.assign("/") });
+  followRooms({ onRooms, onEvent, onEnded: toLobby });
 }
 
 const ownSeat = () => room?.seats.find((seat) => seat.arm === armId);
@@ -140,13 +141,13 @@ const DEEDS = {
   gripper: () => driver.switchGripper(),
   stop: () => driver.switchStop(),
   help: () => panel.toggleHelp(),
-  lobby: () => location.assign("/"),
+  lobby: toLobby,
   here: () => link.connect(),
   take: () => api.takeSeat(roomName, armId),
   back: () => api.handBack(roomName, armId),
   leave: async () => {
     if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);
-    location.assign("/");
+    toLobby();
   },
 };
 

@@ -3,6 +3,8 @@
 import * as api from "./api.js";
 import { byId, setShown, setText } from "./dom.js";
 import { followRooms } from "./live.js";
+import { isMember, toLobby } from "./member.js";
+import { repeating } from "./repeating.js";
 import { Comparison } from "./training/comparison.js";
 import { OrderForm } from "./training/order-form.js";
 import { PolicyList } from "./training/policy-list.js";
@@ -10,6 +12,8 @@ import { RunList } from "./training/run-list.js";
 import { RunView } from "./training/run-view.js";
 
 const REFRESH_MS = 2000;
+
+const refresh = repeating(lookAgain, REFRESH_MS);
 
 const form = new OrderForm(byId("order"), submit);
 const comparison = new Comparison();
@@ -19,26 +23,16 @@ const policies = new PolicyList({ onSeat: seat, onWithdraw: withdraw });
 
 let choices = null;
 let jobs = [];
-let timer = 0;
 let first = true;
 
-start();
+if (await isMember()) start();
 
-async function start() {
-  try {
-    setText(byId("me"), (await api.me()).name);
-  } catch {
-    location.assign("/");
-    return;
-  }
-  followRooms({ onRooms: (rooms) => policies.showRooms(rooms), onEnded: () => location.assign("/") });
-  document.addEventListener("visibilitychange", () => document.hidden || refresh());
+function start() {
+  followRooms({ onRooms: (rooms) => policies.showRooms(rooms), onEnded: toLobby });
   refresh();
 }
 
-/** Everything anew, and again in a moment, while somebody looks. */
-async function refresh() {
-  clearTimeout(timer);
+async function lookAgain() {
   try {
     ({ choices } = await api.trainingChoices());
     setShown(byId("absent"), choices === null);
@@ -50,7 +44,6 @@ async function refresh() {
   } catch (error) {
     say(error.message);
   }
-  if (!document.hidden) timer = setTimeout(refresh, REFRESH_MS);
 }
 
 async function load() {

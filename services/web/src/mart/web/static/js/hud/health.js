@@ -37,9 +37,13 @@ function breakdown(status) {
     ["Hand to picture, 95 % under", milliseconds(latency?.p95_ms)],
     ...stages,
     ["Pictures a second", fps?.toFixed(0) ?? "–"],
+    ["Picture", sizeOf(byId("video"))],
     ["Frames refused", String(totalOf(rejected))],
   ];
 }
+
+/** Without the strip below it. It is smaller than usual where drawing takes too long. */
+const sizeOf = ({ videoWidth: width }) => (width ? `${width} × ${(width * 3) / 4}` : "–");
 
 const milliseconds = (value) => (value == null ? "–" : `${value.toFixed(0)} ms`);
 
