@@ -23,7 +23,12 @@ def test_an_unknown_task_lists_the_known_ones() -> None:
 
 @pytest.mark.parametrize(
     ("operators", "kind"),
-    [("script", InvalidInput), ("script,script,script", InvalidInput), ("script,robot", NotFound)],
+    [
+        ("script", InvalidInput),
+        ("script,script,script", InvalidInput),
+        ("script,robot", NotFound),
+        ("script,policy:nowhere", NotFound),
+    ],
 )
 def test_wrong_operators_are_refused_before_anything_starts(operators: str, kind: type[MartError]) -> None:
     assert type(failure("collect", "--operators", operators)) is kind

@@ -17,6 +17,7 @@ from mart.platform.plan import Options, Process, processes
 from mart.platform.supervise import Platform, running_platform
 from mart.platform.visitor import Visitor
 from mart.protocol import clock, keys
+from mart.protocol.errors import Unavailable
 from mart.protocol.messages import (
     OPERATOR_HOLD,
     OPERATOR_HUMAN,
@@ -117,6 +118,23 @@ def test_a_person_takes_over_from_a_policy_in_mid_episode_and_hands_back(
         ana.visitor.assign(ROOM, OTHER, "hold")
     assert saved.verified, saved.verdict
     assert_file_tells_who_drove(platform.options.data_dir / saved.path)
+
+
+@pytest.mark.timeout(150)
+def test_a_checkpoint_is_seated_beside_a_crew_and_leaves_with_it(
+    platform: Platform, checkpoint: Path, states: Mailbox[State]
+) -> None:
+    with Crew(platform, skill="expert", seed=0).beside({checkpoint: (OTHER,)}):
+        await_ticks(states, OTHER, OPERATOR_POLICY, 3, episode=False)
+    states.wait_for(lambda state: not driven_by(state, OTHER, OPERATOR_POLICY), WAIT_S, since=len(states))
+
+
+@pytest.mark.timeout(150)
+def test_a_checkpoint_that_cannot_be_seated_says_why(platform: Platform, tmp_path: Path) -> None:
+    (tmp_path / "checkpoint.json").write_text("{}")
+    crew = Crew(platform, skill="expert", seed=0)
+    with pytest.raises(Unavailable, match=r"does not drive arm1: mart: "), crew.beside({tmp_path: (OTHER,)}):
+        pass
 
 
 def assert_file_tells_who_drove(path: Path) -> None:

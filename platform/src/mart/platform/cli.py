@@ -13,7 +13,6 @@ import click
 from mart.platform.plan import DEFAULT_TASK
 from mart.protocol import clock
 from mart.protocol.cli import cli, json_option, print_result
-from mart.protocol.errors import InvalidInput, NotFound
 
 if TYPE_CHECKING:
     from mart.platform.collection import Order
@@ -73,8 +72,10 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
     Prints one JSON line per episode, with or without --json.
     """
     from mart.platform.collection import Order, collect_episodes
+    from mart.platform.operators import parse_operators
 
-    order = Order(task, episodes, "expert", seed, control_hz, out, browsers=True)
+    seated = parse_operators(task, None)
+    order = Order(task, episodes, "expert", seed, control_hz, out, seated, browsers=True)
     _print_collected(order, collect_episodes(order), as_json=False)
 
 
@@ -82,7 +83,9 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
 @click.option("--task", default=DEFAULT_TASK, show_default=True, help="Name of the task.")
 @click.option("--episodes", default=1, show_default=True, type=click.IntRange(1, 100_000))
 @click.option(
-    "--operators", help="Who drives each arm, separated by commas.  [default: script for every arm]"
+    "--operators",
+    help="Who drives each arm, separated by commas: script, or policy:PATH with the folder of a checkpoint.  "
+    "[default: script for every arm]",
 )
 @click.option("--skill", default="expert", show_default=True, type=_SKILLS, help="Of the scripted experts.")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0, 2**32 - 1))
@@ -108,12 +111,15 @@ def collect(
 ) -> None:
     """Collect episodes without people: scripted experts hold emulated phones, in real time, over WebRTC.
 
+    Trained policies may sit beside them.
+
     Prints one JSON line per episode as it is saved and a summary on standard error; with --json one object with both.
     """
     from mart.platform.collection import Order, collect_episodes, collect_in_lockstep
+    from mart.platform.operators import parse_operators
 
-    _require_scripts(task, operators)
-    order = Order(task, episodes, skill, seed, control_hz, out, time_limit)
+    seated = parse_operators(task, operators)
+    order = Order(task, episodes, skill, seed, control_hz, out, seated, time_limit)
     _print_collected(order, (collect_in_lockstep if lockstep else collect_episodes)(order), as_json)
 
 
@@ -165,17 +171,3 @@ def _print_collected(order: Order, episodes: Iterator[Episode], as_json: bool) -
         click.echo(json.dumps({"episodes": lines, **told}))
     else:
         click.echo(f"{summary.in_words(told)} They are in {order.out / 'episodes'}.", err=True)
-
-
-def _require_scripts(task: str, operators: str | None) -> None:
-    from mart.protocol.tasks import get_task
-
-    if operators is None:
-        return
-    arms = len(get_task(task).arms)
-    given = operators.split(",")
-    if len(given) != arms:
-        raise InvalidInput(f"{len(given)} operators were given; {task} has {arms} arms: name one for each.")
-    for operator in given:
-        if operator != "script":
-            raise NotFound.named("operator for collecting", operator, ["script"])

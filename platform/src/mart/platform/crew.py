@@ -10,7 +10,7 @@ import contextlib
 import os
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +19,10 @@ from mart.platform.browser import open_operator_page
 from mart.platform.plan import environment
 from mart.platform.supervise import Platform
 from mart.platform.visitor import Visitor
-from mart.protocol.errors import Forbidden
+from mart.protocol import clock
+from mart.protocol.errors import Forbidden, Unavailable
+from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
+from mart.protocol.room_watch import RoomWatch
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -27,6 +30,8 @@ if TYPE_CHECKING:
 _MART = Path(sys.executable).with_name("mart")
 _NAMES = ("Ana", "Ben", "Cleo", "Dan")
 _STOP_TIMEOUT_S = 10.0
+_SEAT_TIMEOUT_S = 60.0  # PyTorch takes seconds to load
+_LOOK_EVERY_S = 0.2
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,30 @@ class Crew:
         """One person per arm: phone paired and moving, page open where there is a browser."""
         with contextlib.ExitStack() as stack:
             yield [stack.enter_context(self._person(number, arm)) for number, arm in enumerate(arms)]
+
+    @contextlib.contextmanager
+    def beside(self, policies: Mapping[Path, Sequence[str]]) -> Iterator[None]:
+        """Each of these checkpoints drives its arms. Raises Unavailable where one does not come to drive them."""
+        with contextlib.ExitStack() as stack:
+            for checkpoint, arms in policies.items():
+                stack.enter_context(self._policy(checkpoint, arms))
+            yield
+
+    @contextlib.contextmanager
+    def _policy(self, checkpoint: Path, arms: Sequence[str]) -> Iterator[None]:
+        room, name = self.platform.options.room, f"policy-{arms[0]}"
+        taken = [argument for arm in arms for argument in ("--arm", arm)]
+        command = ["operate", "--checkpoint", str(checkpoint.resolve()), "--room", room, *taken]
+        with (
+            contextlib.closing(RoomWatch(self.platform.bus, room)) as watch,
+            _running(self.platform, command, name) as process,
+        ):
+            deadline_s = clock.monotonic_s() + _SEAT_TIMEOUT_S
+            while not _policies_drive(arms, watch.take(_LOOK_EVERY_S)[0].get(room)):
+                if process.poll() is not None or clock.monotonic_s() > deadline_s:
+                    log = self.platform.logs_dir / f"{name}.log"
+                    raise Unavailable(f"{checkpoint} does not drive {', '.join(arms)}: {_last_line(log)}")
+            yield
 
     @contextlib.contextmanager
     def _person(self, number: int, arm: str) -> Iterator[Person]:
@@ -87,8 +116,18 @@ def _leave(visitor: Visitor, room: str, arm: str) -> None:
         visitor.leave(room, arm)
 
 
+def _policies_drive(arms: Sequence[str], status: RoomStatus | None) -> bool:
+    seats = status.seats if status is not None else ()
+    return set(arms) <= {seat.arm for seat in seats if seat.operator == OPERATOR_POLICY}
+
+
+def _last_line(log: Path) -> str:
+    lines = log.read_text(errors="replace").splitlines()
+    return lines[-1] if lines else f"{log} is empty."
+
+
 @contextlib.contextmanager
-def _running(platform: Platform, command: Sequence[str], name: str) -> Iterator[None]:
+def _running(platform: Platform, command: Sequence[str], name: str) -> Iterator[subprocess.Popen[bytes]]:
     with (platform.logs_dir / f"{name}.log").open("ab") as log:
         process = subprocess.Popen(  # noqa: S603 - our own command, from our own environment
             [str(_MART), *command],
@@ -99,7 +138,7 @@ def _running(platform: Platform, command: Sequence[str], name: str) -> Iterator[
             start_new_session=True,
         )
     try:
-        yield
+        yield process
     finally:
         process.terminate()
         try:
