@@ -51,7 +51,7 @@ class Hyperparameters(BaseModel):
 
     # Residual
     residual_hidden: tuple[int, ...] = (256, 256)
-    residual_epsilon: float = Field(0.2, ge=0)  # bound of an arm's correction, in units of its action
+    residual_epsilon: float = Field(0.05, ge=0)  # bound of an arm's correction, in units of its action
 
     # Flow
     flow_hidden: tuple[int, ...] = (512, 512, 512)

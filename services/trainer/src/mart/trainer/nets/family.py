@@ -5,8 +5,9 @@
     result   a + residual(o, a)                   where there is a residual
 
 Planner and actor are trained apart, the actor on subgoals that were really reached (robomimic's mode "separate"). The
-residual is trained after both, on what the base does with subgoals that its planner draws: given the true ones, the
-base already knows what will come, and there is nothing left to correct.
+residual is trained after both, on what the base does with the demonstrated subgoal in its planner's words, drawn from
+the posterior. Given the true one, there is nothing left to correct; given one of the prior's, which may be another
+intention, it would learn to act against what is intended (decision 0024).
 """
 
 from __future__ import annotations
@@ -84,11 +85,11 @@ class Hierarchy(nn.Module):
         return Losses(losses, {name: value.detach() for name, value in looks.items()})
 
     def residual_losses(self, batch: Batch, noise: Noise) -> Losses:
-        """Of the residual; base and planner are frozen, and the base's actions follow from drawn subgoals."""
+        """Of the residual; base and planner are frozen, and the base acts on retold subgoals."""
         assert self.residual is not None
         assert self.residual_view is not None
         with torch.no_grad():
-            base = self._sequence(batch.seen, noise)
+            base = self._sequence(batch, noise)
         view = self.residual_view
         actions = view.split(base)
         delta = self.residual(view.of(batch.seen), actions)
@@ -124,13 +125,19 @@ class Hierarchy(nn.Module):
             merged = merged + view.merge(self.residual(view.of(seen), view.split(merged)))
         return merged.clamp(-1, 1), memory
 
-    def _sequence(self, seen: Tensor, noise: Noise) -> Tensor:
-        """What the base does over a window: [S, T, B, D] → [S, T, B, arms, 7]."""
-        goal = self.plan(seen[:, 0], noise)
-        ticks, batch = seen.shape[1:3]
-        return self.view.merge(
-            self.actor.sequence(self._inputs(seen, goal), *self._draws(ticks * batch, noise))
-        )
+    def _sequence(self, batch: Batch, noise: Noise) -> Tensor:
+        """What the base does over a window, on the way that was demonstrated: [S, T, B, arms, 7]."""
+        ticks, size = batch.seen.shape[1:3]
+        inputs = self._inputs(batch.seen, self._retold(batch, noise))
+        return self.view.merge(self.actor.sequence(inputs, *self._draws(ticks * size, noise)))
+
+    def _retold(self, batch: Batch, noise: Noise) -> Tensor | None:
+        """The demonstrated subgoal in the planner's words, as the actor takes it: [M, B, G]."""
+        if self.planner is None or self.plan_view is None:
+            return None
+        view, seen = self.plan_view, batch.seen[:, 0]
+        drawn = noise.normal(view.units, seen.shape[1], self.planner.latent)
+        return self._routed(self.planner.retell(view.of(seen), view.of(batch.goal), drawn))
 
     def _draws(self, batch: int, noise: Noise) -> tuple[Tensor, Tensor]:
         return noise.uniform(self.view.units, batch), noise.normal(

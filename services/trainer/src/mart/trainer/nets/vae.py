@@ -59,8 +59,7 @@ class Planner(nn.Module):
 
     def loss(self, seen: Tensor, goal: Tensor, noise: Tensor) -> PlannerLoss:
         """seen, goal: [M, B, D]. noise: [M, B, latent], standard normal."""
-        mean, log_variance = self.encoder(torch.cat((goal, seen), -1)).float().chunk(2, dim=-1)
-        deviation = torch.exp(0.5 * log_variance.clamp(*_LOG_VARIANCE))
+        mean, deviation = self._posterior(seen, goal)
         z = mean + deviation * noise
         error = self.decode(z, seen) - goal
         divergence = log_normal(z, mean, deviation).sum(-1) - self.prior_of(seen).log_prob(z)
@@ -76,6 +75,16 @@ class Planner(nn.Module):
     def decode(self, z: Tensor, seen: Tensor) -> Tensor:
         """z: [M, B, latent], seen: [M, B, D] → subgoal [M, B, D]."""
         return seen + self.decoder(torch.cat((z, seen), -1)).float()
+
+    def retell(self, seen: Tensor, goal: Tensor, noise: Tensor) -> Tensor:
+        """`goal` as this planner would put it: drawn from the posterior and decoded. [M, B, D], as in `loss`."""
+        mean, deviation = self._posterior(seen, goal)
+        return self.decode(mean + deviation * noise, seen)
+
+    def _posterior(self, seen: Tensor, goal: Tensor) -> tuple[Tensor, Tensor]:
+        """Mean and deviation of q(z | g, o), each [M, B, latent]."""
+        mean, log_variance = self.encoder(torch.cat((goal, seen), -1)).float().chunk(2, dim=-1)
+        return mean, torch.exp(0.5 * log_variance.clamp(*_LOG_VARIANCE))
 
     def sample(self, seen: Tensor, choice: Tensor, noise: Tensor) -> Tensor:
         """A subgoal from the prior. choice: [M, B] uniform, noise: [M, B, latent] normal → [M, B, D]."""
