@@ -1,8 +1,8 @@
 """A control step of every task: ours beside bare MuJoCo of the same scene, and beside robosuite's TwoArmLift.
 
 Beside both stands World.step, success judged and all; bare is mj_step(nstep=25). World.drive, the part of it that
-moves the arms (the command taken, 25 substeps of 2 ms with the controller in each, the new poses, the guard against
-divergence), is told beside it, to see where a bar is missed. Bare starts from the very same states with no callback,
+controls the arms (the command taken, 25 substeps of 2 ms with the controller in each, the new poses, the guard against
+divergence), has a bar of its own: what is left is the task's judgement, in Python. Bare starts from the very same states with no callback,
 torques and finger targets held at what our controller ended the tick with, so that the physics has nearly the same
 contacts to solve. All follow a recorded episode of scripted experts, tick by tick in turns; robosuite takes its turn
 after each round. Times are the thread's processor time, so that other programs on a shared machine count little.
@@ -52,19 +52,23 @@ def main() -> None:
                 rounds = measure(World.build(task, arms=arms), peer)
                 step_ms = [median(taken.step) for taken in rounds]
                 over_bare = [sum(taken.step) / sum(taken.bare) for taken in rounds]
+                control_over_bare = [sum(taken.drive) / sum(taken.bare) for taken in rounds]
                 name = f"{task}_{arms}_arms"
                 metrics |= {
                     **spread(f"{name}_step_ms", step_ms),
                     **spread(f"{name}_step_over_bare", over_bare),
-                    **spread(
-                        f"{name}_drive_over_bare", [sum(taken.drive) / sum(taken.bare) for taken in rounds]
-                    ),
+                    **spread(f"{name}_control_over_bare", control_over_bare),
                 }
                 steps = [taken.peer for taken in rounds]
                 faster = median(median(taken.step_ms) for taken in steps) / median(step_ms)
                 bars += [
                     Bar.at_least(f"{task}, {arms} arms: times robosuite", faster, 8.0),
-                    Bar.at_most(f"{task}, {arms} arms: times bare mj_step", median(over_bare), 1.10),
+                    Bar.at_most(
+                        f"{task}, {arms} arms: control, times bare mj_step", median(control_over_bare), 1.10
+                    ),
+                    Bar.at_most(
+                        f"{task}, {arms} arms: all of the step, times bare mj_step", median(over_bare), 1.10
+                    ),
                 ]
                 peers += steps
     report(

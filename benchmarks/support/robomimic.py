@@ -1,15 +1,22 @@
-"""robomimic in an environment and a process of its own: the peer of everything that trains."""
+"""robomimic: the peer of everything that trains."""
 
 from __future__ import annotations
 
 import json
-import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from support.peers import program
+import numpy as np
+from numpy.typing import NDArray
+from support.peers import Peer, running
+
+from mart.protocol.tasks import Task
+from mart.protocol.worlds import ACTION_SIZE
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -24,31 +31,54 @@ class Updates:
 
 
 class Robomimic:
-    def __init__(self, process: subprocess.Popen[str]) -> None:
-        self._process = process
+    def __init__(self, peer: Peer) -> None:
+        self._peer = peer
 
     def update(self, number: int) -> Updates:
-        assert self._process.stdin is not None
-        print(number, file=self._process.stdin, flush=True)
-        for line in self._process.stdout or ():
-            if line.startswith('{"version"'):  # robomimic prints notes of its own
-                return Updates(**json.loads(line))
-        raise SystemExit(
-            f"robomimic ended with code {self._process.wait()}: run peers/robomimic/train.py by hand to see why."
-        )
+        self._peer.tell(str(number))
+        return Updates(**self._peer.answer())
 
 
 @contextmanager
 def robomimic(file: Path, algorithm: str) -> Iterator[Robomimic]:
     """`algorithm`: bc or hbc, ready to learn from an HDF5 file."""
-    process = subprocess.Popen(
-        [*program("robomimic", "train.py"), file, algorithm],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-    )
-    try:
-        yield Robomimic(process)
-    finally:
-        process.communicate(timeout=60)
+    with running("robomimic", "train.py", file, algorithm) as peer:
+        yield Robomimic(peer)
+
+
+class RobomimicPolicy:
+    """What robomimic has learned, as a policy of ours that drives all arms (mart.trainer.policies.Policy)."""
+
+    control_hz = 20.0
+
+    def __init__(self, peer: Peer, task: Task) -> None:
+        self._peer = peer
+        self.task, self.arms = task.name, task.arm_names
+        self.needs = tuple(observation.name for observation in task.observations)
+        self.version: str = peer.answer()["version"]
+
+    def begin(self, worlds: int, seed: int) -> None:
+        """Its samples are of its own seed, whatever `seed` is."""
+        self._peer.tell("null")
+
+    def act(self, observations: Mapping[str, Array]) -> Array:
+        rows = {
+            name.replace("/", "_"): values.reshape(len(values), -1).tolist()
+            for name, values in observations.items()
+        }
+        self._peer.tell(json.dumps(rows))
+        actions = np.array(self._peer.answer()["actions"])
+        return actions.reshape(len(actions), len(self.arms), ACTION_SIZE)
+
+    def only(self, arm: str) -> RobomimicPolicy:
+        raise NotImplementedError(f"{arm} is not driven alone: one network drives all arms.")
+
+
+@contextmanager
+def robomimic_policy(
+    file: Path, algorithm: str, task: Task, *, seed: int, updates: int, sizes: Mapping[str, Any]
+) -> Iterator[RobomimicPolicy]:
+    """Learned from the successful episodes of an HDF5 file."""
+    arguments = (algorithm, str(seed), str(updates), json.dumps(sizes))
+    with running("robomimic", "play.py", file, *arguments) as peer:
+        yield RobomimicPolicy(peer, task)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -26,11 +28,8 @@ def test_it_serves_until_it_is_asked_to_stop_and_leaves_nothing_behind(
         "MART_ROUTER": f"tcp/127.0.0.1:{free_port()}",
         "MART_DATA_DIR": str(tmp_path),
     }
-    process = subprocess.Popen(
-        [_MART, "run", "--json", "--port", str(port)], env=environment, stdout=subprocess.PIPE, text=True
-    )
-    assert process.stdout is not None
-    with process.stdout:
+    with _running([_MART, "run", "--json", "--port", str(port)], environment) as process:
+        assert process.stdout is not None
         told = json.loads(process.stdout.readline())
         assert told["url"] == f"https://localhost:{port}/"
         assert told["join_code"]
@@ -48,6 +47,16 @@ def test_it_serves_until_it_is_asked_to_stop_and_leaves_nothing_behind(
         process.send_signal(number)
         assert process.wait(60) == 0
     assert not [pid for pid in children if Path(f"/proc/{pid}").exists()]
+
+
+@contextlib.contextmanager
+def _running(command: list[str], environment: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
+    """Ends with the test, also where that fails."""
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            yield process
+        finally:
+            process.terminate()
 
 
 def _supervised(data_dir: Path) -> list[int]:
