@@ -2,10 +2,11 @@
 
 Beside both stands World.step, success judged and all; bare is mj_step(nstep=25). World.drive, the part of it that
 controls the arms (the command taken, 25 substeps of 2 ms with the controller in each, the new poses, the guard against
-divergence), has a bar of its own: what is left is the task's judgement, in Python. Bare starts from the very same states with no callback,
-torques and finger targets held at what our controller ended the tick with, so that the physics has nearly the same
-contacts to solve. All follow a recorded episode of scripted experts, tick by tick in turns; robosuite takes its turn
-after each round. Times are the thread's processor time, so that other programs on a shared machine count little.
+divergence), has a bar of its own: what is left is the task's judgement, in Python. Bare starts from the very same
+states with no callback, torques and finger targets held at what our controller ended the tick with, so that the
+physics has nearly the same contacts to solve. All follow a recorded episode of scripted experts, tick by tick in turns;
+robosuite takes its turn after each round. Times are the thread's processor time, so that other programs on a shared
+machine count little.
 """
 
 from __future__ import annotations

@@ -29,6 +29,7 @@ from mart.protocol.messages import (
 from mart.protocol.messages import Policy as PromotedPolicy
 
 TASK = "two_arm_multi_cube_lifting"
+OTHER_TASK = "two_arm_drink_tray_lifting"
 VIDEO = bytes(range(256)) * 16
 _PIECE = 1000
 _MODELS = (
@@ -157,9 +158,12 @@ def _choices() -> TrainerReply.Choices:
     order.evaluation_episodes = 30
     return TrainerReply.Choices(
         models=models,
-        tasks=[TASK],
+        tasks=[TASK, OTHER_TASK],
         presets=["debug", "fast", "paper"],
-        data=[DataSet(path="episodes", episodes=64), DataSet(path="collected/episodes", episodes=100)],
+        data=[
+            DataSet(path="episodes", episodes=64, tasks=[TASK]),
+            DataSet(path="collected/episodes", episodes=100, tasks=[OTHER_TASK]),
+        ],
         executors=["local"],
         device="cpu",
         order=order,

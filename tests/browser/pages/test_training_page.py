@@ -16,7 +16,7 @@ from mart.protocol.messages import OPERATOR_POLICY
 from tests.browser.pages.test_pages import INSPECT, LOOKS, SIZES, listen
 from tests.support.processes import free_port, running_router, running_service
 from tests.web.room import Room
-from tests.web.trainer import Trainer
+from tests.web.trainer import OTHER_TASK, TASK, Trainer
 
 SCREENSHOTS = Path("test-output/browser/pages")
 SPEAK_S = 0.2
@@ -123,6 +123,14 @@ def test_the_grid_tells_the_papers_name_and_the_name_sets_the_grid(
         expect(page.locator(".run")).to_have_count(11)
         submitted = next(one.submit for one in trainer.asked if one.HasField("submit"))
         assert (len(submitted.models), list(submitted.order.seeds)) == (7, [0, 1, 2])
+
+
+def test_the_task_is_that_of_the_episodes(browser: Browser, site: Site, trainer: Trainer) -> None:
+    with page_of(browser, site) as page:
+        task = page.get_by_label("Task")
+        expect(task).to_have_value(TASK)
+        page.get_by_label("Episodes", exact=True).select_option("collected/episodes")
+        expect(task).to_have_value(OTHER_TASK)
 
 
 def test_a_checkpoint_is_promoted_and_seated(browser: Browser, site: Site, trainer: Trainer) -> None:

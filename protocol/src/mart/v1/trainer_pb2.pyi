@@ -172,12 +172,14 @@ class Policy(_message.Message):
     def __init__(self, name: _Optional[str] = ..., model: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[_Iterable[str]] = ..., joint: _Optional[bool] = ..., seed: _Optional[int] = ..., updates: _Optional[int] = ..., job: _Optional[str] = ..., evaluation: _Optional[_Union[Evaluation, _Mapping]] = ..., promoted_ns: _Optional[int] = ...) -> None: ...
 
 class DataSet(_message.Message):
-    __slots__ = ("path", "episodes")
+    __slots__ = ("path", "episodes", "tasks")
     PATH_FIELD_NUMBER: _ClassVar[int]
     EPISODES_FIELD_NUMBER: _ClassVar[int]
+    TASKS_FIELD_NUMBER: _ClassVar[int]
     path: str
     episodes: int
-    def __init__(self, path: _Optional[str] = ..., episodes: _Optional[int] = ...) -> None: ...
+    tasks: _containers.RepeatedScalarFieldContainer[str]
+    def __init__(self, path: _Optional[str] = ..., episodes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ...) -> None: ...
 
 class TrainerRequest(_message.Message):
     __slots__ = ("choices", "submit", "list", "show", "logs", "cancel", "retry", "promote", "policies", "withdraw", "video")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -33,7 +33,7 @@ def choices(settings: TrainerSettings, executors: Iterable[str]) -> TrainerReply
         device=settings.device,
         order=Order(
             model=_DEFAULT_MODEL,
-            task=task_names()[0],
+            task=next((task for one in data[:1] for task in one.tasks), task_names()[0]),
             data=data[0].path if data else DEFAULT_DATA,
             preset=DEFAULT_PRESET,
             seeds=[0, 1, 2],
@@ -45,13 +45,25 @@ def choices(settings: TrainerSettings, executors: Iterable[str]) -> TrainerReply
 
 def data_sets(data_dir: Path) -> list[DataSet]:
     """Folders with episodes: `episodes` first, days of one recording taken together."""
-    counted: Counter[str] = Counter()
+    counted: dict[str, Counter[str]] = defaultdict(Counter)
     roots = [root for root in data_dir.glob("*") if root.is_dir() and root.name not in _NO_DATA]
     for path in (path for root in roots for path in root.rglob(f"*{SUFFIX}")):  # a root may be a link
         folder = path.parent.parent if _DAY.fullmatch(path.parent.name) else path.parent
-        counted[folder.relative_to(data_dir).as_posix()] += 1
+        counted[folder.relative_to(data_dir).as_posix()][_task_in(path.name)] += 1
     ordered = sorted(counted.items(), key=lambda item: (item[0] != DEFAULT_DATA, item[0]))
-    return [DataSet(path=path, episodes=episodes) for path, episodes in ordered[:_MAX_DATA_SETS]]
+    return [
+        DataSet(
+            path=path,
+            episodes=tasks.total(),
+            tasks=[task for task, _ in tasks.most_common() if task],
+        )
+        for path, tasks in ordered[:_MAX_DATA_SETS]
+    ]
+
+
+def _task_in(name: str) -> str:
+    """The task that an episode's file is named after; empty for a name of another form."""
+    return next((task for task in task_names() if f"-{task}" in name), "")
 
 
 def _model(name: str, model: Model) -> TrainerReply.Choices.Model:

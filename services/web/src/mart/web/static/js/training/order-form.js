@@ -23,7 +23,10 @@ export class OrderForm {
       event.preventDefault();
       this.#submit();
     });
-    form.addEventListener("change", () => this.#render());
+    form.addEventListener("change", ({ target }) => {
+      if (target === this.data) this.#followData();
+      this.#render();
+    });
   }
 
   show(choices) {
@@ -88,6 +91,12 @@ export class OrderForm {
   #choose(model) {
     for (const [axis] of AXES) check(this.form, axis, model[axis]);
     this.#model = model.name;
+  }
+
+  /** Episodes of one task are learned from: the one that this data set has most of. */
+  #followData() {
+    const [task] = this.#choices.data.find(({ path }) => path === this.data.value).tasks;
+    if (task) this.task.value = task;
   }
 
   #render() {
