@@ -127,9 +127,9 @@ def test_the_grid_tells_the_papers_name_and_the_name_sets_the_grid(
 
 def test_the_task_is_that_of_the_episodes(browser: Browser, site: Site, trainer: Trainer) -> None:
     with page_of(browser, site) as page:
-        task = page.get_by_label("Task")
+        task = page.locator("#order select").nth(1)
         expect(task).to_have_value(TASK)
-        page.get_by_label("Episodes", exact=True).select_option("collected/episodes")
+        page.locator("#order select").first.select_option("collected/episodes")
         expect(task).to_have_value(OTHER_TASK)
 
 
