@@ -11,6 +11,9 @@ import { dateText, drivers, lengthText, OUTCOMES, outcomeText, rateText, remarks
 export class EpisodeView {
   #player = null;
   #path = "";
+  #known = null; // the episode as it was last told
+  #asked = 0;
+  #said = Promise.resolve();
 
   /** `attempt(deed)` runs a change and shows its failure; `onBack()` returns to the list. */
   constructor({ attempt, onBack }) {
@@ -50,6 +53,7 @@ export class EpisodeView {
       this.#seen(details),
       facts(details),
     );
+    this.#known = episode;
     this.#update(episode);
     document.title = `${episode.title}, episode ${episode.number} · MART`;
   }
@@ -59,7 +63,7 @@ export class EpisodeView {
     setText(this.subtitle, told.filter(Boolean).join(" · "));
     for (const input of this.outcomes.querySelectorAll("input")) input.checked = input.value === episode.outcome;
     this.use.checked = !episode.dropped;
-    this.note.value = episode.note;
+    if (document.activeElement !== this.note) this.note.value = episode.note;
   }
 
   #outcome([value, text]) {
@@ -93,8 +97,17 @@ export class EpisodeView {
     return card;
   }
 
-  async #say(said) {
-    await this.attempt(async () => this.#update((await api.labelEpisode(this.#path, said)).episode));
+  /** One after the other, and only the last answer is shown: an earlier one does not know what was pressed since. */
+  #say(said) {
+    const path = this.#path;
+    const mine = ++this.#asked;
+    this.#said = this.#said
+      .then(() => this.attempt(async () => this.#learn(path, await api.labelEpisode(path, said))))
+      .then(() => mine === this.#asked && path === this.#path && this.#update(this.#known));
+  }
+
+  #learn(path, { episode }) {
+    if (path === this.#path) this.#known = episode;
   }
 
   #back(event) {
