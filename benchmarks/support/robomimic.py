@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 from support.peers import Peer, running
 
+from mart.protocol.errors import InvalidInput
 from mart.protocol.tasks import Task
 from mart.protocol.worlds import ACTION_SIZE
+from mart.recorder.export.robomimic import key_of
 
 Array = NDArray[np.float64]
 
@@ -63,15 +65,14 @@ class RobomimicPolicy:
 
     def act(self, observations: Mapping[str, Array]) -> Array:
         rows = {
-            name.replace("/", "_"): values.reshape(len(values), -1).tolist()
-            for name, values in observations.items()
+            key_of(name): values.reshape(len(values), -1).tolist() for name, values in observations.items()
         }
         self._peer.tell(json.dumps(rows))
         actions = np.array(self._peer.answer()["actions"])
         return actions.reshape(len(actions), len(self.arms), ACTION_SIZE)
 
     def only(self, arm: str) -> RobomimicPolicy:
-        raise NotImplementedError(f"{arm} is not driven alone: one network drives all arms.")
+        raise InvalidInput(f"{arm} was asked for alone; one network drives {', '.join(self.arms)} together.")
 
 
 @contextmanager

@@ -17,14 +17,18 @@ STRIP_ROWS = 16
 
 @pytest.fixture(scope="module")
 def frames() -> list[Frame]:
+    return pictures(640, 496)
+
+
+def pictures(width_px: int, height_px: int) -> list[Frame]:
     """25 pictures in Annex B, a key frame every 10, each brighter than the one before, with a white strip below."""
     encoder = av.CodecContext.create("libx264", "w")
     assert isinstance(encoder, av.VideoCodecContext)
-    encoder.width, encoder.height, encoder.pix_fmt = 640, 496, "yuv420p"
+    encoder.width, encoder.height, encoder.pix_fmt = width_px, height_px, "yuv420p"
     encoder.options = {"tune": "zerolatency", "x264-params": "keyint=10:scenecut=0:repeat-headers=1:annexb=1"}
     packets = []
     for number in range(25):
-        image = np.full((496, 640, 3), 4 * number, np.uint8)
+        image = np.full((height_px, width_px, 3), 4 * number, np.uint8)
         image[-STRIP_ROWS:] = 255
         picture = av.VideoFrame.from_ndarray(image, format="rgb24")
         picture.pts = number
@@ -47,6 +51,14 @@ def test_a_video_plays_every_picture_at_its_time(frames: list[Frame]) -> None:
         ]
     assert [at_s for at_s, _ in played] == pytest.approx([frame.image_ns / 1e9 for frame in late], abs=1e-4)
     assert np.all(np.diff([int(grey) for _, grey in played]) > 0)
+
+
+def test_a_video_plays_pictures_that_became_smaller(frames: list[Frame]) -> None:
+    """As those of a seat do that would have come late."""
+    smaller = [Frame(frame.image_ns + 25 * EVERY_NS, frame.data) for frame in pictures(320, 248)]
+    with av.open(io.BytesIO(as_mp4([*frames, *smaller])), "r") as video:
+        widths = [picture.width for picture in video.decode(video=0)]
+    assert widths == [640] * 25 + [320] * 25
 
 
 def test_a_still_is_small_and_without_the_ticks_code(frames: list[Frame]) -> None:
