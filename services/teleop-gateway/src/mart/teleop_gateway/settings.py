@@ -15,6 +15,6 @@ class GatewaySettings(Settings):
     )
     quality: Name = Field(
         "fast",
-        description="fast: 640 x 480 px in 10 ms without a GPU, less where that is late. full, where there is one: 960 x 720 px, 4 samples a "
-        "pixel, shadows, and detailed meshes where the room offers them.",
+        description="fast: 640 x 480 px in 10 ms without a GPU, less where that is late. full, where there is one: "
+        "960 x 720 px, 4 samples a pixel, shadows, and detailed meshes where the room offers them.",
     )
