@@ -54,6 +54,15 @@ class Running:
         self.process.terminate()
         return self.process.wait(timeout_s)
 
+    @contextlib.contextmanager
+    def frozen(self) -> Iterator[None]:
+        """It does nothing for the length of the block, and its connections stay open."""
+        self.process.send_signal(signal.SIGSTOP)
+        try:
+            yield
+        finally:
+            self.process.send_signal(signal.SIGCONT)
+
     def kill(self) -> None:
         """kill -9 of the process alone; what it started is left as a crash would leave it."""
         self.process.kill()

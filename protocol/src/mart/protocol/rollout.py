@@ -25,7 +25,7 @@ from mart.protocol.messages import Model, RolloutReply, RolloutRequest, raise_er
 from mart.protocol.tasks import Task, get_task
 from mart.protocol.worlds import ACTION_SIZE, Flags, Worlds, join, pack_actions, unpack
 
-__all__ = ["ACTION_SIZE", "RolloutClient", "Worlds", "replicas_up"]
+__all__ = ["ACTION_SIZE", "RolloutClient", "Worlds"]
 
 _START_TIMEOUT_S = 2.0
 _RESET_TIMEOUT_S, _RESET_TIMEOUT_PER_WORLD_S = 60.0, 0.1
@@ -153,21 +153,21 @@ class RolloutClient:
 
     def _require_replicas(self) -> None:
         """Waits a little: one that is just starting may be up for others already."""
-        missing = set(self._replicas)
+        up: set[str] = set()
         complete = threading.Event()
 
         def note(key: str, alive: bool) -> None:
-            (missing.discard if alive else missing.add)(keys.last_of(key))
-            if not missing.intersection(self._replicas):
+            (up.add if alive else up.discard)(keys.last_of(key))
+            if up.issuperset(self._replicas):
                 complete.set()
 
         with contextlib.closing(self._bus.watch(keys.alive_of("replica"), note)):
             complete.wait(_START_TIMEOUT_S)
         for replica in self._replicas:
-            if replica in missing:
-                up = ", ".join(replicas_up(self._bus)) or "none"
+            if replica not in up:
                 raise Unavailable(
-                    f"No replica {replica!r} is up (up: {up}); start it with `mart replica --name {replica}`."
+                    f"No replica {replica!r} is up (up: {', '.join(sorted(up)) or 'none'}); "
+                    f"start it with `mart replica --name {replica}`."
                 )
 
     def _require_worlds(self) -> tuple[Task, int]:
@@ -214,11 +214,6 @@ class RolloutClient:
             for share, reply in zip(self._shares, replies, strict=True)
         ]
         return join(parts)
-
-
-def replicas_up(bus: Bus) -> tuple[str, ...]:
-    """Names of the replicas that are up now."""
-    return tuple(keys.last_of(key) for key in bus.alive(keys.alive_of("replica")))
 
 
 def _split(worlds: int, replicas: Sequence[str]) -> list[_Share]:

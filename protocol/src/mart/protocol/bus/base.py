@@ -71,7 +71,10 @@ class Bus(ABC):
 
     @abstractmethod
     def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
-        """The liveliness keys that exist now, sorted."""
+        """The liveliness keys that exist now, sorted; one announced just now may be missing: `watch` misses none.
+
+        Raises Unavailable where the router does not answer.
+        """
 
     @abstractmethod
     def close(self) -> None: ...

@@ -152,8 +152,14 @@ class ZenohBus(Bus):
         return self._keep(subscriber)
 
     def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
-        replies = self._session.liveliness().get(alive_expression, timeout=timeout_s)
-        return sorted(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
+        found = []
+        for reply in self._session.liveliness().get(alive_expression, timeout=timeout_s):
+            if reply.ok is None:
+                raise Unavailable(
+                    f"The router did not say within {timeout_s:g} s who is alive; see `mart doctor`."
+                )
+            found.append(str(reply.ok.key_expr))
+        return sorted(found)
 
     def close(self) -> None:
         for declared in list(self._declared):
