@@ -58,7 +58,8 @@ class Bus(ABC):
     def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
         """The first answer. Blocks this thread; raises Unavailable where nobody answers in time.
 
-        A request whose answer is lost on the way is asked again: whoever serves it answers a repetition as well.
+        A request whose answer is lost on the way is asked again, and whoever serves it does it once: a repetition
+        gets the first one's answer. Only a service that was started anew in between does it a second time.
         """
 
     @abstractmethod

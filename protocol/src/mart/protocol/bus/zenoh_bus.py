@@ -21,11 +21,13 @@ import logging
 import threading
 from collections.abc import Callable
 from typing import Any
+from uuid import uuid4
 
 import zenoh
 
 from mart.protocol import clock
 from mart.protocol.bus.base import AliveHandler, Bus, Closable, Handler, Publisher, RequestHandler, Sample
+from mart.protocol.bus.repetitions import Repetitions
 from mart.protocol.errors import Unavailable
 from mart.protocol.keys import Priority, Topic
 
@@ -87,16 +89,23 @@ class ZenohBus(Bus):
         return self._keep(self._session.declare_subscriber(key_expression, _logged(deliver)))
 
     def serve(self, topic: Topic, handler: RequestHandler) -> Closable:
+        repetitions = Repetitions()
+
         def deliver(query: zenoh.Query) -> None:
-            handler(_ZenohRequest(query))
+            request = repetitions.ask(
+                _bytes(query.attachment), str(query.key_expr), _bytes(query.payload), _ZenohAsker(query)
+            )
+            if request is not None:
+                handler(request)
 
         return self._keep(self._session.declare_queryable(topic.key, _logged(deliver)))
 
     def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
         until_s = clock.monotonic_s() + timeout_s
         rest_s = _FIRST_REST_S
+        request_id = uuid4().bytes
         while (left_s := until_s - clock.monotonic_s()) > 0.0:
-            answer = self._ask(topic, payload, left_s)
+            answer = self._ask(topic, payload, left_s, request_id)
             if answer is not None:
                 return answer
             # Nobody serves it yet, or the link to whoever does was just lost: it is back within the time, or not.
@@ -108,11 +117,12 @@ class ZenohBus(Bus):
             "`mart doctor` tells."
         )
 
-    def _ask(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes | None:
+    def _ask(self, topic: Topic, payload: bytes, timeout_s: float, request_id: bytes) -> bytes | None:
         """None at once where the router knows nobody who serves this."""
         replies = self._session.get(
             topic.key,
             payload=payload,
+            attachment=request_id,
             timeout=timeout_s,
             priority=_PRIORITY[topic.priority],
             express=topic.express,
@@ -183,14 +193,12 @@ class _ZenohPublisher:
         self._publisher.undeclare()
 
 
-class _ZenohRequest:
+class _ZenohAsker:
     def __init__(self, query: zenoh.Query) -> None:
         self._query = query
-        self.key = str(query.key_expr)
-        self.payload = query.payload.to_bytes() if query.payload is not None else b""
 
-    def reply(self, payload: bytes) -> None:
-        self._query.reply(self.key, payload)
+    def answer(self, payload: bytes) -> None:
+        self._query.reply(self._query.key_expr, payload)
         self._query.drop()
 
 
@@ -232,6 +240,10 @@ def _open(settings: dict[str, Any], endpoint: str) -> zenoh.Session:
         raise Unavailable(
             f"Could not {word} {endpoint}: {reason}. Set MART_ROUTER or see `mart doctor`."
         ) from error
+
+
+def _bytes(sent: zenoh.ZBytes | None) -> bytes:
+    return b"" if sent is None else sent.to_bytes()
 
 
 def _logged(deliver: Callable[[Any], None]) -> Callable[[Any], None]:
