@@ -20,7 +20,6 @@ from mart.protocol.messages import (
     Seat,
 )
 
-OPTIONS = Options(Path("data"), seed=7)
 Open, Close = RoomsRequest.Open, RoomsRequest.Close
 
 
@@ -32,8 +31,12 @@ class Noted(Staff):
 
 
 @pytest.fixture
-def staff(tmp_path: Path) -> Staff:
-    options = Options(tmp_path, seed=7)
+def options(tmp_path: Path) -> Options:
+    return Options(tmp_path, seed=7)
+
+
+@pytest.fixture
+def staff(options: Options, tmp_path: Path) -> Staff:
     return Noted(options, processes(options), tmp_path / "socket")
 
 
@@ -43,12 +46,12 @@ def statuses() -> dict[str, RoomStatus]:
 
 
 @pytest.fixture
-def rooms(staff: Staff, statuses: dict[str, RoomStatus]) -> Rooms:
-    return Rooms(OPTIONS, staff, statuses)
+def rooms(options: Options, staff: Staff, statuses: dict[str, RoomStatus]) -> Rooms:
+    return Rooms(options, staff, statuses)
 
 
-def opened(rooms: Rooms, task: str = DEFAULT_TASK, room: str = "", control_hz: float = 0.0) -> str:
-    return rooms.answer(RoomsRequest(open=Open(task=task, room=room, control_hz=control_hz))).status.room
+def opened(rooms: Rooms, task: str = DEFAULT_TASK, **asked: Any) -> str:
+    return rooms.answer(RoomsRequest(open=Open(task=task, **asked))).status.room
 
 
 def close(rooms: Rooms, name: str) -> None:
@@ -66,6 +69,19 @@ def test_a_new_room_is_a_sim_that_is_kept_running(rooms: Rooms, staff: Staff) ->
     assert "[program:sim-room-2]" in staff.config.read_text()
     assert opened(rooms, room="lab") == "lab"
     assert rooms.names == ["lab", "room-1", "room-2"]
+
+
+def test_a_plan_travels_to_the_sim(rooms: Rooms, staff: Staff) -> None:
+    opened(rooms, episodes=50)
+    assert sim(staff, "room-2").command[-2:] == ("--episodes", "50")
+
+
+def test_a_free_name_is_that_of_no_room_that_ever_was(rooms: Rooms, options: Options) -> None:
+    """Or it would go on counting the episodes of somebody else's session."""
+    (options.data_dir / "rooms").mkdir()
+    (options.data_dir / "rooms" / "room-2.json").touch()
+    assert opened(rooms) == "room-3"
+    assert opened(rooms, room="room-2") == "room-2"
 
 
 def test_others_are_not_started_anew_when_one_closes(rooms: Rooms, staff: Staff) -> None:
@@ -87,6 +103,7 @@ def test_others_are_not_started_anew_when_one_closes(rooms: Rooms, staff: Staff)
         ({"room": "../x"}, InvalidInput, "lower-case"),
         ({"control_hz": 5.0}, InvalidInput, "20, 30 or 60"),
         ({"control_hz": float("nan")}, InvalidInput, "20, 30 or 60"),
+        ({"episodes": 10_001}, InvalidInput, "at most 10000"),
     ],
 )
 def test_what_cannot_be_opened(

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import pytest
+
 from mart.platform.rooms import as_json, in_words, open_rooms
 from mart.protocol import keys
 from mart.protocol import messages as m
@@ -24,6 +26,8 @@ def test_a_room_is_shown_with_its_people_and_whom_it_waits_for() -> None:
     (status,) = open_rooms(bus)
     assert "arm0 Ana" in in_words(status)
     assert "waiting for arm1 for 0.8 s" in in_words(status)
+    assert "episode 2 of 50" in in_words(status)
+    assert as_json(status)["plan"] == {"episodes": 50, "good": 1}
     assert as_json(status)["waiting_for"] == [{"arm": "arm1", "since_s": 0.8}]
     assert as_json(status)["seats"] == [{"arm": "arm0", "operator": "human", "name": "Ana"}]
 
@@ -34,3 +38,15 @@ def test_no_sim_means_no_room_and_no_wait() -> None:
 
 def test_a_room_that_waits_for_nobody_says_nothing_of_waiting() -> None:
     assert "waiting" not in in_words(m.RoomStatus(room="room-1", barrier=m.BARRIER_PHASE_RUNNING))
+
+
+@pytest.mark.parametrize(
+    ("good", "words"), [(0, "episode 1 of 2"), (1, "episode 2 of 2"), (2, "all 2 episodes recorded")]
+)
+def test_a_plan_counts_good_episodes(good: int, words: str) -> None:
+    assert words in in_words(m.RoomStatus(room="room-1", plan=m.Plan(episodes=2, good=good)))
+
+
+def test_without_a_plan_nothing_is_counted() -> None:
+    assert as_json(m.RoomStatus(room="room-1"))["plan"] is None
+    assert "episode " not in in_words(m.RoomStatus(room="room-1"))

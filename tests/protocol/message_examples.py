@@ -84,6 +84,7 @@ def _room() -> tuple[Message, ...]:
         progress=_PROGRESS,
         episodes_saved=2,
         episodes_good=1,
+        plan=m.Plan(episodes=50, good=1),
         wall_ns=_STAMP,
         boot=_STAMP,
     )

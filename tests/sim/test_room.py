@@ -261,6 +261,15 @@ def test_saved_and_good_episodes_are_counted(stage: Stage) -> None:
     assert (stage.kept[-1].saved, stage.kept[-1].good) == (3, 1)
 
 
+def test_a_plan_counts_good_episodes_only(world: World) -> None:
+    stage = Stage(world, RoomRecord(seed=1, saved=9, good=4).planned(world.task.name, 2))
+    assert (stage.status().plan.episodes, stage.status().plan.good) == (2, 0)
+    for outcome in (OUTCOME_FAILURE, OUTCOME_SUCCESS):
+        stage.room.episode_saved(Event.EpisodeSaved(number=1, outcome=outcome, verified=True))
+    assert stage.status().plan.good == 1
+    assert not Stage(world).status().HasField("plan")
+
+
 def test_a_full_disk_does_not_stop_the_world(world: World) -> None:
     def keep(_record: RoomRecord) -> None:
         raise OSError(28, "No space left on device")

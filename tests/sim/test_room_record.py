@@ -20,10 +20,20 @@ def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
     seats.assign("arm1", OPERATOR_SCRIPT)
     seats.assign("arm2", OPERATOR_POLICY, "lifter")
     seats.claim("arm2", "h2", "Ben", OPERATOR_HUMAN)
-    record = RoomRecord(seed=5, episodes=3, saved=2, good=1).with_seats(seats)
+    record = RoomRecord(seed=5, episodes=3, saved=2, good=1).with_seats(seats).planned("lift", 50)
     room_record.save(path, record)
     assert room_record.load(path) == record
     assert record.holders() == list(seats)
+
+
+def test_a_plan_counts_from_when_it_was_made() -> None:
+    record = RoomRecord(seed=5, saved=4, good=3).planned("lift", 50)
+    assert record.with_changes(good=5).planned("lift", 50) == record.with_changes(good=5)  # a restart
+    for task, episodes in (("wipe", 50), ("lift", 20)):
+        anew = record.with_changes(good=5).planned(task, episodes).plan
+        assert anew is not None
+        assert (anew.task, anew.episodes, anew.good_before) == (task, episodes, 5)
+    assert record.planned("lift", None).plan is None
 
 
 def test_a_room_that_never_ran_has_no_record(tmp_path: Path) -> None:

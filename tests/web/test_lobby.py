@@ -45,6 +45,7 @@ def test_a_room_is_told_in_the_words_of_the_protocol() -> None:
     assert room["time_limit_s"] > 0
     assert [seat["operator"] for seat in room["seats"]] == ["human", "script"]
     assert [seat["mine"] for seat in room["seats"]] == [True, False]
+    assert room["plan"] is None
 
 
 def test_a_stranger_never_sees_a_holder_id() -> None:
@@ -57,6 +58,14 @@ def test_a_stranger_never_sees_a_holder_id() -> None:
 def test_rooms_are_ordered_by_name() -> None:
     rooms = lobby_with("room-2", "room-10", "room-1").rooms_json("", 0.0)
     assert [room["room"] for room in rooms] == ["room-1", "room-10", "room-2"]
+
+
+def test_a_plan_is_told() -> None:
+    told = status()
+    told.plan.episodes = 50
+    lobby = Lobby()
+    lobby.see(told, 0.0)
+    assert lobby.room_json("room-1", "", 0.0)["plan"] == {"episodes": 50, "good": 0}
 
 
 def test_a_silent_room_is_stale() -> None:

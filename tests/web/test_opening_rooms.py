@@ -42,10 +42,12 @@ async def test_a_room_is_opened_and_closed(enter: Enter, asked: list[RoomsReques
     assert told["opens_rooms"]
     arms = {task["name"]: task["arms"] for task in told["tasks"]}
     assert (arms["three_arm_lift_wiping"], arms["two_arm_multi_cube_lifting"]) == (3, 2)
-    opened = await ana.post("/api/rooms", json={"task": "three_arm_lift_wiping", "control_hz": 30})
+    opened = await ana.post(
+        "/api/rooms", json={"task": "three_arm_lift_wiping", "control_hz": 30, "episodes": 50}
+    )
     assert opened.json() == {"room": "room-2"}
     assert (await ana.delete("/api/rooms/room-2")).json() == {"room": "room-2"}
-    wanted = RoomsRequest.Open(task="three_arm_lift_wiping", control_hz=30)
+    wanted = RoomsRequest.Open(task="three_arm_lift_wiping", control_hz=30, episodes=50)
     assert asked == [
         RoomsRequest(open=wanted),
         RoomsRequest(close=RoomsRequest.Close(room="room-2")),
@@ -64,8 +66,9 @@ async def test_only_who_has_joined_and_only_from_our_pages(enter: Enter, asked: 
     foreign = {"Origin": "https://evil.example"}
     assert (await ana.post("/api/rooms", json=body, headers=foreign)).status_code == 403
     assert (await ana.delete("/api/rooms/room-1", headers=foreign)).status_code == 403
-    for bad in ({}, {"task": "x" * 65}, {**body, "control_hz": -1}, {**body, "room": "y" * 65}):
-        assert (await ana.post("/api/rooms", json=bad)).status_code == 400
+    for bad in ({"task": "x" * 65}, {"control_hz": -1}, {"room": "y" * 65}, {"episodes": 10_001}):
+        assert (await ana.post("/api/rooms", json={**body, **bad})).status_code == 400
+    assert (await ana.post("/api/rooms", json={})).status_code == 400
     assert asked == []
 
 

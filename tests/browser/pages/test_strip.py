@@ -75,6 +75,23 @@ def test_figures(run: Run) -> None:
     assert view(run, room(MINE, phase="countdown", remaining_s=0.0))["figure"] == "1"
 
 
+@pytest.mark.parametrize(
+    ("plan", "words"),
+    [
+        (None, ""),
+        ({"episodes": 50, "good": 2}, "Episode 3 of 50"),
+        ({"episodes": 50, "good": 51}, "All 50 episodes recorded"),
+        ({"episodes": 1, "good": 1}, "Planned episode recorded"),
+    ],
+)
+def test_the_plan_is_told_and_stops_nobody(run: Run, plan: dict[str, int] | None, words: str) -> None:
+    for phase in ("practice", "countdown", "recording", "ended"):
+        assert view(run, room(MINE, phase=phase) | {"plan": plan})["plan"] == words
+    shown = view(run, room(MINE) | {"plan": plan})
+    assert shown["actions"] == ["ready"]
+    assert ("you may go on" in shown["detail"]) == ("recorded" in words)
+
+
 def test_people_are_named_when_they_wait_for_each_other(run: Run) -> None:
     assert "Waiting for Ben" in view(run, room(READY, seat("arm1", name="Ben")))["detail"]
     assert "Ben is ready" in view(run, room(MINE, seat("arm1", name="Ben", ready=True)))["detail"]

@@ -27,6 +27,11 @@ _TIME_LIMIT = click.FloatRange(0.0, 3600.0, min_open=True)
 @click.option("--room", default="room-1", show_default=True, help="Id of the room.")
 @click.option("--control-hz", default=20.0, show_default=True, help="Ticks a second, at most.")
 @click.option(
+    "--episodes",
+    type=click.IntRange(1, 10_000),
+    help="How many good episodes are wanted; the pages count them.  [default: no plan]",
+)
+@click.option(
     "--host", default="127.0.0.1", show_default=True, help="0.0.0.0 lets phones and other laptops in."
 )
 @click.option("--port", default=8443, show_default=True, help="Port of the pages.")
@@ -35,7 +40,15 @@ _TIME_LIMIT = click.FloatRange(0.0, 3600.0, min_open=True)
 )
 @json_option
 def run(
-    *, task: str, room: str, control_hz: float, host: str, port: int, public_host: str, as_json: bool
+    *,
+    task: str,
+    room: str,
+    control_hz: float,
+    episodes: int | None,
+    host: str,
+    port: int,
+    public_host: str,
+    as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
     from mart.platform.opening import opening_rooms
@@ -47,7 +60,9 @@ def run(
 
     get_task(task)
     settings = Settings()
-    options = Options(settings.data_dir, settings.router, host, port, public_host, room, task, control_hz)
+    options = Options(
+        settings.data_dir, settings.router, host, port, public_host, room, task, control_hz, episodes=episodes
+    )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)
     click.echo("Starting MART …", err=True)

@@ -7,6 +7,7 @@ import logging
 import queue
 import threading
 from collections.abc import Iterator
+from itertools import count
 
 from mart.platform.plan import Options, room
 from mart.platform.staff import Staff
@@ -30,6 +31,7 @@ _log = logging.getLogger(__name__)
 KIND = "platform"
 NAME = "platform-1"
 MAX_ROOMS = 8
+MAX_EPISODES = 10_000
 CONTROL_HZ = (20.0, 30.0, 60.0)
 _MAX_REQUEST_BYTES = 1024
 _MAX_STATUS_BYTES = 64 * 1024
@@ -57,18 +59,27 @@ class Rooms:
 
     def _open(self, asked: RoomsRequest.Open) -> str:
         names, control_hz = self.names, asked.control_hz or CONTROL_HZ[0]
-        name = asked.room or next(free for n in range(1, 100) if (free := f"room-{n}") not in names)
+        name = asked.room or self._free_name()
         keys.status(name)  # raises where a room cannot be called so
         get_task(asked.task)
         if control_hz not in CONTROL_HZ:
             raise InvalidInput(f"{control_hz:g} ticks a second were given; a room has 20, 30 or 60.")
+        if asked.episodes > MAX_EPISODES:
+            raise InvalidInput(
+                f"{asked.episodes} episodes were given; plan at most {MAX_EPISODES}, or none (0)."
+            )
         if name in names:
             raise Conflict(f"{name!r} is open already; give the new room another name.")
         if len(names) >= MAX_ROOMS:
             raise Conflict(f"{len(names)} rooms are open, which is the most; close one first.")
-        self._staff.hire(room(self._options, name, asked.task, control_hz))
+        self._staff.hire(room(self._options, name, asked.task, control_hz, asked.episodes or None))
         _log.info("%s is opened for %s", name, asked.task)
         return name
+
+    def _free_name(self) -> str:
+        """Of no room that ever was: under a name that was used, a room goes on where it was."""
+        used = {path.stem for path in (self._options.data_dir / "rooms").glob("*.json")}
+        return next(free for n in count(1) if (free := f"room-{n}") not in used.union(self.names))
 
     def _close(self, name: str) -> None:
         if name not in self.names:

@@ -37,6 +37,7 @@ class Options:
     control_hz: float = 20.0
     seed: int | None = None
     skill: str | None = None
+    episodes: int | None = None
     time_limit_s: float | None = None
     environment: Mapping[str, str] = field(default_factory=dict)
 
@@ -80,17 +81,21 @@ _TRAINER = Process(("trainer", "--name", "trainer-1"), "trainer", "trainer-1", a
 
 def _sim(options: Options, room: str, *more: str) -> Process:
     command = ["sim", "--room", room, "--task", options.task, "--control-hz", f"{options.control_hz:g}"]
-    chosen = {"--seed": options.seed, "--skill": options.skill, "--time-limit-s": options.time_limit_s}
+    chosen = {
+        "--seed": options.seed,
+        "--skill": options.skill,
+        "--time-limit-s": options.time_limit_s,
+        "--episodes": options.episodes,
+    }
     for option, value in chosen.items():
         command += [] if value is None else [option, str(value)]
     return Process((*command, *more), "sim", room)
 
 
-def room(options: Options, name: str, task: str, control_hz: float) -> Process:
-    """One room more."""
-    return _sim(
-        replace(options, task=task, control_hz=control_hz, seed=None, skill=None, time_limit_s=None), name
-    )
+def room(options: Options, name: str, task: str, control_hz: float, episodes: int | None) -> Process:
+    """One room more. episodes: how many good ones are wanted; None: nobody counts."""
+    chosen = replace(options, task=task, control_hz=control_hz, episodes=episodes)
+    return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None), name)
 
 
 def environment(options: Options) -> dict[str, str]:

@@ -9,7 +9,7 @@ from typing import Any
 from mart.protocol import keys
 from mart.protocol.bus.base import Bus, Sample
 from mart.protocol.codec import decode
-from mart.protocol.messages import RoomStatus, barrier_word, operator_word, phase_word
+from mart.protocol.messages import Plan, RoomStatus, barrier_word, operator_word, phase_word
 
 _STATUS_TIMEOUT_S = 2.0  # five times a second is promised
 
@@ -48,7 +48,13 @@ def as_json(status: RoomStatus) -> dict[str, Any]:
         "episode": {"number": status.episode.number, "phase": phase_word(status.episode.phase)},
         "episodes_saved": status.episodes_saved,
         "episodes_good": status.episodes_good,
+        "plan": _plan_json(status),
     }
+
+
+def _plan_json(status: RoomStatus) -> dict[str, int] | None:
+    plan = status.plan
+    return {"episodes": plan.episodes, "good": plan.good} if status.HasField("plan") else None
 
 
 def in_words(status: RoomStatus) -> str:
@@ -58,4 +64,12 @@ def in_words(status: RoomStatus) -> str:
         f"{status.room}  {status.task}  {seats}  {phase_word(status.episode.phase)}"
         f"  real-time factor {status.real_time_factor:.2f}"
     )
+    if status.HasField("plan"):
+        line = f"{line}  {_plan_in_words(status.plan)}"
     return f"{line}  waiting for {waiting}" if waiting else line
+
+
+def _plan_in_words(plan: Plan) -> str:
+    if plan.good >= plan.episodes:
+        return f"all {plan.episodes} episodes recorded"
+    return f"episode {plan.good + 1} of {plan.episodes}"

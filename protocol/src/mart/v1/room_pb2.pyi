@@ -98,8 +98,16 @@ class Episode(_message.Message):
     reason: str
     def __init__(self, number: _Optional[int] = ..., phase: _Optional[_Union[EpisodePhase, str]] = ..., remaining_s: _Optional[float] = ..., ticks: _Optional[int] = ..., elapsed_s: _Optional[float] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., seed: _Optional[int] = ..., interrupted: _Optional[bool] = ..., reason: _Optional[str] = ...) -> None: ...
 
+class Plan(_message.Message):
+    __slots__ = ("episodes", "good")
+    EPISODES_FIELD_NUMBER: _ClassVar[int]
+    GOOD_FIELD_NUMBER: _ClassVar[int]
+    episodes: int
+    good: int
+    def __init__(self, episodes: _Optional[int] = ..., good: _Optional[int] = ...) -> None: ...
+
 class RoomStatus(_message.Message):
-    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands")
+    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan")
     ROOM_FIELD_NUMBER: _ClassVar[int]
     TASK_FIELD_NUMBER: _ClassVar[int]
     CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -115,6 +123,7 @@ class RoomStatus(_message.Message):
     WALL_NS_FIELD_NUMBER: _ClassVar[int]
     BOOT_FIELD_NUMBER: _ClassVar[int]
     REJECTED_COMMANDS_FIELD_NUMBER: _ClassVar[int]
+    PLAN_FIELD_NUMBER: _ClassVar[int]
     room: str
     task: str
     control_hz: float
@@ -130,7 +139,8 @@ class RoomStatus(_message.Message):
     wall_ns: int
     boot: int
     rejected_commands: int
-    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ...) -> None: ...
+    plan: Plan
+    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ...) -> None: ...
 
 class SeatRequest(_message.Message):
     __slots__ = ("claim", "release", "assign", "hand_back")
@@ -214,14 +224,16 @@ class EpisodeRequest(_message.Message):
 class RoomsRequest(_message.Message):
     __slots__ = ("open", "close")
     class Open(_message.Message):
-        __slots__ = ("room", "task", "control_hz")
+        __slots__ = ("room", "task", "control_hz", "episodes")
         ROOM_FIELD_NUMBER: _ClassVar[int]
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
+        EPISODES_FIELD_NUMBER: _ClassVar[int]
         room: str
         task: str
         control_hz: float
-        def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ...) -> None: ...
+        episodes: int
+        def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., episodes: _Optional[int] = ...) -> None: ...
     class Close(_message.Message):
         __slots__ = ("room",)
         ROOM_FIELD_NUMBER: _ClassVar[int]

@@ -26,6 +26,9 @@ def _given(**options: Any) -> dict[str, Any]:
 @click.option("--pace", type=float, help="Real-time factor that the world may reach at most.  [default: 1]")
 @click.option("--seed", type=int, help="The room's seed; without it, one is drawn at first start and kept.")
 @click.option("--time-limit-s", type=float, help="Of an episode, simulated.  [default: the task's horizon]")
+@click.option(
+    "--episodes", type=int, help="How many good ones are wanted, at most 10000.  [default: no plan]"
+)
 @click.option("--lockstep", is_flag=True, default=None, help="Scripts drive every arm, as fast as possible.")
 @click.option("--skill", help="Of the scripts that drive here, kept in the files: expert, average or novice.")
 def sim(**options: Any) -> None:

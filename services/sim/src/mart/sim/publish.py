@@ -13,11 +13,13 @@ from mart.protocol.messages import (
     Episode,
     Event,
     Model,
+    Plan,
     Seat,
     Waiting,
 )
 from mart.sim.admission import Arrival
 from mart.sim.episode import EpisodeCourse
+from mart.sim.room_record import RoomRecord
 from mart.sim.seats import SeatHolder
 from mart.sim.world import Progress, World
 
@@ -99,6 +101,11 @@ def episode(course: EpisodeCourse, control_period_s: float, now_s: float) -> Epi
         interrupted=course.interrupted,
         reason=course.reason,
     )
+
+
+def plan(record: RoomRecord) -> Plan | None:
+    wanted = record.plan
+    return Plan(episodes=wanted.episodes, good=record.good - wanted.good_before) if wanted else None
 
 
 def waiting(arms: Iterable[tuple[str, float]]) -> list[Waiting]:

@@ -165,6 +165,7 @@ class Room:
             wall_ns=clock.wall_ns(),
             boot=self._boot_ns,
             rejected_commands=self.rejected.total(),
+            plan=publish.plan(self._record),
         )
 
     def _fire(self, firing: Firing, now_s: float) -> None:

@@ -38,6 +38,16 @@ class SeatRecord(DriverRecord):
         )
 
 
+class PlanRecord(BaseModel):
+    """So many good `episodes` of `task` are wanted; `good_before`: the room's good ones when that was said."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    task: str
+    episodes: int = Field(ge=1)
+    good_before: int = Field(ge=0)
+
+
 class RoomRecord(BaseModel):
     """`episodes` is the newest number; `saved` and `good` count what the recorder reported."""
 
@@ -48,6 +58,15 @@ class RoomRecord(BaseModel):
     saved: int = Field(0, ge=0)
     good: int = Field(0, ge=0)
     seats: tuple[SeatRecord, ...] = ()
+    plan: PlanRecord | None = None
+
+    def planned(self, task: str, episodes: int | None) -> RoomRecord:
+        """With so many good episodes of this task wanted: goes on with the same plan, begins anew with another."""
+        if episodes is None:
+            return self.with_changes(plan=None)
+        if self.plan is not None and (self.plan.task, self.plan.episodes) == (task, episodes):
+            return self
+        return self.with_changes(plan=PlanRecord(task=task, episodes=episodes, good_before=self.good))
 
     def holders(self) -> list[SeatHolder]:
         return [seat.holder() for seat in self.seats]

@@ -116,4 +116,5 @@ def _record(settings: SimSettings) -> RoomRecord:
     kept = room_record.load(settings.room_path)
     if kept is None:
         kept = RoomRecord(seed=secrets.randbits(_SEED_BITS))
+    kept = kept.planned(settings.task, settings.episodes)
     return kept if settings.seed is None else kept.with_changes(seed=settings.seed)

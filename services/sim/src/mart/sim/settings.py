@@ -34,6 +34,9 @@ class SimSettings(_WorldSettings):
         le=3600.0,
         description="How long an episode may last, simulated; default: the task's horizon.",
     )
+    episodes: int | None = Field(
+        None, ge=1, le=10_000, description="How many good episodes are wanted; default: nobody counts."
+    )
     lockstep: bool = Field(False, description="Scripts drive every arm, as fast as the machine allows.")
     skill: str | None = Field(
         None, description="Of the scripts that drive here, told in files: expert, average or novice."

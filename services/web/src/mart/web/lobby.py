@@ -141,7 +141,13 @@ def _status_json(status: RoomStatus, holder_id: str) -> Json:
         "episode": _episode_json(status),
         "episodes_saved": status.episodes_saved,
         "episodes_good": status.episodes_good,
+        "plan": _plan_json(status),
     }
+
+
+def _plan_json(status: RoomStatus) -> Json | None:
+    plan = status.plan
+    return {"episodes": plan.episodes, "good": plan.good} if status.HasField("plan") else None
 
 
 def _task_json(status: RoomStatus) -> Json:

@@ -118,11 +118,9 @@ class Rooms:
         """Whether anything here opens and closes rooms."""
         return bool(self._services.get(PLATFORM))
 
-    async def open(self, task: str, room: str, control_hz: float) -> str:
+    async def open(self, wanted: RoomsRequest.Open) -> str:
         """The new room's name; its sim comes up within seconds."""
-        return await self._ask_platform(
-            RoomsRequest(open=RoomsRequest.Open(task=task, room=room, control_hz=control_hz))
-        )
+        return await self._ask_platform(RoomsRequest(open=wanted))
 
     async def shut(self, room: str) -> str:
         """Closes a room in which no person sits."""

@@ -9,7 +9,13 @@ from pydantic import BaseModel, Field
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
-from mart.protocol.messages import OUTCOME_DISCARDED, OUTCOME_FAILURE, OUTCOME_SUCCESS, operator_from_word
+from mart.protocol.messages import (
+    OUTCOME_DISCARDED,
+    OUTCOME_FAILURE,
+    OUTCOME_SUCCESS,
+    RoomsRequest,
+    operator_from_word,
+)
 from mart.protocol.tasks import get_task, task_names
 from mart.web.lobby import Json, seat_json
 from mart.web.routes.common import Joined, TheSite
@@ -23,6 +29,7 @@ class NewRoom(BaseModel):
     task: str = Field(max_length=64)
     room: str = Field("", max_length=64)  # empty: a free name
     control_hz: float = Field(0.0, ge=0.0, le=250.0)  # 0: the usual rate
+    episodes: int = Field(0, ge=0, le=10_000)  # good ones that are wanted; 0: no plan
 
 
 class Take(BaseModel):
@@ -47,7 +54,7 @@ async def tasks(site: TheSite, _person: Joined) -> Json:
 
 @router.post("/rooms")
 async def open_room(body: NewRoom, site: TheSite, _person: Joined) -> Json:
-    return {"room": await site.rooms.open(body.task, body.room, body.control_hz)}
+    return {"room": await site.rooms.open(RoomsRequest.Open(**body.model_dump()))}
 
 
 @router.delete("/rooms/{room}")

@@ -33,7 +33,7 @@ export const me = () => request("GET", "/me");
 export const rooms = () => request("GET", "/rooms");
 export const findings = () => request("GET", "/health/findings");
 export const tasks = () => request("GET", "/tasks");
-export const openRoom = (task, room, controlHz) => request("POST", "/rooms", { task, room, control_hz: controlHz });
+export const openRoom = (wanted) => request("POST", "/rooms", wanted);
 export const closeRoom = (room) => request("DELETE", `/rooms/${encodeURIComponent(room)}`);
 export const takeSeat = (room, arm, operator = "human", policy = "") => request("POST", seat(room, arm), { operator, policy });
 export const leaveSeat = (room, arm) => request("DELETE", seat(room, arm));

@@ -4,7 +4,7 @@ import * as api from "./api.js";
 import { armName, badge, holder, isMachine, isSeen } from "./arms.js";
 import { element, keepChildren, setShown, setText } from "./dom.js";
 import { machineSelect } from "./machine-select.js";
-import { phaseText, waitingText } from "./words.js";
+import { phaseText, planText, waitingText } from "./words.js";
 
 /**
  * `attempt(deed)` runs an action and shows its failure; `policies(task)` gives the promoted ones. Returns the card's node
@@ -18,7 +18,7 @@ export function roomCard(attempt, policies) {
   const phase = element("span", { class: "soft" });
   const instruction = element("p");
   const seats = element("ul", { class: "seats" });
-  const facts = { id: element("span"), rate: element("span"), saved: element("span") };
+  const facts = { id: element("span"), rate: element("span"), plan: element("strong"), saved: element("span") };
   const node = element(
     "article",
     { class: "room card" },
@@ -37,6 +37,8 @@ export function roomCard(attempt, policies) {
     setText(instruction, room.instruction);
     setText(facts.id, room.room);
     setText(facts.rate, `${room.real_time_factor.toFixed(2)}× real time`);
+    setText(facts.plan, planText(room.plan));
+    setShown(facts.plan, Boolean(room.plan));
     setText(facts.saved, savedText(room));
     const arms = room.seats.map((seat) => seat.arm);
     keepChildren(seats, arms, rows, (arm) => seatRow(room.room, arm, attempt));

@@ -30,6 +30,14 @@ export function phaseText(episode) {
   }
 }
 
+/** "Episode 3 of 50": the one that is being tried, until it is a good one. Nothing where nobody planned. */
+export function planText(plan) {
+  if (!plan) return "";
+  const { episodes, good } = plan;
+  if (good < episodes) return `Episode ${good + 1} of ${episodes}`;
+  return episodes === 1 ? "Planned episode recorded" : `All ${episodes} episodes recorded`;
+}
+
 /** "Waiting for Ana, 0.8 s", or nothing. */
 export function waitingText(room) {
   if (room.barrier === "stopped") return "Emergency stop";

@@ -2,7 +2,7 @@
 
 import { armName, holder, isMachine } from "../arms.js";
 import { LinkState } from "../link/seat-link.js";
-import { clockTime, fileSize, outcomeText } from "../words.js";
+import { clockTime, fileSize, outcomeText, planText } from "../words.js";
 
 const ACTIONS = {
   ready: { command: "ready", text: "Ready", key: "N", primary: true },
@@ -20,11 +20,15 @@ const ACTIONS = {
 };
 
 /**
- * `{ label, figure, limit, detail, recording, actions }` for: the `room` (null: unknown), one's own `seat`, the connection
+ * `{ label, figure, limit, plan, detail, recording, actions }` for: the `room` (null: unknown), one's own `seat`, the connection
  * (`link`: state, problem, role), the newest `saved` episode of this room (null: none yet), and whether one is new
  * here (`isNew`): has not moved the arm yet.
  */
-export function stripView({ room, seat, link, saved, isNew = false }) {
+export function stripView(known) {
+  return { ...whatHappens(known), plan: planText(known.room?.plan) };
+}
+
+function whatHappens({ room, seat, link, saved, isNew = false }) {
   if (!room || !seat) {
     return view("No such seat", "This room is not open, or it has no such arm.", [ACTIONS.lobby]);
   }
@@ -54,6 +58,7 @@ const PHASES = {
       return view("Practice", `${eager.join(" and ")} ${eager.length > 1 ? "are" : "is"} ready to record`, [ACTIONS.ready]);
     }
     if (saved) return view(outcomeText(saved.outcome) || "Interrupted", savedText(saved), [ACTIONS.again]);
+    if (isReached(room.plan)) return view("Practice", "All that was planned is recorded; you may go on.", [ACTIONS.ready]);
     return view("Practice", isNew ? FIRST_MOVES : "Nothing is recorded until everybody is ready.", [ACTIONS.ready]);
   },
   countdown(room) {
@@ -68,6 +73,8 @@ const PHASES = {
     return view(outcomeText(room.episode.outcome), `${reason}Saving; the scene resets by itself.`);
   },
 };
+
+const isReached = (plan) => Boolean(plan) && plan.good >= plan.episodes;
 
 function view(label, detail, actions = []) {
   return { label, figure: "", limit: "", detail, recording: false, actions };

@@ -25,6 +25,7 @@ export class Strip {
     byId("state-label").classList.toggle("recording", view.recording);
     setText(byId("state-figure"), view.figure);
     setText(byId("state-limit"), view.limit);
+    setText(byId("state-plan"), view.plan);
     setText(byId("state-detail"), view.detail);
     setShown(byId("state-detail"), view.detail !== "");
     this.#showSubtasks(view.recording ? room.progress.subtasks : []);
