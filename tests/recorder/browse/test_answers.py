@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -9,6 +10,8 @@ from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest
 from mart.recorder.browse import answers
 from mart.recorder.browse.answers import Answers
+from mart.recorder.catalog import Row
+from mart.recorder.curate import take_in
 from tests.recorder import synthetic
 from tests.recorder.files import write_episode
 
@@ -124,3 +127,46 @@ def test_a_damaged_file_says_what_is_wrong(root: Path) -> None:
 def test_an_empty_request_is_refused(root: Path) -> None:
     with pytest.raises(InvalidInput, match="An empty request"):
         Answers(root).answer(CatalogueRequest())
+
+
+def curate(asked: Answers, **wanted: Any) -> CatalogueReply.Curated:
+    return asked.answer(CatalogueRequest(curate=CatalogueRequest.Curate(**wanted))).curated
+
+
+def of_dataset(asked: Answers, name: str) -> tuple[int, list[str]]:
+    listed = CatalogueRequest.List(dataset=name)
+    told = asked.answer(CatalogueRequest(list=listed)).listing
+    return told.matching, [f"{one.name} {one.episodes}" for one in told.datasets]
+
+
+def test_a_data_set_is_put_together_by_name_or_by_filter_and_every_act_is_undone(root: Path) -> None:
+    write_episode(root, ticks=5, number=2)
+    asked = Answers(root)
+    first = curate(asked, dataset="good", paths=[PATH])
+    assert (first.changed, first.episodes, of_dataset(asked, "good")) == (1, 1, (1, ["good 1"]))
+    everything = CatalogueRequest.List(task=synthetic.TASK, count=1)
+    more = curate(asked, dataset="good", all=everything)
+    assert (more.changed, more.episodes) == (1, 2)
+    assert curate(asked, dataset="good", take_out=True, paths=[PATH]).episodes == 1
+    undo = CatalogueRequest.Undo(dataset="good", act_ns=more.act_ns)
+    assert asked.answer(CatalogueRequest(undo=undo)).curated.episodes == 0
+    assert of_dataset(Answers(root), "good") == (0, [])
+
+
+def test_what_cannot_be_put_together_is_refused_and_nothing_changes(root: Path) -> None:
+    asked = Answers(root)
+    other = synthetic.TASK.replace("cube", "tray")
+    rows = [Row(path="a", size_bytes=1, task=synthetic.TASK), Row(path="b", size_bytes=1, task=other)]
+    with pytest.raises(InvalidInput, match=r"several tasks were given.*a data set holds one"):
+        take_in(root, "both", rows, [], 1)
+    with pytest.raises(InvalidInput, match="several tasks were given"):
+        take_in(root, "held", rows[1:], [rows[0].model_copy(update={"datasets": ("held",)})], 1)
+    with pytest.raises(InvalidInput, match="Nothing was put into 'new': no episode was chosen"):
+        curate(asked, dataset="new", all=CatalogueRequest.List(outcome="failure"))
+    with pytest.raises(InvalidInput, match="one of the two"):
+        curate(asked, dataset="new")
+    with pytest.raises(NotFound, match="There is no episode"):
+        curate(asked, dataset="new", paths=["../secret"])
+    with pytest.raises(NotFound, match="Nothing was done to the data set 'new'"):
+        asked.answer(CatalogueRequest(undo=CatalogueRequest.Undo(dataset="new", act_ns=7)))
+    assert labels.read(root) == []

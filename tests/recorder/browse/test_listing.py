@@ -12,7 +12,7 @@ Asked = CatalogueRequest.List
 
 ROWS = [
     Row(path="a", size_bytes=1, task="lift", outcome="success", operators={"arm0": "human Ana"}),
-    Row(path="b", size_bytes=1, task="lift", outcome="failure", operators={"arm0": "script"}),
+    Row(path="b", size_bytes=1, task="lift", outcome="failure", skill="novice", operators={"arm0": "script"}),
     Row(
         path="c",
         size_bytes=1,
@@ -20,6 +20,7 @@ ROWS = [
         outcome="success",
         verdict="verified",
         operators={"arm0": "policy lifter | tick 9: human Ben"},
+        datasets=("good",),
     ),
     Row(path="d", size_bytes=1, error="This is no MCAP file."),
 ]
@@ -33,6 +34,9 @@ ROWS = [
         (Asked(outcome="success"), "ca"),
         (Asked(outcome="success", task="lift"), "a"),
         (Asked(verdict="verified"), "c"),
+        (Asked(skill="novice"), "b"),
+        (Asked(dataset="good"), "c"),
+        (Asked(dataset="goo"), ""),
         (Asked(operator="human"), "ca"),
         (Asked(operator="policy"), "c"),
         (Asked(operator="Ben"), "c"),

@@ -8,7 +8,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class RecordedEpisode(_message.Message):
-    __slots__ = ("path", "size_bytes", "room", "number", "task", "control_hz", "outcome", "verdict", "reason", "ticks", "simulated_s", "mode", "skill", "real_time_factor", "missing_ticks", "waited_s", "started_ns", "complete", "repaired", "interrupted", "operators", "error", "note", "dropped")
+    __slots__ = ("path", "size_bytes", "room", "number", "task", "control_hz", "outcome", "verdict", "reason", "ticks", "simulated_s", "mode", "skill", "real_time_factor", "missing_ticks", "waited_s", "started_ns", "complete", "repaired", "interrupted", "operators", "error", "note", "dropped", "datasets")
     class OperatorsEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -40,6 +40,7 @@ class RecordedEpisode(_message.Message):
     ERROR_FIELD_NUMBER: _ClassVar[int]
     NOTE_FIELD_NUMBER: _ClassVar[int]
     DROPPED_FIELD_NUMBER: _ClassVar[int]
+    DATASETS_FIELD_NUMBER: _ClassVar[int]
     path: str
     size_bytes: int
     room: str
@@ -64,7 +65,8 @@ class RecordedEpisode(_message.Message):
     error: str
     note: str
     dropped: bool
-    def __init__(self, path: _Optional[str] = ..., size_bytes: _Optional[int] = ..., room: _Optional[str] = ..., number: _Optional[int] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., reason: _Optional[str] = ..., ticks: _Optional[int] = ..., simulated_s: _Optional[float] = ..., mode: _Optional[str] = ..., skill: _Optional[str] = ..., real_time_factor: _Optional[float] = ..., missing_ticks: _Optional[int] = ..., waited_s: _Optional[float] = ..., started_ns: _Optional[int] = ..., complete: _Optional[bool] = ..., repaired: _Optional[bool] = ..., interrupted: _Optional[bool] = ..., operators: _Optional[_Mapping[str, str]] = ..., error: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ...) -> None: ...
+    datasets: _containers.RepeatedScalarFieldContainer[str]
+    def __init__(self, path: _Optional[str] = ..., size_bytes: _Optional[int] = ..., room: _Optional[str] = ..., number: _Optional[int] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., reason: _Optional[str] = ..., ticks: _Optional[int] = ..., simulated_s: _Optional[float] = ..., mode: _Optional[str] = ..., skill: _Optional[str] = ..., real_time_factor: _Optional[float] = ..., missing_ticks: _Optional[int] = ..., waited_s: _Optional[float] = ..., started_ns: _Optional[int] = ..., complete: _Optional[bool] = ..., repaired: _Optional[bool] = ..., interrupted: _Optional[bool] = ..., operators: _Optional[_Mapping[str, str]] = ..., error: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ..., datasets: _Optional[_Iterable[str]] = ...) -> None: ...
 
 class Span(_message.Message):
     __slots__ = ("begin_s", "end_s", "text")
@@ -108,10 +110,22 @@ class RecordedView(_message.Message):
     start_s: float
     def __init__(self, camera: _Optional[str] = ..., start_s: _Optional[float] = ...) -> None: ...
 
+class NamedDataSet(_message.Message):
+    __slots__ = ("name", "episodes", "sha256", "created_ns")
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    EPISODES_FIELD_NUMBER: _ClassVar[int]
+    SHA256_FIELD_NUMBER: _ClassVar[int]
+    CREATED_NS_FIELD_NUMBER: _ClassVar[int]
+    name: str
+    episodes: int
+    sha256: str
+    created_ns: int
+    def __init__(self, name: _Optional[str] = ..., episodes: _Optional[int] = ..., sha256: _Optional[str] = ..., created_ns: _Optional[int] = ...) -> None: ...
+
 class CatalogueRequest(_message.Message):
-    __slots__ = ("list", "show", "label", "file", "video", "picture")
+    __slots__ = ("list", "show", "label", "file", "video", "picture", "curate", "undo")
     class List(_message.Message):
-        __slots__ = ("task", "outcome", "verdict", "operator", "room", "offset", "count")
+        __slots__ = ("task", "outcome", "verdict", "operator", "room", "offset", "count", "skill", "dataset")
         TASK_FIELD_NUMBER: _ClassVar[int]
         OUTCOME_FIELD_NUMBER: _ClassVar[int]
         VERDICT_FIELD_NUMBER: _ClassVar[int]
@@ -119,6 +133,8 @@ class CatalogueRequest(_message.Message):
         ROOM_FIELD_NUMBER: _ClassVar[int]
         OFFSET_FIELD_NUMBER: _ClassVar[int]
         COUNT_FIELD_NUMBER: _ClassVar[int]
+        SKILL_FIELD_NUMBER: _ClassVar[int]
+        DATASET_FIELD_NUMBER: _ClassVar[int]
         task: str
         outcome: str
         verdict: str
@@ -126,7 +142,9 @@ class CatalogueRequest(_message.Message):
         room: str
         offset: int
         count: int
-        def __init__(self, task: _Optional[str] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., operator: _Optional[str] = ..., room: _Optional[str] = ..., offset: _Optional[int] = ..., count: _Optional[int] = ...) -> None: ...
+        skill: str
+        dataset: str
+        def __init__(self, task: _Optional[str] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., operator: _Optional[str] = ..., room: _Optional[str] = ..., offset: _Optional[int] = ..., count: _Optional[int] = ..., skill: _Optional[str] = ..., dataset: _Optional[str] = ...) -> None: ...
     class Show(_message.Message):
         __slots__ = ("path",)
         PATH_FIELD_NUMBER: _ClassVar[int]
@@ -164,35 +182,61 @@ class CatalogueRequest(_message.Message):
         PATH_FIELD_NUMBER: _ClassVar[int]
         path: str
         def __init__(self, path: _Optional[str] = ...) -> None: ...
+    class Curate(_message.Message):
+        __slots__ = ("dataset", "take_out", "paths", "all")
+        DATASET_FIELD_NUMBER: _ClassVar[int]
+        TAKE_OUT_FIELD_NUMBER: _ClassVar[int]
+        PATHS_FIELD_NUMBER: _ClassVar[int]
+        ALL_FIELD_NUMBER: _ClassVar[int]
+        dataset: str
+        take_out: bool
+        paths: _containers.RepeatedScalarFieldContainer[str]
+        all: CatalogueRequest.List
+        def __init__(self, dataset: _Optional[str] = ..., take_out: _Optional[bool] = ..., paths: _Optional[_Iterable[str]] = ..., all: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ...) -> None: ...
+    class Undo(_message.Message):
+        __slots__ = ("dataset", "act_ns")
+        DATASET_FIELD_NUMBER: _ClassVar[int]
+        ACT_NS_FIELD_NUMBER: _ClassVar[int]
+        dataset: str
+        act_ns: int
+        def __init__(self, dataset: _Optional[str] = ..., act_ns: _Optional[int] = ...) -> None: ...
     LIST_FIELD_NUMBER: _ClassVar[int]
     SHOW_FIELD_NUMBER: _ClassVar[int]
     LABEL_FIELD_NUMBER: _ClassVar[int]
     FILE_FIELD_NUMBER: _ClassVar[int]
     VIDEO_FIELD_NUMBER: _ClassVar[int]
     PICTURE_FIELD_NUMBER: _ClassVar[int]
+    CURATE_FIELD_NUMBER: _ClassVar[int]
+    UNDO_FIELD_NUMBER: _ClassVar[int]
     list: CatalogueRequest.List
     show: CatalogueRequest.Show
     label: CatalogueRequest.Label
     file: CatalogueRequest.File
     video: CatalogueRequest.Video
     picture: CatalogueRequest.Picture
-    def __init__(self, list: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ..., show: _Optional[_Union[CatalogueRequest.Show, _Mapping]] = ..., label: _Optional[_Union[CatalogueRequest.Label, _Mapping]] = ..., file: _Optional[_Union[CatalogueRequest.File, _Mapping]] = ..., video: _Optional[_Union[CatalogueRequest.Video, _Mapping]] = ..., picture: _Optional[_Union[CatalogueRequest.Picture, _Mapping]] = ...) -> None: ...
+    curate: CatalogueRequest.Curate
+    undo: CatalogueRequest.Undo
+    def __init__(self, list: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ..., show: _Optional[_Union[CatalogueRequest.Show, _Mapping]] = ..., label: _Optional[_Union[CatalogueRequest.Label, _Mapping]] = ..., file: _Optional[_Union[CatalogueRequest.File, _Mapping]] = ..., video: _Optional[_Union[CatalogueRequest.Video, _Mapping]] = ..., picture: _Optional[_Union[CatalogueRequest.Picture, _Mapping]] = ..., curate: _Optional[_Union[CatalogueRequest.Curate, _Mapping]] = ..., undo: _Optional[_Union[CatalogueRequest.Undo, _Mapping]] = ...) -> None: ...
 
 class CatalogueReply(_message.Message):
-    __slots__ = ("error", "listing", "details", "episode", "piece")
+    __slots__ = ("error", "listing", "details", "episode", "piece", "curated")
     class Listing(_message.Message):
-        __slots__ = ("episodes", "matching", "successes", "tasks", "operators")
+        __slots__ = ("episodes", "matching", "successes", "tasks", "operators", "datasets", "skills")
         EPISODES_FIELD_NUMBER: _ClassVar[int]
         MATCHING_FIELD_NUMBER: _ClassVar[int]
         SUCCESSES_FIELD_NUMBER: _ClassVar[int]
         TASKS_FIELD_NUMBER: _ClassVar[int]
         OPERATORS_FIELD_NUMBER: _ClassVar[int]
+        DATASETS_FIELD_NUMBER: _ClassVar[int]
+        SKILLS_FIELD_NUMBER: _ClassVar[int]
         episodes: _containers.RepeatedCompositeFieldContainer[RecordedEpisode]
         matching: int
         successes: int
         tasks: _containers.RepeatedScalarFieldContainer[str]
         operators: _containers.RepeatedScalarFieldContainer[str]
-        def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ...) -> None: ...
+        datasets: _containers.RepeatedCompositeFieldContainer[NamedDataSet]
+        skills: _containers.RepeatedScalarFieldContainer[str]
+        def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ..., datasets: _Optional[_Iterable[_Union[NamedDataSet, _Mapping]]] = ..., skills: _Optional[_Iterable[str]] = ...) -> None: ...
     class Details(_message.Message):
         __slots__ = ("episode", "wall_s", "lanes", "traces", "views", "cadence", "versions", "verification")
         class CadenceEntry(_message.Message):
@@ -233,14 +277,36 @@ class CatalogueReply(_message.Message):
         piece: bytes
         size_bytes: int
         def __init__(self, piece: _Optional[bytes] = ..., size_bytes: _Optional[int] = ...) -> None: ...
+    class Curated(_message.Message):
+        __slots__ = ("dataset", "changed", "left_out", "episodes", "act_ns")
+        class LeftOutEntry(_message.Message):
+            __slots__ = ("key", "value")
+            KEY_FIELD_NUMBER: _ClassVar[int]
+            VALUE_FIELD_NUMBER: _ClassVar[int]
+            key: str
+            value: int
+            def __init__(self, key: _Optional[str] = ..., value: _Optional[int] = ...) -> None: ...
+        DATASET_FIELD_NUMBER: _ClassVar[int]
+        CHANGED_FIELD_NUMBER: _ClassVar[int]
+        LEFT_OUT_FIELD_NUMBER: _ClassVar[int]
+        EPISODES_FIELD_NUMBER: _ClassVar[int]
+        ACT_NS_FIELD_NUMBER: _ClassVar[int]
+        dataset: str
+        changed: int
+        left_out: _containers.ScalarMap[str, int]
+        episodes: int
+        act_ns: int
+        def __init__(self, dataset: _Optional[str] = ..., changed: _Optional[int] = ..., left_out: _Optional[_Mapping[str, int]] = ..., episodes: _Optional[int] = ..., act_ns: _Optional[int] = ...) -> None: ...
     ERROR_FIELD_NUMBER: _ClassVar[int]
     LISTING_FIELD_NUMBER: _ClassVar[int]
     DETAILS_FIELD_NUMBER: _ClassVar[int]
     EPISODE_FIELD_NUMBER: _ClassVar[int]
     PIECE_FIELD_NUMBER: _ClassVar[int]
+    CURATED_FIELD_NUMBER: _ClassVar[int]
     error: _room_pb2.Error
     listing: CatalogueReply.Listing
     details: CatalogueReply.Details
     episode: RecordedEpisode
     piece: CatalogueReply.Piece
-    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., listing: _Optional[_Union[CatalogueReply.Listing, _Mapping]] = ..., details: _Optional[_Union[CatalogueReply.Details, _Mapping]] = ..., episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., piece: _Optional[_Union[CatalogueReply.Piece, _Mapping]] = ...) -> None: ...
+    curated: CatalogueReply.Curated
+    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., listing: _Optional[_Union[CatalogueReply.Listing, _Mapping]] = ..., details: _Optional[_Union[CatalogueReply.Details, _Mapping]] = ..., episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., piece: _Optional[_Union[CatalogueReply.Piece, _Mapping]] = ..., curated: _Optional[_Union[CatalogueReply.Curated, _Mapping]] = ...) -> None: ...

@@ -24,7 +24,7 @@ JOB_STATE_FAILED: JobState
 JOB_STATE_CANCELLED: JobState
 
 class Order(_message.Message):
-    __slots__ = ("model", "task", "data", "preset", "seeds", "evaluation_episodes", "score_episodes")
+    __slots__ = ("model", "task", "data", "preset", "seeds", "evaluation_episodes", "score_episodes", "dataset")
     MODEL_FIELD_NUMBER: _ClassVar[int]
     TASK_FIELD_NUMBER: _ClassVar[int]
     DATA_FIELD_NUMBER: _ClassVar[int]
@@ -32,6 +32,7 @@ class Order(_message.Message):
     SEEDS_FIELD_NUMBER: _ClassVar[int]
     EVALUATION_EPISODES_FIELD_NUMBER: _ClassVar[int]
     SCORE_EPISODES_FIELD_NUMBER: _ClassVar[int]
+    DATASET_FIELD_NUMBER: _ClassVar[int]
     model: str
     task: str
     data: str
@@ -39,7 +40,8 @@ class Order(_message.Message):
     seeds: _containers.RepeatedScalarFieldContainer[int]
     evaluation_episodes: int
     score_episodes: int
-    def __init__(self, model: _Optional[str] = ..., task: _Optional[str] = ..., data: _Optional[str] = ..., preset: _Optional[str] = ..., seeds: _Optional[_Iterable[int]] = ..., evaluation_episodes: _Optional[int] = ..., score_episodes: _Optional[int] = ...) -> None: ...
+    dataset: str
+    def __init__(self, model: _Optional[str] = ..., task: _Optional[str] = ..., data: _Optional[str] = ..., preset: _Optional[str] = ..., seeds: _Optional[_Iterable[int]] = ..., evaluation_episodes: _Optional[int] = ..., score_episodes: _Optional[int] = ..., dataset: _Optional[str] = ...) -> None: ...
 
 class Job(_message.Message):
     __slots__ = ("id", "sweep", "order", "state", "executor", "submitted_ns", "started_ns", "ended_ns", "attempt", "detail", "run", "progress")
@@ -172,14 +174,20 @@ class Policy(_message.Message):
     def __init__(self, name: _Optional[str] = ..., model: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[_Iterable[str]] = ..., joint: _Optional[bool] = ..., seed: _Optional[int] = ..., updates: _Optional[int] = ..., job: _Optional[str] = ..., evaluation: _Optional[_Union[Evaluation, _Mapping]] = ..., promoted_ns: _Optional[int] = ...) -> None: ...
 
 class DataSet(_message.Message):
-    __slots__ = ("path", "episodes", "tasks")
+    __slots__ = ("path", "episodes", "tasks", "name", "left_out", "sha256")
     PATH_FIELD_NUMBER: _ClassVar[int]
     EPISODES_FIELD_NUMBER: _ClassVar[int]
     TASKS_FIELD_NUMBER: _ClassVar[int]
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    LEFT_OUT_FIELD_NUMBER: _ClassVar[int]
+    SHA256_FIELD_NUMBER: _ClassVar[int]
     path: str
     episodes: int
     tasks: _containers.RepeatedScalarFieldContainer[str]
-    def __init__(self, path: _Optional[str] = ..., episodes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ...) -> None: ...
+    name: str
+    left_out: int
+    sha256: str
+    def __init__(self, path: _Optional[str] = ..., episodes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., name: _Optional[str] = ..., left_out: _Optional[int] = ..., sha256: _Optional[str] = ...) -> None: ...
 
 class TrainerRequest(_message.Message):
     __slots__ = ("choices", "submit", "list", "show", "logs", "cancel", "retry", "promote", "policies", "withdraw", "video")

@@ -9,8 +9,8 @@ import json
 import logging
 import os
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -21,6 +21,7 @@ _log = logging.getLogger(__name__)
 FILE_NAME = "labels.jsonl"
 MAX_NOTE_CHARACTERS = 2000
 _DAY = re.compile(r"\d{4}-\d{2}-\d{2}")
+_DATASET = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
 
 
 class Kind(StrEnum):
@@ -28,6 +29,8 @@ class Kind(StrEnum):
     NOTE = "note"  # value: free text
     USE = "use"  # value: keep or drop (leave out of data sets)
     VERDICT = "verdict"  # value: verified, diverged or unverified, from a later re-simulation
+    JOIN = "join"  # value: the name of a data set that it becomes part of (datasets.py)
+    LEAVE = "leave"  # value: the name of a data set that it was part of
 
 
 _ALLOWED = {
@@ -51,6 +54,11 @@ class Label:
         allowed = _ALLOWED.get(self.kind)
         if allowed is not None and self.value not in allowed:
             raise InvalidInput(f"The {self.kind} {self.value!r} was given; it must be {', '.join(allowed)}.")
+        if self.kind in (Kind.JOIN, Kind.LEAVE) and not _DATASET.fullmatch(self.value):
+            raise InvalidInput(
+                f"The data set {self.value[:100]!r} was given; name it with 1 to 64 lower-case letters, digits, '-' or "
+                "'_', the first a letter or digit."
+            )
         if len(self.value) > MAX_NOTE_CHARACTERS:
             raise InvalidInput(
                 f"A note of {len(self.value)} characters was given; {MAX_NOTE_CHARACTERS} are allowed."
@@ -59,12 +67,13 @@ class Label:
 
 @dataclass(frozen=True)
 class Labelled:
-    """What holds about one file now; None where nothing was said."""
+    """What holds about one file now; None where nothing was said. datasets: that it is part of, and since when."""
 
     outcome: str | None = None
     note: str | None = None
     verdict: str | None = None
     dropped: bool = False
+    datasets: Mapping[str, int] = field(default_factory=dict)
 
     def with_label(self, label: Label) -> Labelled:
         match label.kind:
@@ -76,6 +85,11 @@ class Labelled:
                 return replace(self, verdict=label.value)
             case Kind.USE:
                 return replace(self, dropped=label.value == "drop")
+            case Kind.JOIN:
+                return replace(self, datasets={**self.datasets, label.value: label.at_ns})
+            case Kind.LEAVE:
+                kept = {name: at_ns for name, at_ns in self.datasets.items() if name != label.value}
+                return replace(self, datasets=kept)
 
 
 def fold(labels: Iterable[Label]) -> dict[str, Labelled]:

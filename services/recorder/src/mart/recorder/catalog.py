@@ -56,6 +56,11 @@ class Row(BaseModel):
     error: str | None = None  # why the file cannot be used
     note: str | None = None
     dropped: bool = False
+    datasets: tuple[str, ...] = ()  # that it is part of
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        return tuple(sorted(self.operators))
 
     @property
     def verified(self) -> bool:
@@ -67,6 +72,7 @@ class Row(BaseModel):
             "verdict": said.verdict or self.verdict,
             "note": said.note,
             "dropped": said.dropped,
+            "datasets": tuple(sorted(said.datasets)),
         }
         return self.model_copy(update=changes)
 

@@ -12,13 +12,12 @@ import click
 from mart.protocol import clock
 from mart.protocol.cli import Gathered, json_option, print_result
 from mart.protocol.errors import InvalidInput, Unavailable
+from mart.recorder.filters import OUTCOMES, VERDICTS, filters, passing
 from mart.recorder.settings import RecorderSettings
 
 if TYPE_CHECKING:
     from mart.recorder.verify import Resimulate
 
-_OUTCOMES = ("success", "failure", "discarded", "unspecified")
-_VERDICTS = ("verified", "diverged", "unverified")
 _path = click.argument("path", type=click.Path(path_type=Path))
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
 _replica = click.option("--replica", help="Which replica re-simulates.  [default: replica-1]")
@@ -50,12 +49,13 @@ def episodes() -> None:
 
 @episodes.command("list")
 @_paths
+@filters()
 @json_option
-def list_episodes(paths: tuple[Path, ...], as_json: bool) -> None:
+def list_episodes(paths: tuple[Path, ...], as_json: bool, **wanted: Any) -> None:
     """List episodes: what they are, how they ended, whether they are verified."""
     from mart.recorder import files, report
 
-    rows = files.rows(_given(paths))
+    rows = passing(files.rows(_given(paths)), wanted)
     print_result({"episodes": [report.listed(path, row) for path, row in rows]}, report.table(rows), as_json)
 
 
@@ -133,7 +133,7 @@ def repair(folder: Path | None, replica: str | None, as_json: bool) -> int:
 
 @episodes.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--outcome", type=click.Choice(_OUTCOMES[:3]), help="How it really ended.")
+@click.option("--outcome", type=click.Choice(OUTCOMES[:3]), help="How it really ended.")
 @click.option("--note", help="Anything worth remembering.")
 @click.option("--drop/--undrop", default=None, help="Leave out of data sets, or take in again.")
 @json_option
@@ -170,8 +170,9 @@ def label(
 @click.option(
     "--out", type=click.Path(path_type=Path), required=True, help="The file or folder to be written."
 )
-@click.option("--outcome", type=click.Choice([*_OUTCOMES, "any"]), multiple=True, help="[default: success]")
-@click.option("--verdict", type=click.Choice([*_VERDICTS, "any"]), multiple=True, help="[default: verified]")
+@click.option("--outcome", type=click.Choice([*OUTCOMES, "any"]), multiple=True, help="[default: success]")
+@click.option("--verdict", type=click.Choice([*VERDICTS, "any"]), multiple=True, help="[default: verified]")
+@click.option("--dataset", default="", help="Only of this data set.")
 @json_option
 def export(paths: tuple[Path, ...], out: Path, as_json: bool, **wanted: Any) -> None:
     """Write episodes of one task as a data set of another project; dropped ones are left out."""
@@ -183,7 +184,7 @@ def export(paths: tuple[Path, ...], out: Path, as_json: bool, **wanted: Any) -> 
     else:
         from mart.recorder.export.lerobot import write_lerobot as write
 
-    rows = files.rows(_given(paths))
+    rows = [one for one in files.rows(_given(paths)) if wanted["dataset"] in ("", *one[1].datasets)]
     choice = choose(rows, _any(wanted["outcome"], "success"), _any(wanted["verdict"], "verified"))
     ticks = write(choice, out)
     count, task = len(choice.episodes), choice.task.name

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from mart.protocol.episodes.datasets import NamedDataSet
 from mart.recorder.catalog import Row
+from mart.recorder.curate import Curated
 from mart.recorder.repair import Repaired
 from mart.recorder.verify import Compared
 
@@ -82,3 +85,41 @@ def repaired(repaired: Sequence[Repaired]) -> tuple[dict[str, Any], str]:
     ]
     lines = [f"{t['part']} → {t['path'] or 'not repaired'}. {t['detail']}" for t in told]
     return {"repaired": told}, "\n".join(lines) or "There is nothing to repair."
+
+
+def dataset(found: NamedDataSet) -> dict[str, Any]:
+    return {
+        "name": found.name,
+        "count": len(found.episodes),
+        "sha256": found.sha256,
+        "created": datetime.fromtimestamp(found.created_ns / 1e9, UTC).isoformat(timespec="seconds"),
+    }
+
+
+def dataset_table(told: Sequence[Mapping[str, Any]]) -> str:
+    if not told:
+        return "There are no data sets. `mart datasets create NAME` makes one of all good episodes."
+    return "\n".join(map(_dataset_line, told))
+
+
+def dataset_text(found: NamedDataSet, held: Sequence[tuple[Path, Row]], left_out: Mapping[str, str]) -> str:
+    """`left_out`: why each episode is not learned from, empty for one that is."""
+    unfit = [f"Left out of a training: {path} ({why})." for path, why in left_out.items() if why]
+    return "\n".join([_dataset_line(dataset(found)), table(held), *unfit])
+
+
+def curated(done: Curated, what: str) -> tuple[dict[str, Any], str]:
+    told = dataset(done.dataset) | {"changed": done.changed, "left_out": dict(done.left_out)}
+    left_out = ", ".join(f"{count} {why}" for why, count in sorted(done.left_out.items()))
+    held = len(done.dataset.episodes)
+    text = f"{done.dataset.name}: {done.changed} {_episodes(done.changed)} {what}, it holds {held} now"
+    return told, f"{text}; left out: {left_out}." if left_out else f"{text}."
+
+
+def _dataset_line(told: Mapping[str, Any]) -> str:
+    count = told["count"]
+    return f"{told['name']}  {count} {_episodes(count)}  {told['sha256'][:12]}  since {told['created']}"
+
+
+def _episodes(count: int) -> str:
+    return "episode" if count == 1 else "episodes"

@@ -5,18 +5,21 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from mart.protocol import clock, codec
-from mart.protocol.episodes import labels
+from mart.protocol.episodes import datasets, labels
 from mart.protocol.episodes.labels import Kind, Label
 from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RecordedView, State
 from mart.protocol.recording import EVENT, STATE, VERSIONS, CadenceRecord, VerificationRecord, video_topic
+from mart.recorder import curate
 from mart.recorder.browse import pictures
-from mart.recorder.browse.listing import episode_message, listing
+from mart.recorder.browse.listing import episode_message, listing, matches
 from mart.recorder.browse.timeline import timeline
 from mart.recorder.catalog import Row, list_folder, overlaid
+from mart.recorder.curate import Curated
 
 PIECE_BYTES = 1024 * 1024
 _FRESH_S = 1.0
@@ -32,26 +35,27 @@ class Answers:
         self._rows: dict[str, Row] = {}
         self._read_s = float("-inf")
         self._kept: OrderedDict[tuple[str, ...], bytes] = OrderedDict()
+        self._handlers: dict[str, Callable[[Any], CatalogueReply]] = {
+            "list": self._list,
+            "show": lambda asked: CatalogueReply(details=self._details(asked.path)),
+            "label": lambda asked: CatalogueReply(episode=episode_message(self._label(asked))),
+            "file": lambda asked: CatalogueReply(piece=self._file_piece(asked)),
+            "video": lambda asked: CatalogueReply(piece=self._video_piece(asked)),
+            "picture": lambda asked: CatalogueReply(piece=_piece(self._picture(asked.path), 0)),
+            "curate": lambda asked: self._curated(self._curate(asked)),
+            "undo": lambda asked: self._curated(self._undo(asked)),
+        }
 
     def answer(self, request: CatalogueRequest) -> CatalogueReply:
-        match request.WhichOneof("what"):
-            case "list":
-                self._refresh()
-                return CatalogueReply(listing=listing(list(self._rows.values()), request.list))
-            case "show":
-                return CatalogueReply(details=self._details(request.show.path))
-            case "label":
-                return CatalogueReply(episode=episode_message(self._label(request.label)))
-            case "file":
-                return CatalogueReply(piece=self._file_piece(request.file))
-            case "video":
-                asked = request.video
-                return CatalogueReply(piece=self._video_piece(asked.path, asked.camera, asked.offset))
-            case "picture":
-                return CatalogueReply(piece=_piece(self._picture(request.picture.path), 0))
-        raise InvalidInput(
-            "An empty request was given; list, show or label episodes, or ask for a file, video or picture."
-        )
+        what = request.WhichOneof("what")
+        if what is None:
+            raise InvalidInput(f"An empty request was given; ask for one of {', '.join(self._handlers)}.")
+        return self._handlers[what](getattr(request, what))
+
+    def _list(self, asked: CatalogueRequest.List) -> CatalogueReply:
+        self._refresh()
+        held = datasets.named(curate.said_in(self._root)).values()
+        return CatalogueReply(listing=listing(list(self._rows.values()), asked, held))
 
     def _refresh(self) -> None:
         now_s = clock.monotonic_s()
@@ -103,6 +107,33 @@ class Answers:
         self._rows[row.path] = row
         return row
 
+    def _curate(self, asked: CatalogueRequest.Curate) -> Curated:
+        self._refresh()
+        known, now_ns = list(self._rows.values()), clock.wall_ns()
+        by_filter = asked.HasField("all")
+        if by_filter == bool(asked.paths):
+            raise InvalidInput("Name the episodes, or give a filter that lets them through: one of the two.")
+        chosen = (
+            [row for row in known if matches(row, asked.all)] if by_filter else map(self._row, asked.paths)
+        )
+        if asked.take_out:
+            return curate.take_out(self._root, asked.dataset, [row.path for row in chosen], now_ns)
+        return curate.take_in(self._root, asked.dataset, chosen, known, now_ns)
+
+    def _undo(self, asked: CatalogueRequest.Undo) -> Curated:
+        return curate.undo(self._root, asked.dataset, asked.act_ns, clock.wall_ns())
+
+    def _curated(self, done: Curated) -> CatalogueReply:
+        self._read_s = float("-inf")  # the rows say what they are part of
+        curated = CatalogueReply.Curated(
+            dataset=done.dataset.name,
+            changed=done.changed,
+            left_out=done.left_out,
+            episodes=len(done.dataset.episodes),
+            act_ns=done.act_ns,
+        )
+        return CatalogueReply(curated=curated)
+
     def _file_piece(self, asked: CatalogueRequest.File) -> CatalogueReply.Piece:
         path = self._root / self._row(asked.path).path
         size = path.stat().st_size
@@ -110,8 +141,9 @@ class Answers:
             file.seek(min(asked.offset, size))
             return CatalogueReply.Piece(piece=file.read(PIECE_BYTES), size_bytes=size)
 
-    def _video_piece(self, path: str, camera: str, offset: int) -> CatalogueReply.Piece:
-        return _piece(self._kept_or(("video", path, camera), lambda: self._video(path, camera)), offset)
+    def _video_piece(self, asked: CatalogueRequest.Video) -> CatalogueReply.Piece:
+        path, camera = asked.path, asked.camera
+        return _piece(self._kept_or(("video", path, camera), lambda: self._video(path, camera)), asked.offset)
 
     def _video(self, path: str, camera: str) -> bytes:
         return pictures.as_mp4(pictures.frames_of(self._file(path), camera))

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from mart.protocol.episodes.datasets import NamedDataSet
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, RecordedEpisode
+from mart.protocol.messages import NamedDataSet as NamedDataSetMessage
 from mart.protocol.recording import OperatorsRecord
 from mart.recorder.catalog import Row
 
@@ -14,7 +16,9 @@ MAX_OPERATORS = 200
 _WORDS = ("human", "policy", "script", "hold")
 
 
-def listing(rows: Sequence[Row], wanted: CatalogueRequest.List) -> CatalogueReply.Listing:
+def listing(
+    rows: Sequence[Row], wanted: CatalogueRequest.List, datasets: Iterable[NamedDataSet] = ()
+) -> CatalogueReply.Listing:
     """One page of `rows`, newest first, and what there is to choose from. `rows` are oldest first."""
     matching = [row for row in reversed(rows) if matches(row, wanted)]
     count = min(wanted.count or DEFAULT_COUNT, MAX_COUNT)
@@ -24,6 +28,8 @@ def listing(rows: Sequence[Row], wanted: CatalogueRequest.List) -> CatalogueRepl
         successes=sum(row.outcome == "success" for row in matching),
         tasks=sorted({row.task for row in rows if row.task}),
         operators=sorted({name for row in rows for name in names_of(row)})[:MAX_OPERATORS],
+        datasets=map(dataset_message, datasets),
+        skills=sorted({row.skill for row in rows if row.skill}),
     )
 
 
@@ -34,13 +40,27 @@ def matches(row: Row, wanted: CatalogueRequest.List) -> bool:
         (wanted.outcome, row.outcome),
         (wanted.verdict, row.verdict),
         (wanted.room, row.room),
+        (wanted.skill, row.skill),
     )
-    return all(asked in ("", found) for asked, found in exact) and _driven_by(row, wanted.operator)
+    return (
+        all(asked in ("", found) for asked, found in exact)
+        and wanted.dataset in ("", *row.datasets)
+        and _driven_by(row, wanted.operator)
+    )
 
 
 def names_of(row: Row) -> set[str]:
     """People and policies that drove, by name."""
     return {name for _, name in _drivers(row) if name}
+
+
+def dataset_message(dataset: NamedDataSet) -> NamedDataSetMessage:
+    return NamedDataSetMessage(
+        name=dataset.name,
+        episodes=len(dataset.episodes),
+        sha256=dataset.sha256,
+        created_ns=dataset.created_ns,
+    )
 
 
 def episode_message(row: Row) -> RecordedEpisode:

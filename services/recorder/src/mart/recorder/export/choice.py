@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from mart.protocol.episodes.alike import require_alike
 from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.tasks import Task, get_task
@@ -52,17 +53,7 @@ def _is_wanted(row: Row, outcomes: Sequence[str], verdicts: Sequence[str]) -> bo
 def _facts(episodes: Sequence[tuple[EpisodeFile, Row]]) -> tuple[str, float, tuple[str, ...]]:
     """Of all of them."""
     records = [file.episode for file, _ in episodes]
-    facts: dict[str, set[object]] = {
-        "tasks": {record.task for record in records},
-        "control rates": {record.control_hz for record in records},
-        "sets of arms": {" and ".join(record.arms) for record in records},
-    }
-    for what, values in facts.items():
-        if len(values) > 1:
-            raise InvalidInput(
-                f"Episodes of several {what} were given: {', '.join(sorted(map(str, values)))}; "
-                "a file holds one: export each by itself."
-            )
+    require_alike(records, "a file holds one: export each by itself")
     first = records[0]
     if first.task is None or first.control_hz is None:
         raise InvalidInput(f"{episodes[0][0].path} does not say its task and control rate; leave it out.")

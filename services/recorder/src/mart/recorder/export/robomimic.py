@@ -60,7 +60,7 @@ def _write(file: h5py.File, choice: Choice) -> int:
         transitions = read_transitions(episode, choice.task)
         _write_demo(data.create_group(demo), transitions, episode, row)
         total += len(transitions)
-        for key in filter(None, (row.outcome, row.skill)):
+        for key in filter(None, (row.outcome, row.skill, *(f"dataset-{name}" for name in row.datasets))):
             groups[key].append(demo)
     data.attrs["total"] = total
     data.attrs["env_args"] = json.dumps(_environment(choice))

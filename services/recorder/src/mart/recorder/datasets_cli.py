@@ -1,0 +1,194 @@
+"""`mart datasets …`. Heavy modules are imported inside: `mart --help` loads this file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from mart.protocol import clock
+from mart.protocol.cli import json_option, print_result
+from mart.protocol.errors import Conflict, InvalidInput, NotFound
+from mart.recorder.filters import filters, passing
+from mart.recorder.settings import RecorderSettings
+
+if TYPE_CHECKING:
+    from mart.recorder.catalog import Row
+    from mart.recorder.curate import Curated
+
+_name = click.argument("name")
+_paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
+
+
+def _in_folder(_context: click.Context, _option: click.Parameter, given: Path | None) -> Path:
+    folder = (given or RecorderSettings().episodes_dir).resolve()
+    if not folder.is_dir():
+        raise NotFound(f"There is no folder {folder}; name one with --folder, or record episodes first.")
+    return folder
+
+
+_folder = click.option(
+    "--folder",
+    type=click.Path(path_type=Path),
+    callback=_in_folder,
+    help="Whose episodes.  [default: data/episodes]",
+)
+
+
+@click.group()
+def datasets() -> None:
+    """Named data sets: episodes put together to be learned from. Files stay where they are."""
+
+
+@datasets.command("list")
+@_folder
+@json_option
+def list_datasets(folder: Path, as_json: bool) -> None:
+    """List data sets: how many episodes they hold, and the digest of what they hold."""
+    from mart.protocol.episodes.datasets import named
+    from mart.recorder import curate, report
+
+    told = [report.dataset(one) for one in named(curate.said_in(folder)).values()]
+    print_result({"datasets": told}, report.dataset_table(told), as_json)
+
+
+@datasets.command()
+@_name
+@_folder
+@json_option
+def show(name: str, folder: Path, as_json: bool) -> None:
+    """Show what a data set holds, also what has been dropped, discarded or deleted since."""
+    from mart.protocol.episodes.datasets import find
+    from mart.recorder import curate, report
+    from mart.recorder.catalog import list_folder
+
+    found = find(curate.said_in(folder), name)
+    rows = {row.path: row for row in list_folder(folder)}
+    unfit = {path: curate.why_unfit(rows[path]) if path in rows else "deleted" for path in found.episodes}
+    told = report.dataset(found) | {
+        "episodes": [
+            {"path": path, "left_out": why, **({"outcome": rows[path].outcome} if path in rows else {})}
+            for path, why in unfit.items()
+        ]
+    }
+    held = [(Path(path), rows[path]) for path in found.episodes if path in rows]
+    print_result(told, report.dataset_text(found, held, unfit), as_json)
+
+
+@datasets.command()
+@_name
+@_paths
+@filters("success", "verified")
+@_folder
+@json_option
+def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
+    """Put episodes together under a new name: all that the filters let through, or those among PATHS."""
+    from mart.protocol.episodes.datasets import named
+    from mart.recorder import curate
+
+    if name in named(curate.said_in(folder)):
+        raise Conflict(f"There is a data set {name!r} already; add to it with `mart datasets add {name}`.")
+    _take_in(name, paths, folder, as_json, wanted)
+
+
+@datasets.command()
+@_name
+@_paths
+@filters("success", "verified")
+@_folder
+@json_option
+def add(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
+    """Put more episodes into a data set: all that the filters let through, or those among PATHS."""
+    from mart.protocol.episodes.datasets import find
+    from mart.recorder import curate
+
+    find(curate.said_in(folder), name)
+    _take_in(name, paths, folder, as_json, wanted)
+
+
+@datasets.command()
+@_name
+@_paths
+@filters()
+@_folder
+@json_option
+def remove(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
+    """Take episodes out of a data set: those that the filters let through, or those among PATHS, there or not."""
+    from mart.recorder import curate
+
+    gone = [path for path in paths if not path.exists()]
+    left = [path for path in paths if path.exists()]
+    chosen = _chosen(folder, tuple(left), wanted) if left or not paths else []
+    names = [row.path for row in chosen] + [_below(folder, path) for path in gone]
+    _say(curate.take_out(folder, name, names, clock.wall_ns()), "taken out", as_json)
+
+
+@datasets.command()
+@_name
+@_folder
+@json_option
+def delete(name: str, folder: Path, as_json: bool) -> None:
+    """Delete a data set: every episode leaves it, and stays where it is."""
+    from mart.protocol.episodes.datasets import find
+    from mart.recorder import curate
+
+    held = find(curate.said_in(folder), name).episodes
+    _say(curate.take_out(folder, name, held, clock.wall_ns()), "taken out", as_json)
+
+
+@datasets.command()
+@_name
+@_folder
+@json_option
+def undo(name: str, folder: Path, as_json: bool) -> None:
+    """Take back the last change of a data set; a second time does it again."""
+    from mart.protocol.episodes import labels
+    from mart.protocol.episodes.datasets import newest_act_ns
+    from mart.recorder import curate
+
+    act_ns = newest_act_ns(labels.read(folder), name)
+    _say(curate.undo(folder, name, act_ns, clock.wall_ns()), "changed back", as_json)
+
+
+def _take_in(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, wanted: dict[str, Any]) -> None:
+    from mart.recorder import curate
+    from mart.recorder.catalog import list_folder
+
+    chosen = _chosen(folder, paths, wanted)
+    _say(
+        curate.take_in(folder, name, chosen, list_folder(folder), clock.wall_ns()),
+        "put into it",
+        as_json,
+    )
+
+
+def _chosen(folder: Path, paths: tuple[Path, ...], wanted: dict[str, Any]) -> list[Row]:
+    """Raises InvalidInput for a path that is not in the folder, and where nothing is let through."""
+    from mart.recorder import files
+
+    rows = [(folder / _below(folder, path), row) for path, row in files.rows(paths or (folder,))]
+    passed = [row for _, row in passing(rows, wanted)]
+    if not passed:
+        asked = ", ".join(f"--{key} {_text(value)}" for key, value in wanted.items() if value)
+        raise InvalidInput(f"None of {len(rows)} episodes is let through by {asked}; widen the filters.")
+    return passed
+
+
+def _text(value: str | tuple[str, ...]) -> str:
+    return value if isinstance(value, str) else " or ".join(value)
+
+
+def _below(folder: Path, path: Path) -> str:
+    try:
+        return path.resolve().relative_to(folder).as_posix()
+    except ValueError as error:
+        raise InvalidInput(
+            f"{path} is not in {folder}; name its folder of episodes with --folder."
+        ) from error
+
+
+def _say(done: Curated, what: str, as_json: bool) -> None:
+    from mart.recorder import report
+
+    print_result(*report.curated(done, what), as_json)

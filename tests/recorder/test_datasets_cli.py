@@ -1,0 +1,105 @@
+"""`mart datasets …` as people and scripts use it: real files, real labels, a real catalogue."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from mart.protocol.episodes import labels
+from mart.recorder.catalog import FILE_NAME
+from tests.recorder import synthetic
+from tests.recorder.conftest import Mart
+from tests.recorder.files import write_episode
+
+
+@pytest.fixture
+def paths(mart: Mart) -> list[Path]:
+    return [write_episode(mart.episodes_dir, ticks=10, number=number).path for number in (1, 2, 3)]
+
+
+def held(mart: Mart, name: str) -> list[str]:
+    return [Path(one["path"]).name[7:11] for one in mart.json("datasets", "show", name)["episodes"]]
+
+
+def test_it_is_made_of_what_the_filters_let_through(mart: Mart, paths: list[Path]) -> None:
+    mart("episodes", "label", paths[0], "--outcome", "failure")
+    made = mart.json("datasets", "create", "good", "--task", synthetic.TASK, "--operator", "Ana")
+    assert (made["name"], made["changed"], made["left_out"]) == ("good", 2, {})
+    assert held(mart, "good") == ["0002", "0003"]
+    mart("datasets", "create", "all", "--outcome", "any", "--verdict", "any")
+    assert held(mart, "all") == ["0001", "0002", "0003"]
+    listed = mart.json("episodes", "list", "--dataset", "good")["episodes"]
+    assert [row["datasets"] for row in listed] == [["all", "good"]] * 2
+    assert "all  3 episodes" in mart("datasets", "list")
+
+
+def test_it_changes_by_name_and_every_change_is_taken_back(mart: Mart, paths: list[Path]) -> None:
+    first = mart.json("datasets", "create", "few", paths[0])["sha256"]
+    second = mart.json("datasets", "add", "few", paths[1], paths[2])["sha256"]
+    assert first != second
+    mart("datasets", "remove", "few", paths[2])
+    assert held(mart, "few") == ["0001", "0002"]
+    assert mart.json("datasets", "undo", "few")["sha256"] == second
+    assert "it holds 0 now" in mart("datasets", "delete", "few")
+    assert mart.json("datasets", "list") == {"datasets": []}
+    assert mart.json("datasets", "undo", "few")["sha256"] == second
+    assert all(path.is_file() for path in paths)
+
+
+def test_it_outlives_the_catalogue(mart: Mart, paths: list[Path]) -> None:
+    made = mart.json("datasets", "create", "good")
+    (mart.episodes_dir / FILE_NAME).unlink()
+    (mart.episodes_dir / FILE_NAME).write_bytes(b"torn")
+    assert mart.json("datasets", "list")["datasets"][0]["sha256"] == made["sha256"]
+    assert len(mart.json("episodes", "list", "--dataset", "good")["episodes"]) == 3
+
+
+def test_what_nobody_learns_from_stays_out_and_is_said(mart: Mart, paths: list[Path]) -> None:
+    mart("episodes", "label", paths[0], "--drop")
+    mart("episodes", "label", paths[1], "--outcome", "discarded")
+    assert "left out: 1 discarded, 1 dropped" in mart("datasets", "create", "good", "--outcome", "any")
+    assert held(mart, "good") == ["0003"]
+    paths[2].unlink()
+    assert f"{paths[2].name} (deleted)" in mart("datasets", "show", "good")
+    assert "it holds 0 now" in mart("datasets", "remove", "good", paths[2])
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (
+            ("create", "Good data"),
+            "The data set 'Good data' was given; name it with 1 to 64 lower-case letters",
+        ),
+        (
+            ("create", "known"),
+            "There is a data set 'known' already; add to it with `mart datasets add known`",
+        ),
+        (("add", "knwon"), "There is no data set 'knwon'. Did you mean 'known'?"),
+        (("show", "new"), "There is no data set 'new'. Known: known."),
+        (("undo", "new"), "There never was a data set 'new'"),
+        (("create", "new", "--task", "wipe"), "None of 3 episodes is let through by --task wipe"),
+        (("create", "new", "nowhere"), "There is no nowhere"),
+        (("create", "new", "--folder", "nowhere"), "There is no folder"),
+        (("create", "new", "{elsewhere}"), "name its folder of episodes with --folder"),
+    ],
+)
+def test_a_failure_is_one_line(
+    mart: Mart, paths: list[Path], tmp_path: Path, words: tuple[str, ...], sentence: str
+) -> None:
+    mart("datasets", "create", "known", paths[0])
+    elsewhere = write_episode(tmp_path / "elsewhere", ticks=5).path
+    before = labels.read(mart.episodes_dir)
+    said = mart("datasets", *(word.format(elsewhere=elsewhere) for word in words), code=1)
+    assert re.fullmatch(r"mart: .+\n", said)
+    assert sentence in said
+    assert labels.read(mart.episodes_dir) == before
+
+
+def test_a_folder_of_its_own(mart: Mart, tmp_path: Path) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    write_episode(elsewhere, ticks=5)
+    mart("datasets", "create", "there", "--folder", elsewhere)
+    assert len(mart.json("datasets", "list", "--folder", elsewhere)["datasets"]) == 1
