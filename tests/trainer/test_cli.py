@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 
-from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.episodes import labels
+from mart.protocol.errors import Conflict, InvalidInput, MartError
 from mart.trainer.cli import train
 from mart.trainer.policies import load_policy
 from mart.trainer.runs import RunDirectory
@@ -46,11 +48,44 @@ def test_its_selection_reaches_the_run(episodes: Recorded, tmp_path: Path) -> No
     assert selection.operators == ("script",)
 
 
+def test_it_takes_a_named_data_set_whole(episodes: Recorded, tmp_path: Path) -> None:
+    root = tmp_path / "episodes"
+    shutil.copytree(episodes.root, root)
+    first, second, _ = sorted(root.rglob("*.mcap"))
+    for path in (first, second):
+        labels.say(path, labels.Kind.JOIN, "few", 1)
+    labels.say(first, labels.Kind.USE, "drop", 2)
+    words = (
+        "--model",
+        "BC",
+        "--data",
+        root,
+        "--dataset",
+        "few",
+        "--preset",
+        "debug",
+        "--out",
+        tmp_path / "run",
+    )
+    trained = mart_train(*words)
+    assert trained.exit_code == 0, trained.output
+    assert "from 1 episodes" in trained.stdout
+    assert ", 1 of its 2 left out)" in trained.stdout
+    dataset = RunDirectory(tmp_path / "run").request.dataset
+    assert dataset is not None
+    assert f"of the data set few ({dataset.sha256[:12]}, " in trained.stdout
+    labels.say(first, labels.Kind.USE, "keep", 3)
+    changed = mart_train("--resume", tmp_path / "run").exception
+    assert isinstance(changed, Conflict)
+    assert "have changed since it was begun" in str(changed)
+
+
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
         (("--model", "HBC"), "Give --out DIR for a new run"),
-        (("--out", "x", "--model", "HBC"), "Give --model and --data"),
+        (("--out", "x", "--model", "HBC"), "Give --model and --data or --dataset"),
+        (("--out", "x", "--model", "HBC", "--data", ".", "--data", "..", "--dataset", "few"), "one folder"),
         (("--out", "x", "--model", "HBC", "--data", ".", "--set", "updates"), "write NAME=VALUE"),
         (("--out", "x", "--model", "HBC", "--data", ".", "--weight", "robot=2"), "see --help"),
     ],

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 import select
+import shutil
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -15,6 +17,7 @@ from click.testing import CliRunner
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.episodes import labels
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
 from mart.protocol.messages import (
     JOB_STATE_CANCELLED,
@@ -28,7 +31,7 @@ from mart.protocol.messages import (
     TrainerRequest,
     raise_error,
 )
-from mart.trainer.service.cli import wait
+from mart.trainer.service.cli import submit, wait
 from tests.support.processes import Running, running_router, running_service, started
 from tests.trainer.conftest import Recorded
 from tests.trainer.recorded import TASK
@@ -158,6 +161,35 @@ def test_from_a_judged_job_to_a_policy(client: Client, data_dir: Path) -> None:
     assert not client.ask(policies=TrainerRequest.Policies(task="another")).policies
     client.ask(withdraw=TrainerRequest.Withdraw(policy="lifter"))
     assert not client.ask(policies=TrainerRequest.Policies()).policies
+
+
+@pytest.mark.usefixtures("service")
+def test_a_job_learns_from_the_data_set_as_it_was_ordered(
+    client: Client, data_dir: Path, endpoint: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = data_dir / "sorted"
+    shutil.copytree(data_dir / "episodes", folder)
+    first, second, third = sorted(folder.rglob("*.mcap"))
+    for path in (first, second):
+        labels.say(path, labels.Kind.JOIN, "few", 1)
+    monkeypatch.setenv("MART_ROUTER", endpoint)
+    words = ["--models", "BC", "--tasks", TASK, "--data", "sorted", "--dataset", "few", "--preset", "debug"]
+    ordered = CliRunner().invoke(submit, [*words, "--episodes", "0", "--json"])
+    assert ordered.exit_code == 0, ordered.output
+    (job,) = json.loads(ordered.output)["jobs"]
+    assert (job["order"]["dataset"], job["order"]["data"]) == ("few", str(folder))
+    labels.say(third, labels.Kind.JOIN, "few", 2)
+    details = client.wait_until_over(job["id"])
+    assert details.job.state == JOB_STATE_DONE, client.log(job["id"])
+    told = json.loads((data_dir / details.job.run / "data.json").read_bytes())
+    assert (told["dataset"]["name"], told["dataset"]["episodes"], len(told["episodes"])) == ("few", 2, 2)
+    with pytest.raises(NotFound, match="Did you mean 'few'"):
+        client.submit("BC", data="sorted", dataset="fwe")
+    other = TrainerRequest.Submit(
+        models=["BC"], tasks=["two_arm_drink_tray_lifting"], order=Order(data="sorted", dataset="few")
+    )
+    with pytest.raises(InvalidInput, match="train that task, or choose another data set"):
+        client.ask(submit=other)
 
 
 @pytest.mark.usefixtures("service")

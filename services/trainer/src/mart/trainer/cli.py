@@ -13,7 +13,7 @@ from mart.protocol.cli import json_option, print_result
 from mart.protocol.errors import InvalidInput
 from mart.trainer.grid import model_names
 from mart.trainer.presets import PRESETS
-from mart.trainer.request import TrainRequest
+from mart.trainer.request import DataSetName, Selection, TrainRequest
 
 if TYPE_CHECKING:
     from mart.trainer.runs import RunDirectory
@@ -30,6 +30,7 @@ _paths = click.Path(path_type=Path, exists=True)
     "--model", help=f"{', '.join(model_names())}, or a point PLANNER/ACTOR/RESIDUAL[/NETWORK][/HEAD]."
 )
 @click.option("--data", type=_paths, multiple=True, help="Episode file or folder of them; may be repeated.")
+@click.option("--dataset", help="A named data set of the folder --data, whole.  [--data: data/episodes]")
 @click.option(
     "--seeds",
     type=click.IntRange(1, 64),
@@ -86,19 +87,21 @@ def _folder(resume: Path | None, out: Path | None) -> Path:
 
 def _request(options: dict[str, Any]) -> TrainRequest:
     """Raises InvalidInput for what cannot be asked."""
-    if not options["model"] or not options["data"]:
-        raise InvalidInput("Give --model and --data, or --resume DIR to go on with a run.")
+    if not options["model"] or not (options["data"] or options["dataset"]):
+        raise InvalidInput("Give --model and --data or --dataset, or --resume DIR to go on with a run.")
+    dataset, data, usual = _data(options["data"], options["dataset"])
     first, count = options["first_seed"], options["seeds"]
     try:
         return TrainRequest(
             model=options["model"],
-            data=tuple(path.resolve() for path in options["data"]),
+            data=data,
+            dataset=dataset,
             seeds=tuple(range(first, first + count)),
             preset=options["preset"],
             changes={name: _value(text) for name, text in _pairs(options["changes"])},
             selection={
-                "outcomes": _any(options["outcome"], ("success",)),
-                "verdicts": _any(options["verdict"], ("verified",)),
+                "outcomes": _any(options["outcome"], usual.outcomes),
+                "verdicts": _any(options["verdict"], usual.verdicts),
                 "operators": options["operator"],
                 "names": options["name"],
                 "first": options["first"],
@@ -112,6 +115,22 @@ def _request(options: dict[str, Any]) -> TrainRequest:
         fault = error.errors()[0]
         where = ".".join(map(str, fault["loc"]))
         raise InvalidInput(f"{where} = {fault['input']!r} was given: {fault['msg']}; see --help.") from error
+
+
+def _data(
+    paths: tuple[Path, ...], name: str | None
+) -> tuple[DataSetName | None, tuple[Path, ...], Selection]:
+    """The data set, the files or folders to read, and what is taken of them where nothing is said."""
+    from mart.protocol.settings import Settings
+    from mart.trainer.data.named import WHOLE, find_dataset
+
+    if not name:
+        return None, tuple(path.resolve() for path in paths), Selection()
+    if len(paths) > 1:
+        raise InvalidInput(
+            f"{len(paths)} times --data was given; a data set is in one folder: give that one."
+        )
+    return *find_dataset(paths[0] if paths else Settings().episodes_dir, name), WHOLE
 
 
 def _any(given: tuple[str, ...], usual: tuple[str, ...]) -> tuple[str, ...]:
@@ -150,6 +169,7 @@ def _result(run: RunDirectory) -> dict[str, Any]:
         "task": data["task"],
         "episodes": len(data["episodes"]),
         "ticks": data["ticks"],
+        "dataset": data.get("dataset"),
         "seeds": list(run.request.seeds),
         "checkpoints": [
             str(run.checkpoint(updates, seed)) for updates in checkpointed for seed in run.seeds(updates)
@@ -157,9 +177,17 @@ def _result(run: RunDirectory) -> dict[str, Any]:
     }
 
 
+def _of_dataset(dataset: dict[str, Any] | None) -> str:
+    if dataset is None:
+        return ""
+    left_out = len(dataset["left_out"])
+    rest = f", {left_out} of its {dataset['episodes']} left out" if left_out else ""
+    return f" of the data set {dataset['name']} ({dataset['sha256'][:12]}{rest})"
+
+
 def _words(result: dict[str, Any]) -> str:
     newest = result["checkpoints"][-len(result["seeds"]) :]
-    learned = f"from {result['episodes']} episodes ({result['ticks']} ticks)"
+    learned = f"from {result['episodes']} episodes ({result['ticks']} ticks){_of_dataset(result['dataset'])}"
     then = "Judge them: mart eval --checkpoint" if result["complete"] else "Go on: mart train --resume"
     lines = [
         f"{result['model']} for {result['task']}, {learned}, {len(result['checkpoints'])} checkpoints",

@@ -33,10 +33,20 @@ class Selection(BaseModel):
     last: int | None = Field(None, ge=1)  # the newest
 
 
+class DataSetName(BaseModel):
+    """A named data set and the digest of what it held when it was asked for."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str
+    sha256: str
+
+
 class TrainRequest(BaseModel):
     """One run: one model of the grid, trained with several seeds in one go on the same data.
 
     data: episode files, or folders of them, of one task and control rate.
+    dataset: the named data set whose files `data` are.
     changes: single hyperparameters that differ from the preset's.
     weights: how much a tick counts by who drove the arm in it; 1 where it is not named, 0 leaves it out.
     base: a run whose models a residual corrects, instead of training a base first.
@@ -46,6 +56,7 @@ class TrainRequest(BaseModel):
 
     model: str
     data: tuple[Path, ...] = Field(min_length=1)
+    dataset: DataSetName | None = None
     seeds: tuple[int, ...] = Field((0,), min_length=1, max_length=MAX_SEEDS)
     preset: str = "fast"
     changes: Mapping[str, Any] = Field(default_factory=dict)

@@ -63,7 +63,8 @@ def train(
     run = RunDirectory(run_dir)
     device = find_device(request.device)
     with _claimed(run, request):
-        dataset = load_dataset(request.data, request.selection, Settings().data_dir / "cache" / "episodes")
+        cache = Settings().data_dir / "cache" / "episodes"
+        dataset = load_dataset(request.data, request.selection, cache, request.dataset)
         course = _course(request, dataset, device)
         _note(run, request, dataset)
         kept = keep.read_state(run)

@@ -16,8 +16,9 @@ from mart.protocol.errors import InvalidInput
 from mart.trainer.data.cache import read_cached, sha256_of
 from mart.trainer.data.episode import EpisodeArrays
 from mart.trainer.data.layout import Layout
+from mart.trainer.data.named import NamedData, account
 from mart.trainer.data.select import Candidate, candidates, select
-from mart.trainer.request import Selection
+from mart.trainer.request import DataSetName, Selection
 
 S = TypeVar("S", bound=np.generic)
 
@@ -47,6 +48,7 @@ class Digest(BaseModel):
     episodes: tuple[Used, ...]
     ticks: int
     sha256: str
+    dataset: NamedData | None = None
 
 
 @dataclass(frozen=True)
@@ -70,14 +72,26 @@ class Dataset:
         return np.flatnonzero(np.arange(len(self.ends)) < self.ends)
 
 
-def load_dataset(paths: Iterable[Path], selection: Selection, cache: Path | None = None) -> Dataset:
+def load_dataset(
+    paths: Iterable[Path],
+    selection: Selection,
+    cache: Path | None = None,
+    dataset: DataSetName | None = None,
+) -> Dataset:
     """Reads what `selection` takes of the episode files in `paths`.
 
     cache: a folder of episodes that were read before; None reads every file.
+    dataset: whose files `paths` are; what of it is dropped, discarded or missing is left out and said.
     Raises NotFound, Corrupt or InvalidInput: missing paths, damaged files, several tasks, rates or numbers of arms,
     missing arms or observations, NaN, or nothing left to learn from.
     """
-    chosen = select(candidates(paths), selection)
+    given = tuple(paths)
+    found = candidates(path for path in given if dataset is None or path.exists())
+    if dataset and not found:
+        raise InvalidInput(
+            f"Every episode of the data set {dataset.name!r} was deleted; put them back, or choose another."
+        )
+    chosen = select(found, selection)
     task, rate, arms = _facts(chosen[0])
     layout = Layout.of_arms(task, len(arms))
     hashes = [sha256_of(one.path) for one in chosen]
@@ -92,6 +106,7 @@ def load_dataset(paths: Iterable[Path], selection: Selection, cache: Path | None
         episodes=tuple(map(_used, chosen, hashes, episodes)),
         ticks=sum(len(episode.actions) for episode in episodes),
         sha256=hashlib.sha256("".join(hashes).encode()).hexdigest(),
+        dataset=account(dataset, given, found, chosen, selection) if dataset else None,
     )
     return join(digest, layout, episodes)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mart.protocol.episodes import labels
+from mart.protocol.episodes.alike import require_alike
 from mart.protocol.episodes.paths import episode_files
 from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import InvalidInput
@@ -45,17 +46,14 @@ def candidates(paths: Iterable[Path]) -> list[Candidate]:
 
 def select(found: list[Candidate], selection: Selection) -> list[Candidate]:
     """Those that the selection takes. Raises InvalidInput where none is left, or where they do not belong together."""
-    chosen = [one for one in found if _is_wanted(one, selection)]
+    chosen = [one for one in found if not _unwanted(one, selection)]
     chosen = chosen[: selection.first]
     chosen = chosen[-selection.last :] if selection.last else chosen
     if not chosen:
         raise InvalidInput(_why_none(found, selection))
-    for what, values in _must_agree(chosen).items():
-        if len(values) > 1:
-            raise InvalidInput(
-                f"Episodes of several {what} were given: {', '.join(sorted(map(str, values)))}; "
-                "one model learns from one: give a folder of its own for each."
-            )
+    require_alike(
+        (one.episode for one in chosen), "one model learns from one: give a folder of its own for each"
+    )
     return chosen
 
 
@@ -71,24 +69,21 @@ def _candidate(file: EpisodeFile, label: labels.Labelled) -> Candidate:
     )
 
 
-def _is_wanted(one: Candidate, selection: Selection) -> bool:
-    """An empty list of the selection takes all."""
-    return (
-        not one.dropped
-        and (not selection.outcomes or one.outcome in selection.outcomes)
-        and (not selection.verdicts or one.verdict in selection.verdicts)
-        and (not selection.operators or all(shift.operator in selection.operators for shift in one.drivers))
-        and (not selection.names or all(shift.name in selection.names for shift in one.drivers))
-    )
+def why_left_out(one: Candidate, selection: Selection) -> str:
+    """In a word or two, of one that the selection does not take."""
+    return _unwanted(one, selection) or "beyond the number asked for"
 
 
-def _must_agree(chosen: list[Candidate]) -> dict[str, set[object]]:
-    episodes = [one.episode for one in chosen]
-    return {
-        "tasks": {episode.task for episode in episodes},
-        "control rates": {f"{episode.control_hz:g} Hz" for episode in episodes if episode.control_hz},
-        "sets of arms": {" and ".join(episode.arms) for episode in episodes},
-    }
+def _unwanted(one: Candidate, selection: Selection) -> str:
+    """Why not; empty where it is wanted. An empty list of the selection takes all."""
+    if one.dropped:
+        return "dropped"
+    for word, wanted in ((one.outcome, selection.outcomes), (one.verdict, selection.verdicts)):
+        if wanted and word not in wanted:
+            return word
+    who = selection.operators and not all(shift.operator in selection.operators for shift in one.drivers)
+    names = selection.names and not all(shift.name in selection.names for shift in one.drivers)
+    return "driven by others" if who or names else ""
 
 
 def _why_none(found: list[Candidate], selection: Selection) -> str:

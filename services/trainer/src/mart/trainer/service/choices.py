@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from itertools import islice
 from pathlib import Path
 
+from mart.protocol.episodes import datasets, labels
 from mart.protocol.messages import DataSet, Order, TrainerReply
 from mart.protocol.recording import SUFFIX
 from mart.protocol.tasks import task_names
 from mart.trainer.grid import BASELINES, PAPER, Model
 from mart.trainer.presets import PRESETS
-from mart.trainer.service.orders import DEFAULT_DATA, DEFAULT_PRESET, SCORE_EPISODES
+from mart.trainer.service.orders import DEFAULT_DATA, DEFAULT_PRESET, SCORE_EPISODES, task_in
 from mart.trainer.service.settings import TrainerSettings
 
 _MAX_DATA_SETS = 200
@@ -44,26 +46,40 @@ def choices(settings: TrainerSettings, executors: Iterable[str]) -> TrainerReply
 
 
 def data_sets(data_dir: Path) -> list[DataSet]:
-    """Folders with episodes: `episodes` first, days of one recording taken together."""
-    counted: dict[str, Counter[str]] = defaultdict(Counter)
+    """Folders with episodes, each followed by its named data sets: `episodes` first, days of one recording together."""
+    held: dict[Path, set[str]] = defaultdict(set)
     roots = [root for root in data_dir.glob("*") if root.is_dir() and root.name not in _NO_DATA]
     for path in (path for root in roots for path in root.rglob(f"*{SUFFIX}")):  # a root may be a link
         folder = path.parent.parent if _DAY.fullmatch(path.parent.name) else path.parent
-        counted[folder.relative_to(data_dir).as_posix()][_task_in(path.name)] += 1
-    ordered = sorted(counted.items(), key=lambda item: (item[0] != DEFAULT_DATA, item[0]))
-    return [
-        DataSet(
-            path=path,
-            episodes=tasks.total(),
-            tasks=[task for task, _ in tasks.most_common() if task],
+        held[folder].add(path.relative_to(folder).as_posix())
+    offers = {folder.relative_to(data_dir).as_posix(): (folder, files) for folder, files in held.items()}
+    ordered = sorted(offers.items(), key=lambda item: (item[0] != DEFAULT_DATA, item[0]))
+    found = (one for name, (folder, files) in ordered for one in _of_folder(name, folder, files))
+    return list(islice(found, _MAX_DATA_SETS))
+
+
+def _of_folder(name: str, folder: Path, files: set[str]) -> Iterator[DataSet]:
+    yield DataSet(path=name, episodes=len(files), tasks=_tasks(files))
+    said = labels.fold(labels.read(folder))
+    for dataset in datasets.named(said).values():
+        unfit = [
+            path
+            for path in dataset.episodes
+            if path not in files or said[path].dropped or said[path].outcome == "discarded"
+        ]
+        yield DataSet(
+            path=name,
+            name=dataset.name,
+            episodes=len(dataset.episodes),
+            tasks=_tasks(dataset.episodes),
+            left_out=len(unfit),
+            sha256=dataset.sha256,
         )
-        for path, tasks in ordered[:_MAX_DATA_SETS]
-    ]
 
 
-def _task_in(name: str) -> str:
-    """The task that an episode's file is named after; empty for a name of another form."""
-    return next((task for task in task_names() if f"-{task}" in name), "")
+def _tasks(files: Iterable[str]) -> list[str]:
+    counted = Counter(map(task_in, files))
+    return [task for task, _ in counted.most_common() if task]
 
 
 def _model(name: str, model: Model) -> TrainerReply.Choices.Model:

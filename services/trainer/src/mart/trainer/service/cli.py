@@ -43,6 +43,7 @@ def jobs() -> None:
 @click.option("--models", default="r-HBC", show_default=True, help="Separated by commas.")
 @click.option("--tasks", required=True, help="Separated by commas.")
 @click.option("--data", default="", help="Folder of episodes on the trainer's machine.  [default: episodes]")
+@click.option("--dataset", default="", help="A named data set of that folder, whole.")
 @click.option("--preset", default="fast", show_default=True, help="debug, fast or paper.")
 @click.option("--seeds", default=1, show_default=True, type=click.IntRange(1, 64), help="How many.")
 @click.option("--seeds-per-job", default=0, type=click.IntRange(0, 64), help="0: all seeds in one job.")
@@ -64,6 +65,7 @@ def submit(
     models: str,
     tasks: str,
     data: str,
+    dataset: str,
     preset: str,
     seeds: int,
     seeds_per_job: int,
@@ -78,6 +80,7 @@ def submit(
 
     order = Order(
         data=data,
+        dataset=dataset,
         preset=preset,
         seeds=range(seeds),
         evaluation_episodes=episodes,

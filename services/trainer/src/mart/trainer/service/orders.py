@@ -11,12 +11,13 @@ from pydantic import ValidationError
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import Order, TrainerRequest
 from mart.protocol.recording import SUFFIX
-from mart.protocol.tasks import get_task
+from mart.protocol.tasks import get_task, task_names
+from mart.trainer.data.named import WHOLE, find_dataset
 from mart.trainer.grid import Model
 from mart.trainer.jobs.job import Judging
 from mart.trainer.jobs.queue import Wish
 from mart.trainer.presets import preset
-from mart.trainer.request import TrainRequest
+from mart.trainer.request import DataSetName, Selection, TrainRequest
 from mart.trainer.service.settings import TrainerSettings
 
 MAX_MODELS = 16
@@ -47,10 +48,14 @@ def wishes(submit: TrainerRequest.Submit, settings: TrainerSettings) -> list[Wis
 
 def _wish(model: str, task: str, seeds: Sequence[int], order: Order, settings: TrainerSettings) -> Wish:
     preset(order.preset or DEFAULT_PRESET)
+    folder = settings.data_dir / (order.data or DEFAULT_DATA)
+    named, files = _dataset(folder, order.dataset, task) if order.dataset else (None, _files(folder, task))
     try:
         request = TrainRequest(
             model=Model.parse(model).name,
-            data=_data(order.data or DEFAULT_DATA, task, settings.data_dir),
+            data=files,
+            dataset=named,
+            selection=WHOLE if named else Selection(),
             seeds=tuple(seeds),
             preset=order.preset or DEFAULT_PRESET,
             device=settings.device,
@@ -67,10 +72,27 @@ def _wish(model: str, task: str, seeds: Sequence[int], order: Order, settings: T
     return Wish(request, judging)
 
 
-def _data(given: str, task: str, data_dir: Path) -> tuple[Path, ...]:
+def _dataset(folder: Path, name: str, task: str) -> tuple[DataSetName, tuple[Path, ...]]:
+    """As it is now. Raises NotFound, and InvalidInput where it is of another task, by the names of its files."""
+    found, files = find_dataset(folder, name)
+    other = {task_in(path.name) for path in files} - {"", get_task(task).name}
+    if other:
+        raise InvalidInput(
+            f"The data set {name!r} holds episodes of {', '.join(sorted(other))}, and {task} was asked for; "
+            "train that task, or choose another data set."
+        )
+    return found, files
+
+
+def task_in(name: str) -> str:
+    """The task that an episode's file is named after; empty for a name of another form."""
+    return next((task for task in task_names() if f"-{task}" in name), "")
+
+
+def _files(folder: Path, task: str) -> tuple[Path, ...]:
     """The task's files in a folder, by the names that episode files have. Raises NotFound where there is none."""
     name = get_task(task).name
-    folder = (data_dir / given).resolve()
+    folder = folder.resolve()
     files = tuple(sorted(folder.rglob(f"*-{name}*{SUFFIX}"))) if folder.is_dir() else ()
     if not files:
         raise NotFound(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from mart.protocol.episodes import labels
 from mart.protocol.messages import Evaluation as EvaluationMessage
 from mart.protocol.messages import (
     Job as JobMessage,
@@ -19,6 +20,7 @@ from mart.trainer.evaluate import result
 from mart.trainer.evaluate.result import MAX_ROLLOUTS, Evaluation, Played
 from mart.trainer.evaluate.seeds import Purpose
 from mart.trainer.jobs.job import Job, State
+from mart.trainer.request import TrainRequest
 from mart.trainer.runs import RunDirectory
 from mart.trainer.service import metrics
 
@@ -68,12 +70,21 @@ def _order(job: Job) -> Order:
     return Order(
         model=request.model,
         task=job.judging.task,
-        data=str(request.data[0].parent if request.data[0].suffix else request.data[0]),
+        data=str(_folder(request)),
+        dataset=request.dataset.name if request.dataset else "",
         preset=request.preset,
         seeds=request.seeds,
         evaluation_episodes=job.judging.episodes,
         score_episodes=job.judging.score_episodes,
     )
+
+
+def _folder(request: TrainRequest) -> Path:
+    """Of its episodes; of a named data set the folder that names it."""
+    first = request.data[0]
+    if request.dataset:
+        return labels.root_of(first)
+    return first.parent if first.suffix else first
 
 
 def _progress(job: Job, run: RunDirectory) -> JobProgress:

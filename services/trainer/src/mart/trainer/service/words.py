@@ -10,7 +10,7 @@ from google.protobuf.message import Message
 
 from mart.protocol.messages import Job, Policy, TrainerReply, job_state_word
 
-_HEAD = ("job", "sweep", "state", "model", "task", "seeds", "updates", "best")
+_HEAD = ("job", "sweep", "state", "model", "task", "data set", "seeds", "updates", "best")
 
 
 def as_json(message: Message) -> dict[str, Any]:
@@ -48,6 +48,7 @@ def _row(job: Job) -> tuple[str, ...]:
         job_state_word(job.state),
         order.model,
         order.task,
+        order.dataset or "–",
         str(len(order.seeds)),
         f"{progress.updates} of {progress.updates_in_all}",
         "–" if progress.best_success < 0 else f"{100 * progress.best_success:.0f} %",
