@@ -48,6 +48,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "rtf": 0.999,
         "engaged": False,
         "gripper": 0.25,
+        "holding": False,
         "barrier": "stalled",
         "waiting": [{"arm": "arm1", "since_s": 0.8}],
         "input": "phone",

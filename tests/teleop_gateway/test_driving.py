@@ -188,7 +188,7 @@ def test_the_phones_state_is_told(seat: Seat) -> None:
 
 
 def test_whoever_takes_over_drops_nothing_before_the_first_press_or_grip(seat: Seat) -> None:
-    seat.driving.see(ArmState(arm="arm0", gripper=0.6, action=[0.0] * 6 + [1.0]))
+    seat.driving.see(ArmState(arm="arm0", gripper=0.6, action=[0.0] * 6 + [1.0]), 0.0)
     assert seat.driving.gripper == 1.0  # what a page that comes now is told
     assert [seat.command(gripper=0.0).gripper for _ in range(3)] == [1.0, 1.0, 1.0]
     assert target(seat.command(gripper=0.0)).distance_to(HOME) == (0.0, 0.0)
@@ -197,12 +197,12 @@ def test_whoever_takes_over_drops_nothing_before_the_first_press_or_grip(seat: S
 
 
 def test_a_grip_counts_also_with_an_open_clutch(seat: Seat) -> None:
-    seat.driving.see(ArmState(arm="arm0", action=[0.0] * 6 + [1.0]))
+    seat.driving.see(ArmState(arm="arm0", action=[0.0] * 6 + [1.0]), 0.0)
     assert [seat.command(gripper=given).gripper for given in (0.0, 0.0, 0.5, 0.5)] == [1.0, 1.0, 0.5, 0.5]
 
 
 def test_a_phone_that_comes_drops_nothing_either(seat: Seat) -> None:
-    seat.driving.see(ArmState(arm="arm0", gripper=0.0))
+    seat.driving.see(ArmState(arm="arm0", gripper=0.0), 0.0)
     seat.command(gripper=0.0)
     seat.command(gripper=1.0)
     seat.driving.connect(Input.PHONE)

@@ -191,3 +191,19 @@ REPEAT = """async ({ repeating }) => {
 def test_what_is_asked_for_thrice_is_repeated_once(run: Run) -> None:
     """A page asks meanwhile, too: when it is looked at again, and after every press."""
     assert run("repeating.js", REPEAT) == [200]
+
+
+def test_a_hand_feels_what_is_new_and_only_while_it_drives(run: Run) -> None:
+    script = """({ newsIn }, said) => said.map((one, at) => newsIn(one, said[at - 1] ?? null, "arm0"))"""
+    said = [
+        {"holding": holding, "input": source, "waiting": [{"arm": arm} for arm in late]}
+        for holding, source, late in (
+            (True, "phone", []),  # held already when it came
+            (False, "phone", ["arm1"]),
+            (True, "phone", ["arm0"]),
+            (True, "phone", ["arm0"]),
+            (False, "keyboard", []),
+            (True, "keyboard", []),
+        )
+    ]
+    assert run("phone/feedback.js", script, said) == [[], [], ["late", "grasped"], [], [], []]

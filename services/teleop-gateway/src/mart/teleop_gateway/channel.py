@@ -95,6 +95,7 @@ def tick(
             "rtf": round(state.real_time_factor, 3),
             "engaged": driving.engaged(now_s),
             "gripper": round(driving.gripper, 3),
+            "holding": driving.holding,
             "barrier": barrier_word(room.barrier),
             "waiting": [{"arm": w.arm, "since_s": round(w.since_s, 2)} for w in room.waiting_for],
             "input": driving.active.value,

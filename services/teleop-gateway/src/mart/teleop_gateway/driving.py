@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from mart.protocol.messages import OPERATOR_HUMAN, ArmState, Command, CommandStamps, pose_message
 from mart.protocol.pose import Pose
 from mart.teleop_gateway.frame import Flag
+from mart.teleop_gateway.grasp import Grip, holds
 from mart.teleop_gateway.guard import Guard, Hand
 from mart.teleop_gateway.retarget import Retarget, Target
 
@@ -44,6 +45,7 @@ class Driving:
 
     `first_sequence` must be above every command's number of an earlier process for the same epoch: the sim takes only
     newer ones. gripper_told: what the gripper was asked for in the newest tick, by whoever drove then; None: unknown.
+    holding: the gripper has taken hold of something.
     """
 
     arm: str
@@ -52,6 +54,8 @@ class Driving:
     retarget: Retarget
     active: Input = Input.KEYBOARD
     gripper_told: float | None = None
+    holding: bool = False
+    _grip: Grip | None = None
     _sources: dict[Input, _Source] = field(default_factory=dict)
     _rejected: Counter[str] = field(default_factory=Counter)
     _target: Target | None = None
@@ -105,9 +109,12 @@ class Driving:
         self._target = replace(target, gripper=gripper)
         return self._command(hand, self._target, peer.clock_offset_ns, now_ns)
 
-    def see(self, arm: ArmState) -> None:
+    def see(self, arm: ArmState, sim_time_s: float) -> None:
         """The arm after the newest tick, whoever drove it."""
         self.gripper_told = (arm.action[-1] + 1.0) / 2.0 if arm.action else arm.gripper
+        grip = Grip(arm.gripper, self.gripper_told, sim_time_s)
+        self.holding = bool(arm.action) and holds(self.holding, self._grip, grip)
+        self._grip = grip
 
     def world_was_reset(self) -> None:
         self._target = None

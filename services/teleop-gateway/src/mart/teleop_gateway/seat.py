@@ -200,7 +200,7 @@ class Seat:
         self._state = state
         self._measured = measured_tool_in_base
         if self._driving is not None:
-            self._driving.see(arm)
+            self._driving.see(arm, state.sim_time_s)
             if was_reset:
                 self._driving.world_was_reset()
         self._scenery.on_boot(state.boot)
@@ -265,7 +265,7 @@ class Seat:
     def _telling(self, driving: Driving, now_s: float) -> tuple[object, ...]:
         """What is worth a message of its own."""
         waiting = tuple(waiting.arm for waiting in self._status.waiting_for)
-        return driving.engaged(now_s), driving.active, self._status.barrier, waiting
+        return driving.engaged(now_s), driving.holding, driving.active, self._status.barrier, waiting
 
     def _on_picture(self, picture: Picture) -> None:
         """On the view's thread: first to those who wait for it, then onto the bus."""

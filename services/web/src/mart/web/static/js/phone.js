@@ -8,7 +8,7 @@ import { everyFrame } from "./drive/ticker.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { Coach } from "./phone/coach.js";
 import { GripperBar, Hold, StopButton } from "./phone/controls.js";
-import { feel, stayAwake } from "./phone/feedback.js";
+import { feel, newsIn, stayAwake } from "./phone/feedback.js";
 import { TouchTracker } from "./phone/touch-tracker.js";
 import { canTrack, XrTracker } from "./phone/xr.js";
 
@@ -149,9 +149,7 @@ function guide(hand, nowMs) {
 function heard(message) {
   if (message.type !== "tick") return;
   if (status === null) gripper.set(message.gripper);
-  const arm = document.body.dataset.arm;
-  const late = (one) => Boolean(one?.waiting.some((waiting) => waiting.arm === arm));
-  if (late(message) && !late(status)) feel("late");
+  newsIn(message, status, document.body.dataset.arm).forEach(feel);
   status = message;
   showLink();
 }
