@@ -118,3 +118,9 @@ def test_a_folder_without_successes_is_said(tmp_path: Path) -> None:
     write_footage(tmp_path, 0, TASK, [], "failure")
     with pytest.raises(NotFound, match="no successful episodes"):
         read_couplings(tmp_path)
+
+
+def test_a_task_with_too_few_successes_is_named_before_any_other_is_worked_on(folder: Path) -> None:
+    write_footage(folder, MIN_EPISODES, "two_arm_table_assembly", [], "success")
+    with pytest.raises(InvalidInput, match=r"1 successful episodes of two_arm_table_assembly .* at least"):
+        read_couplings(folder)

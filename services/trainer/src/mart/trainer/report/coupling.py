@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from mart.protocol import codec
 from mart.protocol.episodes.paths import episode_files
 from mart.protocol.episodes.reader import EpisodeFile
-from mart.protocol.errors import NotFound
+from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import State
 from mart.protocol.recording import STATE
 from mart.protocol.tasks import Arm, Task, get_task
 from mart.trainer.data.episode import from_states
 from mart.trainer.data.layout import Layout
-from mart.trainer.report.dependence import BINS, Dependence, Recorded, dependence
+from mart.trainer.report.dependence import BINS, MIN_EPISODES, Dependence, Recorded, dependence
 
 if TYPE_CHECKING:
     from mart.trainer.policies.policy import Policy
@@ -72,6 +72,12 @@ def read_couplings(folder: Path, policies: Sequence[Policy] = ()) -> list[Coupli
             by_task[record.task, len(record.arms)].append(path)
     if not by_task:
         raise NotFound(f"There are no successful episodes in {folder}; `mart collect` records some.")
+    for (task, _), paths in sorted(by_task.items()):
+        if len(paths) < MIN_EPISODES:  # told before hours may have gone into the other tasks
+            raise InvalidInput(
+                f"{len(paths)} successful episodes of {task} are in {folder}; at least {MIN_EPISODES} of a task "
+                "tell something about dependence: record more, or move these elsewhere."
+            )
     chosen = {(policy.task, len(policy.arms)): policy for policy in policies}
     return [
         _coupling(get_task(*kind), [_states(path) for path in paths], chosen.get(kind))
