@@ -156,7 +156,7 @@ def test_the_episode_is_found_watched_and_labelled(
         rita.page.keyboard.press("f")
         expect(rita.page.get_by_role("radio", name="Failed")).to_be_checked()
         rita.page.get_by_label("Note").fill("let go too early")
-        rita.page.get_by_label("Use for training").uncheck()
+        rita.page.get_by_label("Fit for training").uncheck()
         expect(rita.page.locator("#one")).to_contain_text("left out of data sets")
         rita.shoot("episode")
         assert rita.page.evaluate(INSPECT) == []
@@ -167,7 +167,7 @@ def test_the_episode_is_found_watched_and_labelled(
         expect(rita.page.get_by_label("Note")).to_have_value("let go too early")
         rita.page.keyboard.press("s")
         expect(rita.page.get_by_role("radio", name="Success")).to_be_checked()
-        rita.page.get_by_label("Use for training").check()
+        rita.page.get_by_label("Fit for training").check()
         rita.page.get_by_role("link", name="All episodes").click()
         expect(rita.page.locator(".episode .outcome")).to_have_text("Success")
 

@@ -95,6 +95,41 @@ async def test_it_is_labelled_by_this_sites_pages_only(enter: Enter, root: Path)
         assert (await ana.post("/api/episode", params={"path": PATH}, json=bad)).status_code == 400
 
 
+async def test_a_data_set_is_put_together_and_every_act_is_undone(enter: Enter, root: Path) -> None:
+    ana = await enter("Ana")
+    body = {"action": "add", "paths": [PATH]}
+    foreign = await ana.post("/api/datasets/good", json=body, headers={"Origin": "https://evil.example"})
+    assert foreign.status_code == 403
+    curated = (await ana.post("/api/datasets/good", json=body)).json()["curated"]
+    assert (curated["changed"], curated["episodes"], curated["left_out"]) == (1, 1, {})
+    everything = {"action": "add", "all": {"task": synthetic.TASK}}
+    assert (await ana.post("/api/datasets/good", json=everything)).json()["curated"]["episodes"] == 2
+    await ana.post("/api/datasets/good", json={"action": "remove", "paths": [PATH]})
+    listing = (await ana.get("/api/episodes", params={"dataset": "good"})).json()["listing"]
+    assert (listing["matching"], [one["name"] for one in listing["datasets"]]) == (1, ["good"])
+    undone = await ana.post("/api/datasets/good/undo", json={"act_ns": curated["act_ns"]})
+    assert undone.json()["curated"]["episodes"] == 1
+
+
+@pytest.mark.parametrize(
+    ("dataset", "body", "status"),
+    [
+        ("good", {"action": "add"}, 400),
+        ("good", {"action": "burn", "paths": [PATH]}, 400),
+        ("good", {"action": "add", "paths": [PATH] * 201}, 400),
+        ("good", {"action": "add", "paths": [PATH], "all": {}}, 400),
+        ("Good data", {"action": "add", "paths": [PATH]}, 400),
+        ("good", {"action": "remove", "paths": [PATH]}, 404),
+        ("good", {"action": "add", "paths": ["../join-code"]}, 404),
+    ],
+)
+async def test_what_cannot_be_put_together_is_said(
+    enter: Enter, root: Path, dataset: str, body: dict[str, object], status: int
+) -> None:
+    refused = await (await enter("Ana")).post(f"/api/datasets/{dataset}", json=body)
+    assert (refused.status_code, bool(refused.json()["error"]["message"])) == (status, True)
+
+
 async def test_the_file_is_downloaded_whole(
     enter: Enter, root: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

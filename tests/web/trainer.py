@@ -117,6 +117,7 @@ class Trainer:
         for model in submit.models:
             order = Order(model=model, task=submit.tasks[0])
             order.data, order.preset = submit.order.data, submit.order.preset
+            order.dataset = submit.order.dataset
             order.seeds.extend(submit.order.seeds)
             new.append(_job(f"job-{len(self.jobs) + len(new) + 1:04}", order, JOB_STATE_QUEUED, 0))
         self.jobs = [*new, *self.jobs]
@@ -162,6 +163,7 @@ def _choices() -> TrainerReply.Choices:
         presets=["debug", "fast", "paper"],
         data=[
             DataSet(path="episodes", episodes=64, tasks=[TASK]),
+            DataSet(path="episodes", name="cubes-good", episodes=58, left_out=2, tasks=[TASK]),
             DataSet(path="collected/episodes", episodes=100, tasks=[OTHER_TASK]),
         ],
         executors=["local"],

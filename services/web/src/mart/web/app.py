@@ -13,7 +13,7 @@ from starlette.exceptions import HTTPException
 from mart.protocol.errors import InvalidInput, MartError, NotFound
 from mart.web.errors import TooMany, error_json, http_status
 from mart.web.guard import Guard
-from mart.web.routes import episodes, health, joining, live, pages, peers, rooms, training
+from mart.web.routes import datasets, episodes, health, joining, live, pages, peers, rooms, training
 from mart.web.site import Site
 
 _log = logging.getLogger(__name__)
@@ -24,7 +24,7 @@ def create_app(site: Site) -> FastAPI:
     app = FastAPI(title="MART", openapi_url=None, docs_url=None, redoc_url=None)
     app.state.site = site
     app.add_middleware(Guard, names=site.names)
-    for module in (joining, rooms, peers, live, health, episodes, training, pages):
+    for module in (joining, rooms, peers, live, health, episodes, datasets, training, pages):
         app.include_router(module.router)
     app.mount("/static", StaticFiles(directory=pages.STATIC))
     app.add_exception_handler(MartError, _on_mart_error)

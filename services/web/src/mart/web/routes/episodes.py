@@ -25,14 +25,21 @@ Path = Annotated[str, Query(max_length=1024)]
 Camera = Annotated[str, Query(max_length=128)]
 
 
-class Asked(BaseModel):
-    """Filters, each empty where all will do, and the page."""
+class Filter(BaseModel):
+    """Each empty where all will do."""
 
     task: str = Field("", max_length=128)
     outcome: str = Field("", max_length=128)
     verdict: str = Field("", max_length=128)
     operator: str = Field("", max_length=128)
     room: str = Field("", max_length=128)
+    skill: str = Field("", max_length=128)
+    dataset: str = Field("", max_length=128)
+
+
+class Asked(Filter):
+    """A page of what a filter lets through."""
+
     offset: int = Field(0, ge=0, lt=2**31)
     count: int = Field(50, ge=1, le=200)
 

@@ -23,6 +23,7 @@ class Submission(BaseModel):
     models: list[str] = Field(min_length=1, max_length=16)
     tasks: list[str] = Field(min_length=1, max_length=16)
     data: str = ""
+    dataset: str = ""
     preset: str = ""
     seeds: list[Annotated[int, Field(ge=0, lt=2**31)]] = Field(default_factory=list, max_length=64)
     evaluation_episodes: int = Field(0, ge=0, le=1000)
@@ -32,6 +33,7 @@ class Submission(BaseModel):
     def request(self) -> TrainerRequest:
         order = Order(
             data=self.data,
+            dataset=self.dataset,
             preset=self.preset,
             seeds=self.seeds,
             evaluation_episodes=self.evaluation_episodes,

@@ -53,6 +53,8 @@ const episodePath = (path, part = "") => `/episode${part}?${new URLSearchParams(
 export const episodes = (query, count) => request("GET", `/episodes?${new URLSearchParams([...query, ["count", count]])}`);
 export const episode = (path) => request("GET", episodePath(path));
 export const labelEpisode = (path, said) => request("POST", episodePath(path), said);
+export const curate = (dataset, curation) => request("POST", `/datasets/${encodeURIComponent(dataset)}`, curation);
+export const undoCuration = (dataset, act) => request("POST", `/datasets/${encodeURIComponent(dataset)}/undo`, { act_ns: act });
 export const fileOf = (path) => `/api${episodePath(path, "/file")}`;
 export const pictureOf = (path) => `/api${episodePath(path, "/picture")}`;
 

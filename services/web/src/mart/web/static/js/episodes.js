@@ -1,6 +1,7 @@
 // The episodes page: what was recorded, one of them in full, and what people say about it.
 
 import { byId, setShown, setText } from "./dom.js";
+import { Curation } from "./episodes/curation.js";
 import { EpisodeList } from "./episodes/list.js";
 import { EpisodeView } from "./episodes/one.js";
 import { followRooms } from "./live.js";
@@ -8,7 +9,8 @@ import { isMember, toLobby } from "./member.js";
 
 const RETRY_MS = 2000;
 
-const list = new EpisodeList({ onChange: (query) => go(query), onOpen: (path) => go(new URLSearchParams({ path })) });
+const curation = new Curation({ attempt, onChanged: show });
+const list = new EpisodeList({ onChange: (query) => go(query), onOpen: (path) => go(new URLSearchParams({ path })), curation });
 const one = new EpisodeView({ attempt, onBack: () => go(list.query) });
 let timer = 0;
 
@@ -21,6 +23,7 @@ function start() {
 }
 
 function go(query) {
+  byId("curated").replaceChildren();
   history.pushState(null, "", query.size ? `/episodes?${query}` : "/episodes");
   show();
 }

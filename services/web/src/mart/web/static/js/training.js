@@ -15,7 +15,7 @@ const REFRESH_MS = 2000;
 
 const refresh = repeating(lookAgain, REFRESH_MS);
 
-const form = new OrderForm(byId("order"), submit);
+const form = new OrderForm(byId("order"), new URLSearchParams(location.search).get("dataset"), submit);
 const comparison = new Comparison();
 const runs = new RunList(comparison, { onSelect: refresh, onAct: act });
 const view = new RunView({ onAct: act, onPromote: promote });

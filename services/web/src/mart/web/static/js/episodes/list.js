@@ -6,15 +6,16 @@ import { byId, element, setShown, setText } from "../dom.js";
 import { countText, dateText, drivers, lengthText, OUTCOMES, outcomeText, rateText, remarks, VERDICTS } from "./words.js";
 
 const COUNT = 50;
-const FILTERS = ["task", "outcome", "operator", "verdict"];
+const FILTERS = ["task", "outcome", "operator", "skill", "verdict", "dataset"];
+const WHERE_THERE_ARE = ["skill", "dataset"]; // filters that are shown once there is something to choose
 
 export class EpisodeList {
   #shown = "";
   #offset = 0;
 
-  /** `onChange(query)` is called when other episodes are wanted, `onOpen(path)` when one is. */
-  constructor({ onChange, onOpen }) {
-    Object.assign(this, { onChange, onOpen });
+  /** `onChange(query)` is called when other episodes are wanted, `onOpen(path)` when one is; `curation` puts them into data sets. */
+  constructor({ onChange, onOpen, curation }) {
+    Object.assign(this, { onChange, onOpen, curation });
     this.selects = Object.fromEntries(FILTERS.map((name) => [name, this.#select(name)]));
     byId("filters").append(...FILTERS.map((name) => element("label", {}, LABELS[name], this.selects[name])));
     byId("filters").addEventListener("submit", (event) => event.preventDefault());
@@ -29,8 +30,11 @@ export class EpisodeList {
   }
 
   get query() {
-    const chosen = FILTERS.map((name) => [name, this.selects[name].value]).filter(([, value]) => value);
-    return new URLSearchParams(this.#offset ? [...chosen, ["offset", this.#offset]] : chosen);
+    return new URLSearchParams(this.#offset ? { ...this.#filters, offset: this.#offset } : this.#filters);
+  }
+
+  get #filters() {
+    return Object.fromEntries(FILTERS.map((name) => [name, this.selects[name].value]).filter(([, value]) => value));
   }
 
   async load() {
@@ -43,6 +47,9 @@ export class EpisodeList {
     this.#shown = wanted;
     this.#offer("task", Object.entries(listing.tasks));
     this.#offer("operator", [...WHO, ...listing.operators.map((name) => [name, name])]);
+    this.#offer("skill", listing.skills.map((name) => [name, name]));
+    this.#offer("dataset", listing.datasets.map(({ name, episodes }) => [name, `${name} (${episodes})`]));
+    this.curation.show(listing, this.#filters);
     setText(byId("count"), countText(listing));
     byId("episodes").replaceChildren(...listing.episodes.map((episode) => this.#row(episode)));
     this.#showPaging(listing);
@@ -62,6 +69,7 @@ export class EpisodeList {
     const { value } = select;
     select.replaceChildren(element("option", { value: "" }, "All"), ...options.map(option));
     choose(select, value);
+    if (WHERE_THERE_ARE.includes(name)) setShown(select.parentElement, select.options.length > 1);
   }
 
   #filter() {
@@ -102,6 +110,7 @@ export class EpisodeList {
     return element(
       "li",
       { class: episode.dropped ? "episode dropped" : "episode" },
+      this.curation.tick(episode),
       picture(episode),
       element("span", { class: "what" }, title, element("span", { class: "soft block" }, facts)),
       element("span", { class: "outcome", dataset: { outcome: episode.outcome } }, outcomeText(episode.outcome)),
@@ -112,7 +121,7 @@ export class EpisodeList {
   }
 }
 
-const LABELS = { task: "Task", outcome: "Outcome", operator: "Driven by", verdict: "Check" };
+const LABELS = { task: "Task", outcome: "Outcome", operator: "Driven by", skill: "Skill", verdict: "Check", dataset: "Data set" };
 const WHO = [
   ["human", "Any person"],
   ["policy", "Any policy"],

@@ -77,7 +77,7 @@ export class EpisodeView {
       "section",
       { class: "card label", "aria-label": "What people say about it" },
       this.outcomes,
-      element("label", { class: "use" }, this.use, "Use for training"),
+      element("label", { class: "use" }, this.use, "Fit for training"),
       element("label", { class: "note" }, "Note", this.note),
     );
   }

@@ -42,9 +42,10 @@ export const dateText = (ms) => (ms ? DAY.format(ms) : "");
 export const rateText = (factor) => (factor == null ? "–" : `${factor.toFixed(2)}×`);
 
 /** What is unusual about it, in a few words. */
-export function remarks({ complete, repaired, interrupted, missing_ticks: missing, dropped, error }) {
+export function remarks({ complete, repaired, interrupted, missing_ticks: missing, dropped, datasets, error }) {
   if (error) return ["cannot be read"];
   return [
+    datasets.length > 0 && `in ${datasets.join(", ")}`,
     dropped && "left out of data sets",
     interrupted && "paused meanwhile",
     !complete && "incomplete",
@@ -53,8 +54,19 @@ export function remarks({ complete, repaired, interrupted, missing_ticks: missin
   ].filter(Boolean);
 }
 
+export const plural = (count) => `${count} ${count === 1 ? "episode" : "episodes"}`;
+
+/** "61 episodes joined “cubes-good”. It holds 61 now. Left out: 2 discarded, 1 dropped." */
+export function curatedText({ dataset, changed, left_out: leftOut, episodes }, did) {
+  const why = Object.entries(leftOut).map(([reason, count]) => `${count} ${reason}`);
+  const rest = why.length ? ` Left out: ${why.join(", ")}.` : "";
+  return `${plural(changed)} ${did} “${dataset}”. It holds ${episodes} now.${rest}`;
+}
+
+/** What people type as a name of a data set, as it may be: "Cubes, good" → "cubes-good" */
+export const datasetName = (text) => text.toLowerCase().replace(/[^a-z0-9_]+/g, "-").replace(/^[-_]+/, "").slice(0, 64);
+
 export function countText({ matching, successes }) {
   if (matching === 0) return "";
-  const episodes = `${matching} ${matching === 1 ? "episode" : "episodes"}`;
-  return `${episodes}, ${successes} good (${Math.round((100 * successes) / matching)} %)`;
+  return `${plural(matching)}, ${successes} good (${Math.round((100 * successes) / matching)} %)`;
 }

@@ -1,7 +1,7 @@
 // What to train: data, a point of the grid planner × actor × residual, and how much of it.
 
 import { element, setShown, setText } from "../dom.js";
-import { plural, taskText } from "./words.js";
+import { dataText, takenText, taskText } from "./words.js";
 
 const AXES = [
   ["planner", "Planner", [["none", "None"], ["joint", "Joint"], ["per-arm", "Per arm"]]],
@@ -16,9 +16,9 @@ export class OrderForm {
   #model = ""; // a name, or the grid's point itself
   #known = "";
 
-  /** `onSubmit(order)` gets the body of POST /api/training/jobs. */
-  constructor(form, onSubmit) {
-    Object.assign(this, { form, onSubmit });
+  /** `onSubmit(order)` gets the body of POST /api/training/jobs; `wanted`: the data set to begin with. */
+  constructor(form, wanted, onSubmit) {
+    Object.assign(this, { form, wanted, onSubmit });
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       this.#submit();
@@ -36,14 +36,16 @@ export class OrderForm {
       this.#known = known;
       this.#build();
     }
-    fill(this.data, choices.data, ({ path }) => path, ({ path, episodes }) => `${path} (${plural(episodes, "episode")})`, choices.order.data);
-    fill(this.task, choices.tasks, (task) => task, taskText, choices.order.task);
+    const wanted = choices.data.find(({ name }) => name && name === this.wanted);
+    fill(this.data, choices.data, keyOf, dataText, wanted ? keyOf(wanted) : choices.order.data);
+    fill(this.task, choices.tasks, (task) => task, taskText, wanted?.tasks[0] ?? choices.order.task);
     this.#render();
   }
 
   #build() {
     const { models, presets, executors, order } = this.#choices;
     this.data = element("select", { required: true });
+    this.dataText = element("p", { class: "soft" });
     this.task = element("select", { required: true });
     this.name = element("output", { class: "model-name" });
     this.about = element("p", { class: "soft" });
@@ -57,7 +59,7 @@ export class OrderForm {
     const executor = element("label", {}, "Runs on", this.executor);
     setShown(executor, executors.length > 1);
     this.form.replaceChildren(
-      element("label", {}, "Episodes", this.data),
+      element("div", { class: "data" }, element("label", {}, "Episodes", this.data), this.dataText),
       element("label", {}, "Task", this.task),
       element(
         "fieldset",
@@ -95,8 +97,12 @@ export class OrderForm {
 
   /** Episodes of one task are learned from: the one that this data set has most of. */
   #followData() {
-    const [task] = this.#choices.data.find(({ path }) => path === this.data.value).tasks;
+    const [task] = this.#chosen.tasks;
     if (task) this.task.value = task;
+  }
+
+  get #chosen() {
+    return this.#choices.data.find((one) => keyOf(one) === this.data.value);
   }
 
   #render() {
@@ -108,6 +114,7 @@ export class OrderForm {
     for (const chip of this.form.querySelectorAll(".chip")) {
       chip.setAttribute("aria-pressed", String(this.all.checked ? PAPER.includes(chip.dataset.model) : chip.dataset.model === this.#model));
     }
+    setText(this.dataText, this.#chosen ? takenText(this.#chosen) : "");
     setText(this.presetText, PRESETS[this.form.elements.preset.value] ?? "");
     setText(this.button, this.all.checked ? "Train all seven" : `Train ${this.#model}`);
     this.button.disabled = this.#choices.data.length === 0;
@@ -124,7 +131,8 @@ export class OrderForm {
     this.onSubmit({
       models: this.all.checked ? PAPER : [this.#model],
       tasks: [this.task.value],
-      data: this.data.value,
+      data: this.#chosen.path,
+      dataset: this.#chosen.name,
       preset: this.form.elements.preset.value,
       seeds: Array.from({ length: Number(this.seeds.value) }, (_, seed) => seed),
       evaluation_episodes: Number(this.episodes.value),
@@ -133,6 +141,8 @@ export class OrderForm {
     });
   }
 }
+
+const keyOf = ({ path, name }) => (name ? `${path}#${name}` : path);
 
 function segmented(name, title, options) {
   const radios = options.map(([value, text]) =>

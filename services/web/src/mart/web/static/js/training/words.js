@@ -12,8 +12,21 @@ export const taskText = (task) => {
 
 export const plural = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
 
-/** "fast, 3 seeds" */
-export const orderText = ({ preset, seeds }) => `${preset}, ${plural(seeds.length, "seed")}`;
+/** "fast, 3 seeds", with the data set where it has a name */
+export const orderText = ({ preset, seeds, dataset }) => [dataset, preset, plural(seeds.length, "seed")].filter(Boolean).join(", ");
+
+/** A folder of episodes, or a named data set of one: its folder is told where it is not the usual one. */
+export function dataText({ path, name, episodes }) {
+  const where = name && path !== "episodes" ? ` in ${path}` : "";
+  return `${name || path}${where} (${plural(episodes, "episode")})`;
+}
+
+/** What a training takes of it. */
+export function takenText({ name, left_out: leftOut }) {
+  if (!name) return "The successful and verified ones are learned from.";
+  if (leftOut === 0) return "A data set is learned from whole, failures too.";
+  return `${plural(leftOut, "episode")} of it ${leftOut === 1 ? "is" : "are"} left out: dropped, discarded or deleted since.`;
+}
 
 /** 0.00123 → "0.0012", 12345 → "12 345" */
 export function short(value) {

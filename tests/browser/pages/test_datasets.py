@@ -1,0 +1,125 @@
+"""From a filter to a data set to a training, in a real Chromium, with a real catalogue and a real trainer."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from mart.protocol.episodes import labels
+from mart.protocol.episodes.labels import Kind
+from tests.browser.pages.test_pages import INSPECT, LOOKS, SCREENSHOTS, SIZES, listen
+from tests.recorder.files import write_episode
+from tests.support.processes import free_port, running_router, running_service
+
+EPISODES = 6
+
+
+@dataclass
+class Site:
+    url: str
+    join_code: str
+    paths: list[Path]  # of the episodes, the oldest first
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    """Six episodes, of which the first failed and the second was dropped."""
+    port, data_dir = free_port(), tmp_path_factory.mktemp("data")
+    paths = [write_episode(data_dir / "episodes", 10, number).path for number in range(1, EPISODES + 1)]
+    labels.say(paths[0], Kind.OUTCOME, "failure", 1)
+    labels.say(paths[1], Kind.USE, "drop", 2)
+    with running_router() as endpoint, contextlib.ExitStack() as services:
+        for command, kind, name in (
+            (["web", "--port", str(port)], "web", "web"),
+            (["catalogue"], "catalogue", "catalogue-1"),
+            (["trainer"], "trainer", "trainer-1"),
+        ):
+            services.enter_context(running_service(command, endpoint, data_dir, kind=kind, id=name))
+        yield Site(f"https://localhost:{port}/", (data_dir / "join-code").read_text().strip(), paths)
+
+
+@contextlib.contextmanager
+def episodes_page(
+    browser: Browser, site: Site, size: str = "wide", scheme: str = "light", query: str = ""
+) -> Iterator[Page]:
+    width, height = SIZES[size]
+    with browser.new_context(
+        ignore_https_errors=True,
+        viewport={"width": width, "height": height},
+        color_scheme=scheme,  # type: ignore[arg-type]
+        reduced_motion="reduce",
+    ) as context:
+        page = context.new_page()
+        noise: list[str] = []
+        page.goto(f"{site.url}#code={site.join_code}")
+        page.get_by_label("Your name").fill("Rita")
+        page.get_by_role("button", name="Join and choose a seat").click()
+        expect(page.locator("#me")).to_contain_text("Rita")
+        listen(page, noise)
+        page.goto(f"{site.url}episodes{query}")
+        expect(page.locator(".episode").first).to_be_visible()
+        yield page
+        assert noise == []
+
+
+def test_from_a_filter_to_a_data_set_to_a_training(browser: Browser, site: Site) -> None:
+    with episodes_page(browser, site) as page:
+        page.get_by_label("Outcome").select_option("Success")
+        expect(page.get_by_role("button", name="Use 5 for training")).to_be_visible()
+        page.get_by_label("Name of the data set").press_sequentially("Cubes, good")
+        page.keyboard.press("Enter")
+        told = page.locator("#curated")
+        expect(told).to_contain_text("4 episodes joined “cubes-good”. It holds 4 now. Left out: 1 dropped.")
+        page.get_by_label("Choose room-1, episode 6").check()
+        page.locator("select[name=dataset]").select_option("cubes-good (4)")
+        expect(page.locator(".episode")).to_have_count(4)
+        expect(page.locator("#chosen")).to_contain_text("All 4 episodes")
+        page.get_by_label("Choose room-1, episode 6").check()
+        page.get_by_role("button", name="Take 1 out of “cubes-good”").click()
+        expect(page.locator(".episode")).to_have_count(3)
+        told.get_by_role("button", name="Undo").click()
+        expect(page.locator(".episode")).to_have_count(4)
+        expect(told).to_have_text("Undone: “cubes-good” holds 4 episodes.")
+        page.get_by_label("Name of the data set").fill("cubes-good")
+        page.get_by_role("button", name="Use 4 for training").click()
+        expect(told).to_contain_text("0 episodes joined “cubes-good”")
+        labels.say(site.paths[-1], Kind.USE, "drop", 3)
+        told.get_by_role("link", name="Train on it").click()
+        data = page.locator("#order select").first
+        expect(data).to_have_value("episodes#cubes-good")
+        expect(data.locator("option:checked")).to_have_text("cubes-good (4 episodes)")
+        expect(page.locator("#order")).to_contain_text("1 episode of it is left out")
+        page.screenshot(path=SCREENSHOTS / "datasets-training.png", full_page=True)
+        assert page.evaluate(INSPECT) == []
+        with page.expect_request("**/api/training/jobs") as submitted:
+            page.get_by_role("button", name="Train r-HBC").click()
+        asked = json.loads(submitted.value.post_data or "")
+        assert (asked["data"], asked["dataset"]) == ("episodes", "cubes-good")
+        expect(page.locator(".run")).to_contain_text("cubes-good, fast")
+        page.locator(".run").get_by_role("button").click()
+        page.get_by_role("button", name="Cancel").click()
+        expect(page.locator(".run")).to_contain_text("Cancelled")
+        labels.say(site.paths[-1], Kind.USE, "keep", 4)
+
+
+@pytest.mark.parametrize(("size", "scheme"), LOOKS[:4])
+def test_it_is_legible_and_whole(browser: Browser, site: Site, size: str, scheme: str) -> None:
+    for path in site.paths[2:4]:
+        labels.say(path, Kind.JOIN, "lifting-by-ana", 5)
+    with episodes_page(browser, site, size, scheme, "?dataset=lifting-by-ana") as page:
+        page.locator(".tick").first.check()
+        page.get_by_label("Name of the data set").fill("few")
+        page.get_by_role("button", name="Use 1 for training").click()
+        expect(page.locator("#curated")).to_contain_text("joined “few”")
+        page.locator(".tick").first.check()
+        expect(page.get_by_role("button", name="Choose none")).to_be_visible()
+        page.screenshot(path=SCREENSHOTS / f"datasets-{size}-{scheme}.png", full_page=True)
+        assert page.evaluate(INSPECT) == []
+        page.locator("#curated").get_by_role("button", name="Undo").click()
+        expect(page.locator("#curated")).to_have_text("Undone: there is no “few” any more.")
