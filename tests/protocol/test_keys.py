@@ -12,6 +12,7 @@ def test_the_keys_are_those_of_the_spec() -> None:
     assert keys.status("room-1").key == "mart/room-1/status"
     assert keys.event("room-1").key == "mart/room-1/event"
     assert keys.video("room-1", "arm0").key == "mart/room-1/view/arm0/video"
+    assert keys.still("room-1", "arm0").key == "mart/room-1/view/arm0/still"
     assert keys.model("room-1").key == "mart/room-1/model"
     assert keys.seat("room-1").key == "mart/room-1/seat"
     assert keys.episode("room-1").key == "mart/room-1/episode"

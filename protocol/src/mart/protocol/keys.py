@@ -75,6 +75,10 @@ def video(room: str, camera: str) -> Topic:
     return Topic(_key(room, "view", camera, "video"), Priority.LOW)
 
 
+def still(room: str, camera: str) -> Topic:
+    return Topic(_key(room, "view", camera, "still"), Priority.LOW)
+
+
 def videos(room: str) -> str:
     return f"{ROOT}/{_segment('room', room)}/view/*/video"
 
@@ -145,6 +149,7 @@ EVERY_STATUS = f"{ROOT}/*/status"
 EVERY_EVENT = f"{ROOT}/*/event"
 EVERY_COMMAND = f"{ROOT}/*/arm/*/command"
 EVERY_VIDEO = f"{ROOT}/*/view/*/video"
+EVERY_STILL = f"{ROOT}/*/view/*/still"
 EVERY_ALIVE = f"{ROOT}/@live/*/*"
 
 
@@ -158,8 +163,8 @@ def last_of(key: str) -> str:
     return key.rsplit("/", 1)[-1]
 
 
-def camera_of(video_key: str) -> str:
-    return video_key.split("/")[3]
+def camera_of(view_key: str) -> str:
+    return view_key.split("/")[3]
 
 
 def arm_of(command_key: str) -> str:

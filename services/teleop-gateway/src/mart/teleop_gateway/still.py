@@ -1,0 +1,27 @@
+"""A small picture of a seat's view every two seconds: what the lobby shows of the room."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+EVERY_S = 2.0
+_SIZE_PX = (384, 288)
+_JPEG_QUALITY = 80
+
+
+class Stills:
+    """Says when one is due, and makes it."""
+
+    def __init__(self) -> None:
+        self._due_s = 0.0
+
+    def take(self, picture_rgb: NDArray[np.uint8], now_s: float) -> bytes | None:
+        """A JPEG of a picture of shape (height, width, 3); None where the last one is not old enough."""
+        if now_s < self._due_s:
+            return None
+        self._due_s = now_s + EVERY_S
+        small = cv2.resize(picture_rgb, _SIZE_PX, interpolation=cv2.INTER_AREA)
+        _, jpeg = cv2.imencode(".jpg", small[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])
+        return jpeg.tobytes()
