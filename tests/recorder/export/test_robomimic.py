@@ -107,6 +107,7 @@ def test_observation_and_action_stand_side_by_side_as_in_training(source: Source
 
 
 def test_what_the_file_is_stands_in_it(folder: Path) -> None:
+    say(max(folder.rglob("*.mcap")), Kind.JOIN, "late", at_ns=1)
     write(folder, folder / "lifting.hdf5", "--outcome", "any", "--verdict", "any")
     with h5py.File(folder / "lifting.hdf5") as file:
         environment = json.loads(file["data"].attrs["env_args"])
@@ -117,6 +118,10 @@ def test_what_the_file_is_stands_in_it(folder: Path) -> None:
     assert observations["arm1_gripper"]["arms"] == ["arm1"]
     assert groups["success"] == ["demo_0", "demo_2", "demo_3"]
     assert groups["failure"] == ["demo_1"]
+    assert groups["dataset-late"] == ["demo_2"]
+    write(folder, folder / "late.hdf5", "--dataset", "late", "--verdict", "any")
+    with h5py.File(folder / "late.hdf5") as file:
+        assert list(file["data"]) == ["demo_0"]
 
 
 def test_only_what_is_asked_for_is_taken(folder: Path) -> None:
