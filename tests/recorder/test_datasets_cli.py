@@ -63,7 +63,8 @@ def test_what_nobody_learns_from_stays_out_and_is_said(mart: Mart, paths: list[P
     assert held(mart, "good") == ["0003"]
     paths[2].unlink()
     assert f"{paths[2].name} (deleted)" in mart("datasets", "show", "good")
-    assert "it holds 0 now" in mart("datasets", "remove", "good", paths[2])
+    listed = paths[2].relative_to(mart.episodes_dir)
+    assert "it holds 0 now" in mart("datasets", "remove", "good", listed)
 
 
 @pytest.mark.parametrize(
@@ -79,9 +80,11 @@ def test_what_nobody_learns_from_stays_out_and_is_said(mart: Mart, paths: list[P
         ),
         (("add", "knwon"), "There is no data set 'knwon'. Did you mean 'known'?"),
         (("show", "new"), "There is no data set 'new'. Known: known."),
+        (("remove", "known"), "Name episodes or give a filter; `mart datasets delete known` takes out all"),
+        (("remove", "new", "{elsewhere}"), "name its folder of episodes with --folder"),
         (("undo", "new"), "There never was a data set 'new'"),
         (("create", "new", "--task", "wipe"), "None of 3 episodes is let through by --task wipe"),
-        (("create", "new", "nowhere"), "There is no nowhere"),
+        (("create", "new", "nowhere"), "nowhere; name episode files or folders"),
         (("create", "new", "--folder", "nowhere"), "There is no folder"),
         (("create", "new", "{elsewhere}"), "name its folder of episodes with --folder"),
     ],

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 import mart.web
+from mart.protocol.episodes.labels import Kind, Label
 from mart.protocol.tasks import get_task
 from tests.browser.pages.conftest import Run
 
@@ -207,3 +208,11 @@ def test_a_hand_feels_what_is_new_and_only_while_it_drives(run: Run) -> None:
         )
     ]
     assert run("phone/feedback.js", script, said) == [[], [], ["late", "grasped"], [], [], []]
+
+
+def test_whatever_is_typed_becomes_a_name_that_a_data_set_may_have(run: Run) -> None:
+    typed = ["Cubes, good", "  -_a", "Ünder 2", "x" * 99, "ok_1-2", "!?"]
+    names = run("episodes/words.js", "({ datasetName }, typed) => typed.map(datasetName)", typed)
+    assert names == ["cubes-good", "a", "nder-2", "x" * 64, "ok_1-2", ""]
+    for name in filter(None, names):
+        Label("a", Kind.JOIN, name, 1)

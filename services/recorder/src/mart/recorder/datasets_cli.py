@@ -10,7 +10,7 @@ import click
 from mart.protocol import clock
 from mart.protocol.cli import json_option, print_result
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
-from mart.recorder.filters import filters, passing
+from mart.recorder.filters import ANY, filters, passing
 from mart.recorder.settings import RecorderSettings
 
 if TYPE_CHECKING:
@@ -117,10 +117,12 @@ def remove(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
     """Take episodes out of a data set: those that the filters let through, or those among PATHS, there or not."""
     from mart.recorder import curate
 
-    gone = [path for path in paths if not path.exists()]
-    left = [path for path in paths if path.exists()]
-    chosen = _chosen(folder, tuple(left), wanted) if left or not paths else []
-    names = [row.path for row in chosen] + [_below(folder, path) for path in gone]
+    if not paths and not any(value not in ("", (ANY,)) for value in wanted.values()):
+        raise InvalidInput(f"Name episodes or give a filter; `mart datasets delete {name}` takes out all.")
+    placed = [_placed(folder, path) for path in paths]
+    left = tuple(path for path in placed if path.exists())
+    chosen = _chosen(folder, left, wanted) if left or not paths else []
+    names = [row.path for row in chosen] + [_below(folder, path) for path in placed if not path.exists()]
     _say(curate.take_out(folder, name, names, clock.wall_ns()), "taken out", as_json)
 
 
@@ -167,7 +169,8 @@ def _chosen(folder: Path, paths: tuple[Path, ...], wanted: dict[str, Any]) -> li
     """Raises InvalidInput for a path that is not in the folder, and where nothing is let through."""
     from mart.recorder import files
 
-    rows = [(folder / _below(folder, path), row) for path, row in files.rows(paths or (folder,))]
+    placed = [_placed(folder, path) for path in paths]
+    rows = [(folder / _below(folder, path), row) for path, row in files.rows(placed or (folder,))]
     passed = [row for _, row in passing(rows, wanted)]
     if not passed:
         asked = ", ".join(f"--{key} {_text(value)}" for key, value in wanted.items() if value)
@@ -177,6 +180,11 @@ def _chosen(folder: Path, paths: tuple[Path, ...], wanted: dict[str, Any]) -> li
 
 def _text(value: str | tuple[str, ...]) -> str:
     return value if isinstance(value, str) else " or ".join(value)
+
+
+def _placed(folder: Path, path: Path) -> Path:
+    """Paths may also be given as they are listed: relative to the folder of episodes."""
+    return path if path.exists() else folder / path
 
 
 def _below(folder: Path, path: Path) -> str:

@@ -45,7 +45,7 @@ export class Curation {
   #update() {
     const count = this.#chosen.size;
     const { dataset } = this.#filter;
-    setText(byId("chosen"), count ? `${plural(count)} chosen` : `All ${plural(this.#matching)} shown; tick some to choose fewer`);
+    setText(byId("chosen"), count ? `${plural(count)} chosen` : "All that are shown; tick some to choose fewer");
     setText(byId("use"), `Use ${count || this.#matching} for training`);
     setShown(byId("choose-none"), count > 0);
     setShown(byId("take-out"), Boolean(dataset));
