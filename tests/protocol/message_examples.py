@@ -99,6 +99,7 @@ def _room() -> tuple[Message, ...]:
         m.EpisodeRequest(finish=finish),
         m.RoomReply(error=m.Error(code="Conflict", message="arm0 is held by Ana."), seat=_SEAT),
         m.Event(wall_ns=_STAMP, room="room-1", tick=1235, episode_saved=saved),
+        m.Event.CueGiven(arm="arm0", cue=m.CUE_WAIT),
     )
 
 

@@ -92,6 +92,8 @@ def test_words_of_enums_go_both_ways() -> None:
         assert m.operator_word(m.operator_from_word(word)) == word
     for word in ("success", "failure", "discarded"):
         assert m.outcome_word(m.outcome_from_word(word)) == word
+    for word in ("have_it", "go", "wait", "slower", "thanks"):
+        assert m.cue_word(m.cue_from_word(word)) == word
     assert m.phase_word(m.EPISODE_PHASE_RECORDING) == "recording"
     assert m.barrier_word(m.BARRIER_PHASE_PAUSED) == "paused"
     for bad in ("unspecified", "robot", ""):
@@ -99,3 +101,5 @@ def test_words_of_enums_go_both_ways() -> None:
             m.operator_from_word(bad)
         with pytest.raises(InvalidInput, match="must be"):
             m.outcome_from_word(bad)
+        with pytest.raises(InvalidInput, match="have_it, go, wait, slower or thanks"):
+            m.cue_from_word(bad)

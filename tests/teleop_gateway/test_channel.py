@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import (
     BARRIER_PHASE_STALLED,
+    CUE_WAIT,
     ArmState,
     RoomStatus,
     State,
@@ -92,6 +93,7 @@ def test_nothing_is_made_up_before_there_is_anything() -> None:
         ('{"type":"clock","offset_ns":1800000000000000000}', channel.Clock(1800000000000000000)),
         ('{"type":"seen","tick":41,"t_us":12}', channel.Seen(41, 12)),
         ('{"type":"input","input":"keyboard"}', channel.Select(Input.KEYBOARD)),
+        ('{"type":"cue","cue":"wait","t_us":7.5}', channel.GiveCue(CUE_WAIT, 7.5)),
     ],
 )
 def test_what_peers_say_is_understood(text: str, message: object) -> None:
@@ -114,6 +116,9 @@ def test_what_peers_say_is_understood(text: str, message: object) -> None:
         '{"type":"clock","offset_ns":1' + "0" * 400 + "}",
         '{"type":"seen","tick":1.5,"t_us":1}',
         '{"type":"input","input":"mind"}',
+        '{"type":"cue","cue":"hurry","t_us":1}',
+        '{"type":"cue","cue":["go"],"t_us":1}',
+        '{"type":"cue","cue":"go","t_us":true}',
         '{"type":"tick"}',
         '{"type":"ping","t_us":1,"more":"' + "x" * 1100 + '"}',
     ],

@@ -5,6 +5,7 @@ import pytest
 from mart.protocol.errors import NotFound
 from mart.protocol.messages import (
     BARRIER_PHASE_STALLED,
+    CUE_GO,
     EPISODE_PHASE_RECORDING,
     OPERATOR_HUMAN,
     OPERATOR_SCRIPT,
@@ -113,6 +114,11 @@ def test_a_saved_episode_is_told() -> None:
     told = event_json(event)
     assert told is not None
     assert (told["kind"], told["number"], told["outcome"]) == ("episode_saved", 3, "success")
+
+
+def test_a_cue_is_told() -> None:
+    told = event_json(Event(room="room-1", cue_given=Event.CueGiven(arm="arm1", cue=CUE_GO)))
+    assert told == {"room": "room-1", "kind": "cue_given", "arm": "arm1", "cue": "go"}
 
 
 def test_a_notice_is_told() -> None:

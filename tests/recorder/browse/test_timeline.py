@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_POLICY, ArmState, Event, Lane, Span, State
+from mart.protocol.messages import CUE_GO, OPERATOR_HUMAN, OPERATOR_POLICY, ArmState, Event, Lane, Span, State
 from mart.recorder.browse.timeline import MAX_POINTS, runs, timeline
 from tests.recorder import synthetic
 
@@ -36,13 +36,15 @@ def test_it_tells_what_was_done_who_drove_and_for_whom_the_world_waited() -> Non
         state(4, fresh=False),
     ]
     notice = Event(wall_ns=states[1].stamps.stepped_ns, notice=Event.Notice(text="The link broke."))
-    details = timeline(states, [notice, Event(wall_ns=1, notice=Event.Notice(text="before"))])
+    cue = Event(wall_ns=states[2].stamps.stepped_ns, cue_given=Event.CueGiven(arm="arm0", cue=CUE_GO))
+    details = timeline(states, [notice, cue, Event(wall_ns=1, notice=Event.Notice(text="before"))])
     lanes = list(details.lanes)
     assert details.wall_s == 4.0
     assert lane(lanes, "subtask") == [(2.0, 4.0, "done")]
     assert lane(lanes, "driver") == [(0.0, 3.0, "human"), (3.0, 4.0, "policy"), (4.0, 4.0, "hold")]
     assert lane(lanes, "engaged") == [(1.0, 2.0, "engaged")]
     assert lane(lanes, "waiting") == [(2.25, 3.0, "")]
+    assert lane(lanes, "cue") == [(2.0, 2.0, "go")]
     assert lane(lanes, "notice") == [(1.0, 1.0, "The link broke.")]
 
 

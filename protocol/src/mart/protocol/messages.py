@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -35,6 +35,8 @@ from mart.v1.room_pb2 import (
     BARRIER_PHASE_RUNNING,
     BARRIER_PHASE_STALLED,
     BARRIER_PHASE_STOPPED,
+    CUE_GO,
+    CUE_WAIT,
     EPISODE_PHASE_COUNTDOWN,
     EPISODE_PHASE_ENDED,
     EPISODE_PHASE_PRACTICE,
@@ -44,6 +46,7 @@ from mart.v1.room_pb2 import (
     OUTCOME_SUCCESS,
     OUTCOME_UNSPECIFIED,
     BarrierPhase,
+    Cue,
     Episode,
     EpisodePhase,
     EpisodeRequest,
@@ -85,6 +88,8 @@ __all__ = [
     "BARRIER_PHASE_RUNNING",
     "BARRIER_PHASE_STALLED",
     "BARRIER_PHASE_STOPPED",
+    "CUE_GO",
+    "CUE_WAIT",
     "EPISODE_PHASE_COUNTDOWN",
     "EPISODE_PHASE_ENDED",
     "EPISODE_PHASE_PRACTICE",
@@ -110,6 +115,7 @@ __all__ = [
     "CatalogueRequest",
     "Command",
     "CommandStamps",
+    "Cue",
     "Curve",
     "DataSet",
     "Episode",
@@ -156,6 +162,8 @@ __all__ = [
     "Waiting",
     "WorldArrays",
     "barrier_word",
+    "cue_from_word",
+    "cue_word",
     "error_message",
     "job_state_word",
     "operator_from_word",
@@ -218,20 +226,33 @@ def job_state_word(state: JobState) -> str:
     return _word(JobState.Name(state), "JOB_STATE_")
 
 
+def cue_word(cue: Cue) -> str:
+    """have_it, go, wait, slower or thanks."""
+    return _word(Cue.Name(cue), "CUE_")
+
+
 def operator_from_word(word: str) -> Operator:
     """Raises InvalidInput for anything but human, policy, script or hold."""
-    name = f"OPERATOR_{word.upper()}"
-    if name == "OPERATOR_UNSPECIFIED" or name not in Operator.keys():
-        raise InvalidInput(f"Operator {word!r} was given; it must be human, policy, script or hold.")
-    return cast("Operator", Operator.Value(name))
+    return cast("Operator", _value(Operator, "OPERATOR_", "Operator", word))
 
 
 def outcome_from_word(word: str) -> Outcome:
     """Raises InvalidInput for anything but success, failure or discarded."""
-    name = f"OUTCOME_{word.upper()}"
-    if name == "OUTCOME_UNSPECIFIED" or name not in Outcome.keys():
-        raise InvalidInput(f"Outcome {word!r} was given; it must be success, failure or discarded.")
-    return cast("Outcome", Outcome.Value(name))
+    return cast("Outcome", _value(Outcome, "OUTCOME_", "Outcome", word))
+
+
+def cue_from_word(word: str) -> Cue:
+    """Raises InvalidInput for anything but have_it, go, wait, slower or thanks."""
+    return cast("Cue", _value(Cue, "CUE_", "Cue", word))
+
+
+def _value(enum: Any, prefix: str, what: str, word: str) -> int:
+    """Of any member but the first, which says nothing."""
+    *words, last = (_word(name, prefix) for name in enum.keys()[1:])
+    if word not in (*words, last):
+        raise InvalidInput(f"{what} {word!r} was given; it must be {', '.join(words)} or {last}.")
+    value: int = enum.Value(prefix + word.upper())
+    return value
 
 
 def _word(name: str, prefix: str) -> str:

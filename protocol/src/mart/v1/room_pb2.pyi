@@ -31,6 +31,15 @@ class Outcome(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     OUTCOME_SUCCESS: _ClassVar[Outcome]
     OUTCOME_FAILURE: _ClassVar[Outcome]
     OUTCOME_DISCARDED: _ClassVar[Outcome]
+
+class Cue(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    CUE_UNSPECIFIED: _ClassVar[Cue]
+    CUE_HAVE_IT: _ClassVar[Cue]
+    CUE_GO: _ClassVar[Cue]
+    CUE_WAIT: _ClassVar[Cue]
+    CUE_SLOWER: _ClassVar[Cue]
+    CUE_THANKS: _ClassVar[Cue]
 BARRIER_PHASE_UNSPECIFIED: BarrierPhase
 BARRIER_PHASE_RUNNING: BarrierPhase
 BARRIER_PHASE_STALLED: BarrierPhase
@@ -45,6 +54,12 @@ OUTCOME_UNSPECIFIED: Outcome
 OUTCOME_SUCCESS: Outcome
 OUTCOME_FAILURE: Outcome
 OUTCOME_DISCARDED: Outcome
+CUE_UNSPECIFIED: Cue
+CUE_HAVE_IT: Cue
+CUE_GO: Cue
+CUE_WAIT: Cue
+CUE_SLOWER: Cue
+CUE_THANKS: Cue
 
 class Seat(_message.Message):
     __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged", "policy", "relieved")
@@ -264,7 +279,7 @@ class RoomReply(_message.Message):
     def __init__(self, error: _Optional[_Union[Error, _Mapping]] = ..., status: _Optional[_Union[RoomStatus, _Mapping]] = ..., seat: _Optional[_Union[Seat, _Mapping]] = ...) -> None: ...
 
 class Event(_message.Message):
-    __slots__ = ("wall_ns", "room", "tick", "barrier_changed", "seat_changed", "episode_started", "episode_ended", "episode_saved", "world_reset", "notice", "latency")
+    __slots__ = ("wall_ns", "room", "tick", "barrier_changed", "seat_changed", "episode_started", "episode_ended", "episode_saved", "world_reset", "notice", "latency", "cue_given")
     class BarrierChanged(_message.Message):
         __slots__ = ("phase", "waiting_for")
         PHASE_FIELD_NUMBER: _ClassVar[int]
@@ -354,6 +369,13 @@ class Event(_message.Message):
         frames: int
         stages: _containers.RepeatedCompositeFieldContainer[Event.Latency.Stage]
         def __init__(self, arm: _Optional[str] = ..., p50_ms: _Optional[float] = ..., p95_ms: _Optional[float] = ..., frames: _Optional[int] = ..., stages: _Optional[_Iterable[_Union[Event.Latency.Stage, _Mapping]]] = ...) -> None: ...
+    class CueGiven(_message.Message):
+        __slots__ = ("arm", "cue")
+        ARM_FIELD_NUMBER: _ClassVar[int]
+        CUE_FIELD_NUMBER: _ClassVar[int]
+        arm: str
+        cue: Cue
+        def __init__(self, arm: _Optional[str] = ..., cue: _Optional[_Union[Cue, str]] = ...) -> None: ...
     WALL_NS_FIELD_NUMBER: _ClassVar[int]
     ROOM_FIELD_NUMBER: _ClassVar[int]
     TICK_FIELD_NUMBER: _ClassVar[int]
@@ -365,6 +387,7 @@ class Event(_message.Message):
     WORLD_RESET_FIELD_NUMBER: _ClassVar[int]
     NOTICE_FIELD_NUMBER: _ClassVar[int]
     LATENCY_FIELD_NUMBER: _ClassVar[int]
+    CUE_GIVEN_FIELD_NUMBER: _ClassVar[int]
     wall_ns: int
     room: str
     tick: int
@@ -376,4 +399,5 @@ class Event(_message.Message):
     world_reset: Event.WorldReset
     notice: Event.Notice
     latency: Event.Latency
-    def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ..., latency: _Optional[_Union[Event.Latency, _Mapping]] = ...) -> None: ...
+    cue_given: Event.CueGiven
+    def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ..., latency: _Optional[_Union[Event.Latency, _Mapping]] = ..., cue_given: _Optional[_Union[Event.CueGiven, _Mapping]] = ...) -> None: ...

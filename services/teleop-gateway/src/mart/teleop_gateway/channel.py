@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from mart.protocol.errors import InvalidInput
-from mart.protocol.messages import RoomStatus, State, barrier_word
+from mart.protocol.messages import Cue, RoomStatus, State, barrier_word, cue_from_word
 from mart.teleop_gateway.driving import Driving, Input
 from mart.teleop_gateway.latency import STAGES, Summary
 
@@ -36,7 +36,15 @@ class Select:
     input: Input
 
 
-def parse(text: str | bytes) -> Ping | Clock | Seen | Select:
+@dataclass(frozen=True)
+class GiveCue:
+    """press_us: when the key was pressed, on the peer's clock; it names the press, which is told several times."""
+
+    cue: Cue
+    press_us: float
+
+
+def parse(text: str | bytes) -> Ping | Clock | Seen | Select | GiveCue:
     """Raises InvalidInput for anything else."""
     if len(text) > MAX_CHARACTERS:
         raise InvalidInput(
@@ -53,9 +61,11 @@ def parse(text: str | bytes) -> Ping | Clock | Seen | Select:
                 return Seen(tick, _finite(t_us))
             case {"type": "input", "input": name}:
                 return Select(Input(name))
+            case {"type": "cue", "cue": str(word), "t_us": t_us}:
+                return GiveCue(cue_from_word(word), _finite(t_us))
     except (ValueError, OverflowError, RecursionError) as error:
         raise InvalidInput(f"A status message was given that cannot be read: {error}.") from error
-    raise InvalidInput("A status message was given that is none of ping, clock, seen and input.")
+    raise InvalidInput("A status message was given that is none of ping, clock, seen, input and cue.")
 
 
 def pong(ping: Ping, gateway_ns: int) -> str:

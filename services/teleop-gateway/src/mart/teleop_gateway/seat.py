@@ -16,7 +16,6 @@ from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import (
     Answer,
     ArmState,
-    Event,
     Offer,
     RoomStatus,
     State,
@@ -26,7 +25,9 @@ from mart.protocol.messages import (
 from mart.protocol.pose import Pose
 from mart.protocol.tokens import Role
 from mart.teleop_gateway import channel
+from mart.teleop_gateway.announcements import Announcements
 from mart.teleop_gateway.assignment import SEAT_KIND, SERVED, Assignment
+from mart.teleop_gateway.cues import Presses
 from mart.teleop_gateway.driving import Driving, Input
 from mart.teleop_gateway.encoder import Codec
 from mart.teleop_gateway.latency import MotionToPhoton
@@ -44,7 +45,6 @@ from mart.teleop_gateway.view import Picture
 _log = logging.getLogger(__name__)
 
 STATUS_EVERY_S = 0.05
-LATENCY_EVERY_S = 1.0
 MAX_OFFERS_PER_S = 5
 _READY_TIMEOUT_S = 5.0
 _MAX_OFFER_BYTES = MAX_SDP_CHARACTERS + 4096
@@ -62,7 +62,8 @@ class Seat:
         self._bus, self._settings, self._secret = bus, settings, secret
         self._loop = asyncio.get_running_loop()
         self._commands = bus.publisher(keys.command(room, arm))
-        self._events = bus.publisher(keys.event(room))
+        self._announcements = Announcements(bus, room, arm)
+        self._presses = Presses()
         self._video = video_bus.publisher(keys.video(room, arm))
         look = QUALITIES[settings.quality]
         self._scenery = Scenery(
@@ -85,7 +86,7 @@ class Seat:
             for opened in self._open():
                 stack.callback(opened.close)
             try:
-                await asyncio.gather(self._tell_periodically(), self._report_latency())
+                await asyncio.gather(self._tell_periodically(), self._announcements.report(self._latency))
             finally:
                 await self._peers.close()
                 await self._scenery.close()
@@ -99,7 +100,7 @@ class Seat:
         state = bus.bus.subscribe(keys.state(room).key, Reader(State, self._on_state_arrival))
         # Last: whoever sees this token may send an offer.
         alive = bus.bus.announce(keys.alive(SEAT_KIND, self.id))
-        return [*served, status, state, self._commands, self._events, self._video, alive]
+        return [*served, status, state, self._commands, self._announcements, self._video, alive]
 
     # Signalling
 
@@ -175,6 +176,9 @@ class Seat:
             case channel.Select(chosen) if peer.role in _INPUTS and self._driving is not None:
                 self._driving.select(chosen)
                 self._tell_changes()
+            case channel.GiveCue(cue, press_us) if peer.role in _INPUTS:
+                if self._presses.admit(press_us, clock.monotonic_s()):
+                    self._announcements.cue(cue)
 
     def on_keyframe_wanted(self, codec: Codec) -> None:
         self._scenery.request_keyframe(codec)
@@ -198,6 +202,7 @@ class Seat:
     def _on_state(self, state: State, arm: ArmState, measured_tool_in_base: Pose) -> None:
         was_reset = state.boot != self._state.boot or state.sim_time_s < self._state.sim_time_s
         self._state = state
+        self._announcements.tick = state.tick
         self._measured = measured_tool_in_base
         if self._driving is not None:
             self._driving.see(arm, state.sim_time_s)
@@ -279,17 +284,6 @@ class Seat:
         self._peers.put(picture.encoded)
         if picture.encoded.codec is Codec.H264:
             self._latency.on_picture(picture.tick, picture.stamps)
-
-    async def _report_latency(self) -> None:
-        reported = 0
-        while True:
-            await asyncio.sleep(LATENCY_EVERY_S)
-            summary = self._latency.summary()
-            if summary is not None and self._latency.reports > reported:
-                reported = self._latency.reports
-                latency = summary.event(self.arm)
-                event = Event(wall_ns=clock.wall_ns(), room=self.room, tick=self._state.tick, latency=latency)
-                self._events.put(codec.encode(event))
 
     def _log_latency(self) -> None:
         summary = self._latency.summary()

@@ -11,6 +11,7 @@ from mart.protocol.messages import (
     RoomStatus,
     Seat,
     barrier_word,
+    cue_word,
     operator_word,
     outcome_word,
     phase_word,
@@ -104,12 +105,14 @@ def seat_json(seat: Seat, holder_id: str) -> Json:
 
 
 def event_json(event: Event) -> Json | None:
-    """Notices and saved episodes; None for events that a room's status tells better."""
+    """Notices, cues and saved episodes; None for events that a room's status tells better."""
     head = {"room": event.room, "kind": event.WhichOneof("what")}
     match event.WhichOneof("what"):
         case "notice":
             notice = event.notice
             return head | {"level": notice.level, "text": notice.text, "from": getattr(notice, "from")}
+        case "cue_given":
+            return head | {"arm": event.cue_given.arm, "cue": cue_word(event.cue_given.cue)}
         case "episode_saved":
             saved = event.episode_saved
             return head | {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from mart.protocol.messages import CatalogueReply, Event, Lane, Span, State, Trace, operator_word
+from mart.protocol.messages import CatalogueReply, Event, Lane, Span, State, Trace, cue_word, operator_word
 
 MAX_POINTS = 500
 WAITED_S = 0.25  # what people are told of as it happens: a stall
@@ -23,7 +23,7 @@ def timeline(states: Sequence[State], events: Iterable[Event]) -> CatalogueReply
             *_subtasks(states, seconds),
             *(lane for arm in arms for lane in _of_arm(states, seconds, arm)),
             *_waiting(states, seconds),
-            *_notices(events, start_ns),
+            *_said(events, start_ns),
         ],
         traces=[trace for arm in arms for trace in _traces(states, seconds, arm)],
     )
@@ -66,14 +66,21 @@ def _waiting(states: Sequence[State], seconds: Sequence[float]) -> Iterator[Lane
         yield Lane(kind="waiting", name=arm, spans=spans)
 
 
-def _notices(events: Iterable[Event], start_ns: int) -> Iterator[Lane]:
-    spans = [
-        Span(begin_s=at_s, end_s=at_s, text=event.notice.text)
-        for event in events
-        if event.WhichOneof("what") == "notice" and (at_s := (event.wall_ns - start_ns) / 1e9) >= 0.0
-    ]
-    if spans:
-        yield Lane(kind="notice", name="", spans=spans)
+def _said(events: Iterable[Event], start_ns: int) -> Iterator[Lane]:
+    """By partners to each other, and by the services."""
+    said: dict[tuple[str, str], list[Span]] = {}
+    for event in events:
+        match event.WhichOneof("what"):
+            case "cue_given":
+                lane, text = ("cue", event.cue_given.arm), cue_word(event.cue_given.cue)
+            case "notice":
+                lane, text = ("notice", ""), event.notice.text
+            case _:
+                continue
+        if (at_s := (event.wall_ns - start_ns) / 1e9) >= 0.0:
+            said.setdefault(lane, []).append(Span(begin_s=at_s, end_s=at_s, text=text))
+    for kind, name in sorted(said):
+        yield Lane(kind=kind, name=name, spans=said[kind, name])
 
 
 def _traces(states: Sequence[State], seconds: Sequence[float], index: int) -> Iterator[Trace]:

@@ -3,8 +3,10 @@
 import * as api from "./api.js";
 import { armName, badge, isSeen } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
+import { CUES } from "./cues.js";
 import { Driver } from "./drive/driver.js";
 import { Confirm } from "./hud/confirm.js";
+import { Cues } from "./hud/cues.js";
 import { HandPanel } from "./hud/hand-panel.js";
 import { showHealth } from "./hud/health.js";
 import { showPartners } from "./hud/partners.js";
@@ -35,6 +37,7 @@ const link = new SeatLink({
   onStatus: heard,
   onTrack: (stream) => (byId("video").srcObject = stream),
 });
+const cues = new Cues(armId, (message) => link.tell(message), () => render());
 
 begin();
 
@@ -87,6 +90,7 @@ function follow(seat) {
 function onEvent(event) {
   if (event.room !== roomName) return;
   if (event.kind === "episode_saved") strip.saved(event);
+  if (event.kind === "cue_given") cues.heard(event, room);
   if (event.kind === "notice") notice(event.text);
   render();
 }
@@ -104,7 +108,8 @@ function render() {
   strip.update({ room, seat, link, pending: confirm.pending, isNew: !localStorage.getItem(MOVED_KEY) });
   showHealth(status, room);
   panel.update(status, driver.view(status));
-  if (room) showPartners(room, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")));
+  cues.update(room, seat?.mine && drives());
+  if (room) showPartners(room, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
   const waiting = room && !room.stale ? waitingText(room) : "";
   setText(byId("waiting"), waiting);
   setShown(byId("waiting"), waiting !== "");
@@ -149,6 +154,7 @@ const DEEDS = {
     if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);
     toLobby();
   },
+  ...Object.fromEntries(CUES.map((cue) => [cue, () => cues.give(cue)])),
 };
 
 async function run(command) {

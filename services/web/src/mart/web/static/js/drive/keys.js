@@ -1,5 +1,7 @@
 // Which keys mean what, and what those that are held ask for. Pure.
 
+import { CUES } from "../cues.js";
+
 const MOTIONS = {
   KeyW: ["move", 2, -1],
   KeyS: ["move", 2, 1],
@@ -26,6 +28,7 @@ const COMMANDS = {
   KeyK: "gripper",
   KeyP: "stop",
   Slash: "help",
+  ...Object.fromEntries(CUES.map((cue, index) => [`Digit${index + 1}`, cue])),
 };
 
 export const isMotion = (code) => code in MOTIONS;

@@ -1,6 +1,7 @@
 // What happened, over the episode's time: bars in rows, and lines of numbers below, under one cursor.
 
 import { armName } from "../arms.js";
+import { cueText } from "../cues.js";
 import { element } from "../dom.js";
 import { driverText, lengthText } from "./words.js";
 
@@ -9,7 +10,7 @@ const HEIGHT = 100;
 
 /** Rows for the lanes of an episode that lasted `wall_s`. */
 export function laneRows({ lanes, wall_s: wall }) {
-  const order = ["subtask", "driver", "waiting", "notice"];
+  const order = ["subtask", "driver", "waiting", "cue", "notice"];
   const shown = lanes.filter(({ kind }) => order.includes(kind)).sort((a, b) => order.indexOf(a.kind) - order.indexOf(b.kind));
   return shown.map((lane) => {
     const moved = lanes.find(({ kind, name }) => lane.kind === "driver" && kind === "engaged" && name === lane.name);
@@ -32,11 +33,13 @@ const QUANTITIES = { height: "Tool height", gripper: "Gripper" };
 function laneText({ kind, name, title }) {
   if (kind === "subtask") return title;
   if (kind === "waiting") return `Waiting for the ${armName(name).toLowerCase()}`;
+  if (kind === "cue") return `${armName(name)} says`;
   return kind === "notice" ? "Messages" : armName(name);
 }
 
 function spanText({ kind, name, title }, { begin_s: begin, end_s: end, text }) {
   const when = `${lengthText(begin)} to ${lengthText(end)}`;
+  if (kind === "cue") return `${cueText(text)} (${lengthText(begin)})`;
   if (kind === "notice") return `${text} (${lengthText(begin)})`;
   if (kind === "waiting") return `${(end - begin).toFixed(1)} s, at ${lengthText(begin)}`;
   if (kind === "subtask") return `${title}: ${when}`;
@@ -46,7 +49,7 @@ function spanText({ kind, name, title }, { begin_s: begin, end_s: end, text }) {
 function bar(lane, span, wall) {
   const left = (100 * span.begin_s) / (wall || 1);
   const width = Math.max(0.2, (100 * (span.end_s - span.begin_s)) / (wall || 1));
-  const arm = ["driver", "engaged", "waiting"].includes(lane.kind) ? { arm: lane.name } : {};
+  const arm = ["driver", "engaged", "waiting", "cue"].includes(lane.kind) ? { arm: lane.name } : {};
   const label = lane.kind === "driver" ? driverText(span.text) : "";
   const node = element("span", { class: `bar ${lane.kind}`, title: spanText(lane, span), dataset: { ...arm, text: span.text } }, label);
   Object.assign(node.style, { left: `${left}%`, width: `${width}%` });

@@ -1,6 +1,7 @@
 // The right edge: what one drives with, and the phone's pairing code.
 
 import { pairPhone } from "../api.js";
+import { CUES, cueText } from "../cues.js";
 import { byId, element, setShown, setText } from "../dom.js";
 
 const HOLD_TO_MOVE = "Hold space or drag the picture to move.";
@@ -18,6 +19,7 @@ const KEYS = [
   ["B", "Hand the arm back to the policy or script"],
   ["P", "Stop everything, and go on"],
   ["Q", "With space let go, twice: leave the seat"],
+  ["1 2 3 4 5", `To your partners: ${CUES.map(cueText).join(", ")}`],
   ["?", "These keys"],
 ];
 

@@ -6,14 +6,14 @@ import { seconds } from "../words.js";
 
 const rows = new Map();
 
-/** `onScript(arm)` is called when an idle arm should be driven by a script. */
-export function showPartners(room, ownArm, onScript) {
+/** `onScript(arm)` is called when an idle arm should be driven by a script; `cues` know what partners say. */
+export function showPartners(room, ownArm, onScript, cues) {
   const others = room.seats.filter((seat) => seat.arm !== ownArm);
   const arms = others.map((seat) => seat.arm);
   keepChildren(byId("partners"), arms, rows, (arm) => partnerRow(arm, onScript));
   for (const seat of others) {
     const late = room.waiting_for.find((one) => one.arm === seat.arm);
-    rows.get(seat.arm).update(seat, late, room.episode.phase);
+    rows.get(seat.arm).update(seat, late, room.episode.phase, cues.of(seat.arm));
   }
 }
 
@@ -26,9 +26,10 @@ function partnerRow(arm, onScript) {
   const who = element("span", { class: "who" }, name, state);
   const node = element("li", { class: "partner glass", dataset: { arm } }, badge(arm), who, script);
 
-  function update(seat, late, phase) {
+  function update(seat, late, phase, said) {
     setText(name, holder(seat));
-    setText(state, stateText(seat, late, phase));
+    setText(state, said || stateText(seat, late, phase));
+    node.classList.toggle("says", said !== "");
     node.classList.toggle("late", Boolean(late));
     setShown(script, seat.operator === "hold" && phase === "practice");
   }
