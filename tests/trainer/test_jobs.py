@@ -31,7 +31,7 @@ from mart.protocol.messages import (
     TrainerRequest,
     raise_error,
 )
-from mart.trainer.service.cli import submit, wait
+from mart.trainer.service.cli import show, submit, wait
 from tests.support.processes import Running, running_router, running_service, started
 from tests.trainer.conftest import Recorded
 from tests.trainer.recorded import TASK
@@ -172,17 +172,22 @@ def test_a_job_learns_from_the_data_set_as_it_was_ordered(
     first, second, third = sorted(folder.rglob("*.mcap"))
     for path in (first, second):
         labels.say(path, labels.Kind.JOIN, "few", 1)
+    labels.say(first, labels.Kind.USE, "drop", 2)
     monkeypatch.setenv("MART_ROUTER", endpoint)
     words = ["--models", "BC", "--tasks", TASK, "--data", "sorted", "--dataset", "few", "--preset", "debug"]
     ordered = CliRunner().invoke(submit, [*words, "--episodes", "0", "--json"])
     assert ordered.exit_code == 0, ordered.output
     (job,) = json.loads(ordered.output)["jobs"]
     assert (job["order"]["dataset"], job["order"]["data"]) == ("few", str(folder))
-    labels.say(third, labels.Kind.JOIN, "few", 2)
+    labels.say(third, labels.Kind.JOIN, "few", 3)
     details = client.wait_until_over(job["id"])
     assert details.job.state == JOB_STATE_DONE, client.log(job["id"])
-    told = json.loads((data_dir / details.job.run / "data.json").read_bytes())
-    assert (told["dataset"]["name"], told["dataset"]["episodes"], len(told["episodes"])) == ("few", 2, 2)
+    learned = details.learned
+    assert (learned.dataset, learned.dataset_episodes, learned.episodes) == ("few", 2, 1)
+    assert list(learned.left_out) == [f"{first.name} (dropped)"]
+    assert f"{first.name} (dropped)" in client.log(job["id"])
+    shown = CliRunner().invoke(show, [job["id"]])
+    assert "Episodes learned from: 1 of the 2 in few;" in shown.output
     with pytest.raises(NotFound, match="Did you mean 'few'"):
         client.submit("BC", data="sorted", dataset="fwe")
     other = TrainerRequest.Submit(

@@ -87,6 +87,7 @@ async def test_a_run_is_shown_with_curves_and_rollouts(enter: Enter, trainer: Tr
     assert details["job"]["state"] == "done"
     assert [curve["name"] for curve in details["curves"]] == ["loss/actor", "loss/planner"]
     assert details["evaluations"][-1]["purpose"] == "score"
+    assert (details["learned"]["dataset"], details["learned"]["episodes"]) == ("cubes-good", 57)
     assert details["evaluations"][-1]["rollouts"][0]["outcome"] == "horizon"
 
 

@@ -19,6 +19,7 @@ from mart.protocol.messages import (
     Job,
     JobProgress,
     JobState,
+    Learned,
     Order,
     Rollout,
     SubtaskCount,
@@ -212,8 +213,20 @@ def _details(job: Job) -> TrainerReply.Details:
     ]
     if job.state == JOB_STATE_DONE:
         evaluations.append(_evaluation(job, job.order.seeds[0], done, "score"))
+    learned = Learned(
+        episodes=57,
+        ticks=9120,
+        sha256="1f6b0c9a2d3e4f50",
+        dataset="cubes-good",
+        dataset_episodes=58,
+        left_out=["room-1-0007-two_arm_multi_cube_lifting.mcap (dropped)"],
+    )
     return TrainerReply.Details(
-        job=job, curves=curves, evaluations=evaluations, checkpoints=[one.checkpoint for one in evaluations]
+        job=job,
+        curves=curves,
+        evaluations=evaluations,
+        checkpoints=[one.checkpoint for one in evaluations],
+        learned=learned if done else None,
     )
 
 

@@ -87,6 +87,9 @@ def test_it_is_legible_and_whole(
         page.get_by_label("Compare d-HBC, job").last.check()
         expect(page.locator(".evaluation").first).to_be_visible()
         expect(page.locator("#loss-chart .curve").first).to_be_visible()
+        expect(page.locator("#run")).to_contain_text(
+            "Episodes learned from: 57 of the 58 in “cubes-good”; digest 1f6b0c9a2d3e. Left out: room-1-0007"
+        )
         page.screenshot(path=SCREENSHOTS / f"training-{size}-{scheme}.png", full_page=True)
         assert page.evaluate(INSPECT) == []
 

@@ -97,6 +97,22 @@ class Curve(_message.Message):
     values: _containers.RepeatedScalarFieldContainer[float]
     def __init__(self, name: _Optional[str] = ..., updates: _Optional[_Iterable[int]] = ..., values: _Optional[_Iterable[float]] = ...) -> None: ...
 
+class Learned(_message.Message):
+    __slots__ = ("episodes", "ticks", "sha256", "dataset", "dataset_episodes", "left_out")
+    EPISODES_FIELD_NUMBER: _ClassVar[int]
+    TICKS_FIELD_NUMBER: _ClassVar[int]
+    SHA256_FIELD_NUMBER: _ClassVar[int]
+    DATASET_FIELD_NUMBER: _ClassVar[int]
+    DATASET_EPISODES_FIELD_NUMBER: _ClassVar[int]
+    LEFT_OUT_FIELD_NUMBER: _ClassVar[int]
+    episodes: int
+    ticks: int
+    sha256: str
+    dataset: str
+    dataset_episodes: int
+    left_out: _containers.RepeatedScalarFieldContainer[str]
+    def __init__(self, episodes: _Optional[int] = ..., ticks: _Optional[int] = ..., sha256: _Optional[str] = ..., dataset: _Optional[str] = ..., dataset_episodes: _Optional[int] = ..., left_out: _Optional[_Iterable[str]] = ...) -> None: ...
+
 class SubtaskCount(_message.Message):
     __slots__ = ("name", "episodes")
     NAME_FIELD_NUMBER: _ClassVar[int]
@@ -323,16 +339,18 @@ class TrainerReply(_message.Message):
         order: Order
         def __init__(self, models: _Optional[_Iterable[_Union[TrainerReply.Choices.Model, _Mapping]]] = ..., tasks: _Optional[_Iterable[str]] = ..., presets: _Optional[_Iterable[str]] = ..., data: _Optional[_Iterable[_Union[DataSet, _Mapping]]] = ..., executors: _Optional[_Iterable[str]] = ..., device: _Optional[str] = ..., order: _Optional[_Union[Order, _Mapping]] = ...) -> None: ...
     class Details(_message.Message):
-        __slots__ = ("job", "curves", "evaluations", "checkpoints")
+        __slots__ = ("job", "curves", "evaluations", "checkpoints", "learned")
         JOB_FIELD_NUMBER: _ClassVar[int]
         CURVES_FIELD_NUMBER: _ClassVar[int]
         EVALUATIONS_FIELD_NUMBER: _ClassVar[int]
         CHECKPOINTS_FIELD_NUMBER: _ClassVar[int]
+        LEARNED_FIELD_NUMBER: _ClassVar[int]
         job: Job
         curves: _containers.RepeatedCompositeFieldContainer[Curve]
         evaluations: _containers.RepeatedCompositeFieldContainer[Evaluation]
         checkpoints: _containers.RepeatedScalarFieldContainer[str]
-        def __init__(self, job: _Optional[_Union[Job, _Mapping]] = ..., curves: _Optional[_Iterable[_Union[Curve, _Mapping]]] = ..., evaluations: _Optional[_Iterable[_Union[Evaluation, _Mapping]]] = ..., checkpoints: _Optional[_Iterable[str]] = ...) -> None: ...
+        learned: Learned
+        def __init__(self, job: _Optional[_Union[Job, _Mapping]] = ..., curves: _Optional[_Iterable[_Union[Curve, _Mapping]]] = ..., evaluations: _Optional[_Iterable[_Union[Evaluation, _Mapping]]] = ..., checkpoints: _Optional[_Iterable[str]] = ..., learned: _Optional[_Union[Learned, _Mapping]] = ...) -> None: ...
     class Video(_message.Message):
         __slots__ = ("ready", "piece", "size_bytes")
         READY_FIELD_NUMBER: _ClassVar[int]

@@ -21,7 +21,7 @@ from mart.trainer.service.choices import choices
 from mart.trainer.service.orders import wishes
 from mart.trainer.service.settings import TrainerSettings
 from mart.trainer.service.videos import Videos
-from mart.trainer.service.wire import evaluation_message, job_message
+from mart.trainer.service.wire import evaluation_message, job_message, learned_message
 
 MAX_TEXT_BYTES = 1024
 MAX_JOBS = 200
@@ -104,6 +104,7 @@ class Answers:
             curves=metrics.curves(run.metrics, wanted.since_updates),
             evaluations=[evaluation_message(e) for e in result.read(run.evaluations)[-MAX_EVALUATIONS:]],
             checkpoints=_checkpoints(run)[-MAX_EVALUATIONS:],
+            learned=learned_message(run),
         )
         return TrainerReply(details=details)
 

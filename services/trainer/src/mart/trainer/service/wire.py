@@ -12,10 +12,12 @@ from mart.protocol.messages import (
 )
 from mart.protocol.messages import (
     JobProgress,
+    Learned,
     Order,
     Rollout,
     SubtaskCount,
 )
+from mart.trainer.data.dataset import Digest
 from mart.trainer.evaluate import result
 from mart.trainer.evaluate.result import MAX_ROLLOUTS, Evaluation, Played
 from mart.trainer.evaluate.seeds import Purpose
@@ -23,6 +25,8 @@ from mart.trainer.jobs.job import Job, State
 from mart.trainer.request import TrainRequest
 from mart.trainer.runs import RunDirectory
 from mart.trainer.service import metrics
+
+MAX_LEFT_OUT = 200
 
 
 def job_message(job: Job, data_dir: Path) -> JobMessage:
@@ -41,6 +45,19 @@ def job_message(job: Job, data_dir: Path) -> JobMessage:
         run=job.run,
         progress=_progress(job, RunDirectory(data_dir / job.run)),
     )
+
+
+def learned_message(run: RunDirectory) -> Learned | None:
+    """None until the run's data have been read."""
+    if not run.data.is_file():
+        return None
+    digest = Digest.model_validate_json(run.data.read_bytes())
+    learned = Learned(episodes=len(digest.episodes), ticks=digest.ticks, sha256=digest.sha256)
+    if digest.dataset is not None:
+        learned.dataset, learned.dataset_episodes = digest.dataset.name, digest.dataset.episodes
+        told = (f"{Path(one.path).name} ({one.why})" for one in digest.dataset.left_out[:MAX_LEFT_OUT])
+        learned.left_out.extend(told)
+    return learned
 
 
 def sweep_id(number: int) -> str:

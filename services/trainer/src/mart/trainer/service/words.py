@@ -8,7 +8,7 @@ from typing import Any
 from google.protobuf.json_format import MessageToDict
 from google.protobuf.message import Message
 
-from mart.protocol.messages import Job, Policy, TrainerReply, job_state_word
+from mart.protocol.messages import Job, Learned, Policy, TrainerReply, job_state_word
 
 _HEAD = ("job", "sweep", "state", "model", "task", "data set", "seeds", "updates", "best")
 
@@ -32,8 +32,17 @@ def details(found: TrainerReply.Details) -> str:
     lines = [table([job])]
     if job.detail:
         lines += ["", job.detail]
+    if found.HasField("learned"):
+        lines += ["", learned(found.learned)]
     lines += ["", *(_evaluated(evaluation) for evaluation in found.evaluations)]
     return "\n".join(lines).rstrip()
+
+
+def learned(found: Learned) -> str:
+    """What a run learned from, and what of a data set it did not."""
+    whole = f" of the {found.dataset_episodes} in {found.dataset}" if found.dataset else ""
+    text = f"Episodes learned from: {found.episodes}{whole}; {found.ticks} ticks, digest {found.sha256[:12]}."
+    return f"{text} Left out: {', '.join(found.left_out)}." if found.left_out else text
 
 
 def policy(found: Policy) -> str:

@@ -2,7 +2,7 @@
 
 import * as api from "../api.js";
 import { byId, element, setShown } from "../dom.js";
-import { failuresText, orderText, policyName, short, stateText, successText, taskText } from "./words.js";
+import { failuresText, learnedText, orderText, policyName, short, stateText, successText, taskText } from "./words.js";
 
 const RUNNING = ["queued", "running"];
 const FEW = 3;
@@ -24,8 +24,8 @@ export class RunView {
     setShown(byId("run"), details !== null);
     if (!details) return;
     if (details.job.id !== this.#job) [this.#job, this.#promoting, this.#log, this.#all] = [details.job.id, null, null, false];
-    const { job, evaluations, checkpoints } = details;
-    const wanted = JSON.stringify([job.id, job.state, job.detail, evaluations, checkpoints.length, this.#promoting, this.#log]);
+    const { job, evaluations, checkpoints, learned } = details;
+    const wanted = JSON.stringify([job.id, job.state, job.detail, evaluations, checkpoints.length, Boolean(learned), this.#promoting, this.#log]);
     if (wanted === this.#shown) return;
     this.#shown = wanted;
     this.#details = details;
@@ -37,13 +37,14 @@ export class RunView {
     this.show(this.#details);
   }
 
-  #content({ job, evaluations }) {
+  #content({ job, evaluations, learned }) {
     const facts = [job.id, taskText(job.order.task), job.order.data, orderText(job.order), stateText(job.state)];
     const title = element("h2", { id: "run-title" }, job.order.model);
     const parts = [
       element("header", {}, element("div", {}, title, element("p", { class: "soft" }, facts.filter(Boolean).join(" · "))), this.#deeds(job)),
     ];
     if (job.detail) parts.push(element("p", { class: job.state === "failed" ? "message" : "message calm" }, job.detail));
+    if (learned) parts.push(element("p", { class: "soft figures" }, learnedText(learned)));
     parts.push(this.#judged(job, evaluations));
     if (this.#log !== null) parts.push(element("pre", { class: "log", tabindex: "0", "aria-label": `Log of ${job.id}` }, this.#log || "Nothing yet."));
     return parts;

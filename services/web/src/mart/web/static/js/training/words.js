@@ -1,5 +1,7 @@
 // What the training page says. Pure.
 
+const FEW = 3;
+
 export const percent = (share) => `${Math.round(100 * share)} %`;
 
 export const stateText = (state) =>
@@ -19,6 +21,14 @@ export const orderText = ({ preset, seeds, dataset }) => [dataset, preset, plura
 export function dataText({ path, name, episodes }) {
   const where = name && path !== "episodes" ? ` in ${path}` : "";
   return `${name || path}${where} (${plural(episodes, "episode")})`;
+}
+
+/** What a run learned from, and what of a data set it did not. */
+export function learnedText({ episodes, dataset, dataset_episodes: held, sha256, left_out: leftOut }) {
+  const whole = dataset ? ` of the ${held} in “${dataset}”` : "";
+  const more = leftOut.length > FEW ? ` and ${leftOut.length - FEW} more` : "";
+  const rest = leftOut.length ? ` Left out: ${leftOut.slice(0, FEW).join(", ")}${more}.` : "";
+  return `Episodes learned from: ${episodes}${whole}; digest ${sha256.slice(0, 12)}.${rest}`;
 }
 
 /** What a training takes of it. */
