@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from mart.platform import kept_rooms
 from mart.platform.opening import MAX_ROOMS, Rooms
 from mart.platform.plan import DEFAULT_TASK, Options, Process, processes
 from mart.platform.staff import Staff
@@ -21,6 +23,7 @@ from mart.protocol.messages import (
 )
 
 Open, Close = RoomsRequest.Open, RoomsRequest.Close
+KEPT = {"old": "a_task_that_was", "lab": DEFAULT_TASK}
 
 
 class Noted(Staff):
@@ -112,6 +115,64 @@ def test_what_cannot_be_opened(
     with pytest.raises(error, match=complaint):
         opened(rooms, **asked)
     assert rooms.names == ["room-1"]
+
+
+def test_what_people_opened_comes_back(rooms: Rooms, options: Options, staff: Staff) -> None:
+    opened(rooms, room="lab", episodes=50, control_hz=30.0)
+    opened(rooms)
+    close(rooms, opened(rooms))
+    before = {process.name for process in staff.processes}
+    again = Noted(options, processes(options), options.data_dir / "socket")
+    Rooms(options, again, {}).reopen()
+    assert {process.name for process in again.processes} == before
+    assert sim(again, "lab").command == sim(staff, "lab").command
+
+
+def test_the_first_room_is_what_the_command_says(rooms: Rooms, options: Options) -> None:
+    """Though one of its name was opened before."""
+    opened(rooms, room="lab")
+    first = replace(options, room="lab", task="three_arm_lift_wiping")
+    staff = Noted(first, processes(first), options.data_dir / "socket")
+    Rooms(first, staff, {}).reopen()
+    assert [process.id for process in staff.processes if process.kind == "sim"] == ["lab"]
+    assert "three_arm_lift_wiping" in sim(staff, "lab").command
+
+
+def test_a_room_that_cannot_come_back_is_named_and_the_others_come(
+    rooms: Rooms, options: Options, caplog: pytest.LogCaptureFixture
+) -> None:
+    path = options.data_dir / "rooms.jsonl"
+    kept_rooms.save(path, [Open(room=name, task=task, control_hz=20.0) for name, task in KEPT.items()])
+    rooms.reopen()
+    assert rooms.names == ["lab", "room-1"]
+    assert "Room old does not come back" in caplog.text
+    opened(rooms)
+    assert [room.room for room in kept_rooms.load(path)] == ["lab", "room-2"]
+
+
+@pytest.mark.parametrize("damage", [b"{", b"\xff", b'{"room": 7}\n', b'{"colour": "red"}\n'])
+def test_a_damaged_list_is_put_aside_and_said(
+    rooms: Rooms, options: Options, caplog: pytest.LogCaptureFixture, damage: bytes
+) -> None:
+    path = options.data_dir / "rooms.jsonl"
+    path.write_bytes(damage)
+    rooms.reopen()
+    assert rooms.names == ["room-1"]
+    assert "is no list of rooms" in caplog.text
+    assert path.with_suffix(".damaged").read_bytes() == damage
+    assert opened(rooms) == "room-2"
+    assert [room.room for room in kept_rooms.load(path)] == ["room-2"]
+
+
+def test_a_full_disk_takes_no_room_from_people(
+    rooms: Rooms, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(kept_rooms, "save", full)
+    assert opened(rooms) == "room-2"
+    assert "No space left" in caplog.text
 
 
 def test_rooms_are_bounded(rooms: Rooms) -> None:

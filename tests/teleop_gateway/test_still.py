@@ -12,6 +12,7 @@ def test_it_is_the_picture_made_small() -> None:
     jpeg = Stills().take(picture_rgb, 100.0)
     assert jpeg is not None
     seen_bgr = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
+    assert seen_bgr is not None
     assert seen_bgr.shape == (288, 384, 3)
     assert np.allclose(seen_bgr[140, 50, ::-1], (200, 30, 30), atol=6)
     assert np.allclose(seen_bgr[140, 330], 0, atol=6)

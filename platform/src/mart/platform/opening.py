@@ -9,12 +9,13 @@ import threading
 from collections.abc import Iterator
 from itertools import count
 
+from mart.platform import kept_rooms
 from mart.platform.plan import Options, room
 from mart.platform.staff import Staff
 from mart.platform.supervise import Platform
 from mart.protocol import codec, keys
 from mart.protocol.bus.base import Request, Sample
-from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound
+from mart.protocol.errors import Conflict, Corrupt, InvalidInput, MartError, NotFound
 from mart.protocol.messages import (
     EPISODE_PHASE_COUNTDOWN,
     EPISODE_PHASE_RECORDING,
@@ -43,6 +44,8 @@ class Rooms:
 
     def __init__(self, options: Options, staff: Staff, statuses: dict[str, RoomStatus]) -> None:
         self._options, self._staff, self._statuses = options, staff, statuses
+        self._path = options.data_dir / "rooms.jsonl"
+        self._kept: dict[str, RoomsRequest.Open] = {}
 
     @property
     def names(self) -> list[str]:
@@ -57,24 +60,55 @@ class Rooms:
                 return RoomReply(status=RoomStatus(room=request.close.room))
         raise InvalidInput("An empty request was given; ask to open or to close a room.")
 
+    def reopen(self) -> None:
+        """Those that people had opened when the platform was stopped; says which cannot come back."""
+        try:
+            kept = kept_rooms.load(self._path)
+        except Corrupt as error:
+            _log.warning("%s", error)
+            return
+        for wanted in kept:
+            try:
+                if wanted.room not in self.names:  # or it is the first room now
+                    self._start(wanted)
+                self._kept[wanted.room] = wanted
+            except MartError as error:
+                _log.warning("Room %s does not come back: %s", wanted.room, error)
+
     def _open(self, asked: RoomsRequest.Open) -> str:
-        names, control_hz = self.names, asked.control_hz or CONTROL_HZ[0]
-        name = asked.room or self._free_name()
-        keys.status(name)  # raises where a room cannot be called so
-        get_task(asked.task)
-        if control_hz not in CONTROL_HZ:
-            raise InvalidInput(f"{control_hz:g} ticks a second were given; a room has 20, 30 or 60.")
-        if asked.episodes > MAX_EPISODES:
+        wanted = RoomsRequest.Open(
+            room=asked.room or self._free_name(),
+            task=asked.task,
+            control_hz=asked.control_hz or CONTROL_HZ[0],
+            episodes=asked.episodes,
+        )
+        self._start(wanted)
+        self._kept[wanted.room] = wanted
+        self._keep()
+        return wanted.room
+
+    def _start(self, wanted: RoomsRequest.Open) -> None:
+        keys.status(wanted.room)  # raises where a room cannot be called so
+        get_task(wanted.task)
+        if wanted.control_hz not in CONTROL_HZ:
+            raise InvalidInput(f"{wanted.control_hz:g} ticks a second were given; a room has 20, 30 or 60.")
+        if wanted.episodes > MAX_EPISODES:
             raise InvalidInput(
-                f"{asked.episodes} episodes were given; plan at most {MAX_EPISODES}, or none (0)."
+                f"{wanted.episodes} episodes were given; plan at most {MAX_EPISODES}, or none (0)."
             )
-        if name in names:
-            raise Conflict(f"{name!r} is open already; give the new room another name.")
-        if len(names) >= MAX_ROOMS:
-            raise Conflict(f"{len(names)} rooms are open, which is the most; close one first.")
-        self._staff.hire(room(self._options, name, asked.task, control_hz, asked.episodes or None))
-        _log.info("%s is opened for %s", name, asked.task)
-        return name
+        if wanted.room in self.names:
+            raise Conflict(f"{wanted.room!r} is open already; give the new room another name.")
+        if len(self.names) >= MAX_ROOMS:
+            raise Conflict(f"{len(self.names)} rooms are open, which is the most; close one first.")
+        self._staff.hire(room(self._options, wanted))
+        _log.info("%s is opened for %s", wanted.room, wanted.task)
+
+    def _keep(self) -> None:
+        """A disk that is full must not take a room from people."""
+        try:
+            kept_rooms.save(self._path, self._kept.values())
+        except OSError as error:
+            _log.warning("A restart would forget this change of the rooms: %s.", error)
 
     def _free_name(self) -> str:
         """Of no room that ever was: under a name that was used, a room goes on where it was."""
@@ -96,16 +130,22 @@ class Rooms:
             next(one.name for one in self._staff.processes if one.id == name and one.kind == "sim")
         )
         self._statuses.pop(name, None)
+        self._kept.pop(name, None)
+        self._keep()
         _log.info("%s is closed", name)
 
 
 @contextlib.contextmanager
 def opening_rooms(platform: Platform) -> Iterator[None]:
-    """Answers while the block runs, on a thread of its own. For a platform that runs its services itself."""
+    """Answers while the block runs, on a thread of its own; what was open when the platform was stopped comes back.
+
+    For a platform that runs its services itself.
+    """
     assert platform.staff is not None
     inbox: queue.Queue[Request | None] = queue.Queue(_MAX_WAITING)
     statuses: dict[str, RoomStatus] = {}
     rooms = Rooms(platform.options, platform.staff, statuses)
+    rooms.reopen()
 
     def on_status(sample: Sample) -> None:
         with contextlib.suppress(InvalidInput):  # the rooms' own service tells of it

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mart.protocol.messages import RoomsRequest
 
 DEFAULT_TASK = "two_arm_multi_cube_lifting"
 
@@ -92,10 +96,12 @@ def _sim(options: Options, room: str, *more: str) -> Process:
     return Process((*command, *more), "sim", room)
 
 
-def room(options: Options, name: str, task: str, control_hz: float, episodes: int | None) -> Process:
-    """One room more. episodes: how many good ones are wanted; None: nobody counts."""
-    chosen = replace(options, task=task, control_hz=control_hz, episodes=episodes)
-    return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None), name)
+def room(options: Options, wanted: RoomsRequest.Open) -> Process:
+    """One room more."""
+    chosen = replace(
+        options, task=wanted.task, control_hz=wanted.control_hz, episodes=wanted.episodes or None
+    )
+    return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None), wanted.room)
 
 
 def environment(options: Options) -> dict[str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
@@ -12,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import operator_from_word, operator_word
+from mart.protocol.private_file import write_private
 from mart.sim.seats import Driver, SeatHolder
 
 
@@ -102,12 +102,5 @@ def load(path: Path) -> RoomRecord | None:
 
 
 def save(path: Path, record: RoomRecord) -> None:
-    """Replaces the file in one step; readable by its owner alone, because it names holders."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part")
-    handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-    with os.fdopen(handle, "w") as file:
-        file.write(record.model_dump_json(indent=2))
-        file.flush()
-        os.fsync(file.fileno())
-    part.replace(path)
+    """It names holders, so it is readable by its owner alone."""
+    write_private(path, record.model_dump_json(indent=2).encode())

@@ -17,7 +17,7 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
-from mart.web.private_file import write_private
+from mart.protocol.private_file import write_private
 
 _log = logging.getLogger(__name__)
 

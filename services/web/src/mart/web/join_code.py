@@ -7,7 +7,7 @@ import secrets
 from pathlib import Path
 
 from mart.protocol.errors import Forbidden, InvalidInput
-from mart.web.private_file import write_private
+from mart.protocol.private_file import write_private
 
 _ALPHABET = "23456789ABCDEFGHJKMNPQRSTVWXYZ"  # nothing that can be taken for something else
 _GROUP = 4

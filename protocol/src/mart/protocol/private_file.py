@@ -1,4 +1,4 @@
-"""Files that hold a secret: whole or not at all, and readable by their owner alone."""
+"""Files that are there whole or not at all, and readable by their owner alone: secrets, and what names people."""
 
 from __future__ import annotations
 
