@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +14,8 @@ from playwright.sync_api import Browser, Page, expect
 
 from mart.protocol.episodes import labels
 from mart.protocol.episodes.labels import Kind
-from tests.browser.pages.test_pages import INSPECT, LOOKS, SCREENSHOTS, SIZES, listen
+from tests.browser.pages.joined import joined
+from tests.browser.pages.test_pages import INSPECT, LOOKS, SCREENSHOTS
 from tests.recorder.files import write_episode
 from tests.support.processes import free_port, running_router, running_service
 
@@ -44,28 +46,10 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
         yield Site(f"https://localhost:{port}/", (data_dir / "join-code").read_text().strip(), paths)
 
 
-@contextlib.contextmanager
 def episodes_page(
     browser: Browser, site: Site, size: str = "wide", scheme: str = "light", query: str = ""
-) -> Iterator[Page]:
-    width, height = SIZES[size]
-    with browser.new_context(
-        ignore_https_errors=True,
-        viewport={"width": width, "height": height},
-        color_scheme=scheme,  # type: ignore[arg-type]
-        reduced_motion="reduce",
-    ) as context:
-        page = context.new_page()
-        noise: list[str] = []
-        page.goto(f"{site.url}#code={site.join_code}")
-        page.get_by_label("Your name").fill("Rita")
-        page.get_by_role("button", name="Join and choose a seat").click()
-        expect(page.locator("#me")).to_contain_text("Rita")
-        listen(page, noise)
-        page.goto(f"{site.url}episodes{query}")
-        expect(page.locator(".episode").first).to_be_visible()
-        yield page
-        assert noise == []
+) -> AbstractContextManager[Page]:
+    return joined(browser, site.url, site.join_code, f"episodes{query}", size=size, scheme=scheme)
 
 
 def test_from_a_filter_to_a_data_set_to_a_training(browser: Browser, site: Site) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +14,8 @@ from playwright.sync_api import Browser, Page, expect
 
 from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.messages import OPERATOR_POLICY
-from tests.browser.pages.test_pages import INSPECT, LOOKS, SIZES, listen
+from tests.browser.pages.joined import joined
+from tests.browser.pages.test_pages import INSPECT, LOOKS
 from tests.support.processes import free_port, running_router, running_service
 from tests.web.room import Room
 from tests.web.trainer import OTHER_TASK, TASK, Trainer
@@ -58,25 +60,10 @@ def trainer(site: Site) -> Iterator[Trainer]:
         yield trainer
 
 
-@contextlib.contextmanager
-def page_of(browser: Browser, site: Site, size: str = "wide", scheme: str = "light") -> Iterator[Page]:
-    width, height = SIZES[size]
-    with browser.new_context(
-        ignore_https_errors=True,
-        viewport={"width": width, "height": height},
-        color_scheme=scheme,  # type: ignore[arg-type]
-        reduced_motion="reduce",
-    ) as context:
-        page = context.new_page()
-        noise: list[str] = []
-        page.goto(f"{site.url}#code={site.join_code}")
-        page.get_by_label("Your name").fill("Ana")
-        page.get_by_role("button", name="Join and choose a seat").click()
-        expect(page.locator(".seat").first).to_be_visible()
-        listen(page, noise)
-        page.goto(f"{site.url}training")
-        yield page
-        assert noise == []
+def page_of(
+    browser: Browser, site: Site, size: str = "wide", scheme: str = "light"
+) -> AbstractContextManager[Page]:
+    return joined(browser, site.url, site.join_code, "training", size=size, scheme=scheme)
 
 
 @pytest.mark.parametrize(("size", "scheme"), LOOKS)
