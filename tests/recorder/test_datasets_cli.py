@@ -81,12 +81,13 @@ def test_what_nobody_learns_from_stays_out_and_is_said(mart: Mart, paths: list[P
         (("add", "knwon"), "There is no data set 'knwon'. Did you mean 'known'?"),
         (("show", "new"), "There is no data set 'new'. Known: known."),
         (("remove", "known"), "Name episodes or give a filter; `mart datasets delete known` takes out all"),
-        (("remove", "new", "{elsewhere}"), "name its folder of episodes with --folder"),
+        (("remove", "new", "{elsewhere}"), "name that folder with --folder"),
+        (("create", "new", "--folder", "{day}"), "name that folder with --folder"),
         (("undo", "new"), "There never was a data set 'new'"),
         (("create", "new", "--task", "wipe"), "None of 3 episodes is let through by --task wipe"),
         (("create", "new", "nowhere"), "nowhere; name episode files or folders"),
         (("create", "new", "--folder", "nowhere"), "There is no folder"),
-        (("create", "new", "{elsewhere}"), "name its folder of episodes with --folder"),
+        (("create", "new", "{elsewhere}"), "name that folder with --folder"),
     ],
 )
 def test_a_failure_is_one_line(
@@ -95,7 +96,9 @@ def test_a_failure_is_one_line(
     mart("datasets", "create", "known", paths[0])
     elsewhere = write_episode(tmp_path / "elsewhere", ticks=5).path
     before = labels.read(mart.episodes_dir)
-    said = mart("datasets", *(word.format(elsewhere=elsewhere) for word in words), code=1)
+    said = mart(
+        "datasets", *(word.format(elsewhere=elsewhere, day=paths[0].parent) for word in words), code=1
+    )
     assert re.fullmatch(r"mart: .+\n", said)
     assert sentence in said
     assert labels.read(mart.episodes_dir) == before

@@ -170,7 +170,9 @@ def _chosen(folder: Path, paths: tuple[Path, ...], wanted: dict[str, Any]) -> li
     from mart.recorder import files
 
     placed = [_placed(folder, path) for path in paths]
-    rows = [(folder / _below(folder, path), row) for path, row in files.rows(placed or (folder,))]
+    rows = files.rows(placed or (folder,))
+    for path, _ in rows:
+        _below(folder, path)
     passed = [row for _, row in passing(rows, wanted)]
     if not passed:
         asked = ", ".join(f"--{key} {_text(value)}" for key, value in wanted.items() if value)
@@ -188,12 +190,15 @@ def _placed(folder: Path, path: Path) -> Path:
 
 
 def _below(folder: Path, path: Path) -> str:
-    try:
-        return path.resolve().relative_to(folder).as_posix()
-    except ValueError as error:
+    """As labels name it. Raises InvalidInput where its labels are in another folder."""
+    from mart.protocol.episodes import labels
+
+    root = labels.root_of(path)
+    if root != folder:
         raise InvalidInput(
-            f"{path} is not in {folder}; name its folder of episodes with --folder."
-        ) from error
+            f"{path} is not labelled in {folder} but in {root}; name that folder with --folder."
+        )
+    return path.resolve().relative_to(root).as_posix()
 
 
 def _say(done: Curated, what: str, as_json: bool) -> None:
