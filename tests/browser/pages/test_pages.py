@@ -237,26 +237,6 @@ def test_the_health_page(browser: Browser, platform: Platform, size: str, scheme
         ana.is_fine(f"health-{size}-{scheme}")
 
 
-def test_a_room_is_opened_and_closed_from_the_lobby(browser: Browser, platform: Platform) -> None:
-    with visit(browser, platform) as ana:
-        ana.join("Ana", "Join and choose a seat")
-        cards = ana.page.locator("article.room")
-        expect(cards).to_have_count(1)
-        ana.page.get_by_text("New room").click()
-        ana.page.get_by_label("Task").select_option("Lift and wipe")
-        ana.page.get_by_label("Good episodes wanted").fill("50")
-        ana.is_fine("lobby-new-room")
-        ana.page.get_by_role("button", name="Open room").click()
-        expect(cards).to_have_count(2)
-        expect(cards.nth(1).locator(".seat")).to_have_count(3)
-        expect(cards.nth(1)).to_contain_text("Episode 1 of 50")
-        expect(cards.nth(0)).not_to_contain_text("Episode ")
-        ana.is_fine("lobby-two-rooms")
-        for _ in range(2):
-            ana.page.get_by_role("button", name="Close room-2").click()
-        expect(cards).to_have_count(1)
-
-
 def test_a_page_that_does_not_exist_leads_home(browser: Browser, platform: Platform) -> None:
     with visit(browser, platform, "narrow", "dark") as ana:
         ana.join("Ana", "Join and choose a seat")

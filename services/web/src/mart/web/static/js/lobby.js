@@ -2,7 +2,7 @@
 
 import * as api from "./api.js";
 import { armName, isFree } from "./arms.js";
-import { byId, keepChildren, setShown, setText } from "./dom.js";
+import { byId, element, keepChildren, setShown, setText } from "./dom.js";
 import { followRooms } from "./live.js";
 import { newRoom } from "./new-room.js";
 import { roomCard } from "./room-card.js";
@@ -75,11 +75,13 @@ function enter(person) {
   offerRooms();
 }
 
-/** Rooms can be opened and closed where a platform runs them. */
+/** Rooms can be opened and closed where a platform runs them; elsewhere the page says why not, and how. */
 async function offerRooms() {
   const { tasks, opens_rooms: opens } = await api.tasks();
-  if (opens && byId("new-room").hidden) newRoom(tasks, attempt);
-  setShown(byId("new-room"), opens);
+  if (opens && !byId("new-task")) newRoom(tasks, attempt);
+  setShown(byId("new-room"), true);
+  setShown(byId("rooms-elsewhere"), !opens);
+  byId("task-names").replaceChildren(...tasks.map(({ name }) => element("code", {}, name)));
   document.body.classList.toggle("opens-rooms", opens);
 }
 

@@ -1,0 +1,47 @@
+"""Rooms from the lobby: opened, closed, and where that is not offered, why."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Browser, Route, expect
+
+from mart.platform.supervise import Platform
+from tests.browser.pages.test_pages import visit
+
+
+def test_a_room_is_opened_and_closed_from_the_lobby(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana:
+        ana.join("Ana", "Join and choose a seat")
+        cards = ana.page.locator("article.room")
+        expect(cards).to_have_count(1)
+        ana.page.locator("summary").click()
+        ana.page.get_by_label("Task").select_option("Lift and wipe")
+        ana.page.get_by_label("Good episodes wanted").fill("50")
+        ana.is_fine("lobby-new-room")
+        ana.page.get_by_role("button", name="Open room").click()
+        expect(cards).to_have_count(2)
+        expect(cards.nth(1).locator(".seat")).to_have_count(3)
+        expect(cards.nth(1)).to_contain_text("Episode 1 of 50")
+        expect(cards.nth(0)).not_to_contain_text("Episode ")
+        ana.is_fine("lobby-two-rooms")
+        for _ in range(2):
+            ana.page.get_by_role("button", name="Close room-2").click()
+        expect(cards).to_have_count(1)
+
+
+@pytest.mark.parametrize(("size", "scheme"), [("narrow", "dark"), ("wide", "light")])
+def test_where_nothing_opens_rooms_the_lobby_says_why_and_how(
+    browser: Browser, platform: Platform, size: str, scheme: str
+) -> None:
+    def without_platform(route: Route) -> None:
+        answer = route.fetch()
+        route.fulfill(json={**answer.json(), "opens_rooms": False})
+
+    with visit(browser, platform, size, scheme) as ana:
+        ana.page.route("**/api/tasks", without_platform)
+        ana.join("Ana", "Join and choose a seat")
+        ana.page.locator("summary").click()
+        expect(ana.page.locator("#rooms-elsewhere")).to_contain_text("none is allowed to start another")
+        expect(ana.page.locator("#task-names")).to_contain_text("three_arm_lift_wiping")
+        expect(ana.page.get_by_role("button", name="Close room-1")).to_be_hidden()
+        ana.is_fine(f"lobby-rooms-elsewhere-{size}-{scheme}")
