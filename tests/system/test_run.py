@@ -13,6 +13,10 @@ from pathlib import Path
 
 import pytest
 
+from mart.protocol import codec, keys
+from mart.protocol.bus.zenoh_bus import ZenohBus
+from mart.protocol.messages import RoomsRequest, RoomStatus
+from tests.support.mailbox import Mailbox
 from tests.support.processes import free_port
 
 _MART = str(Path(sys.executable).with_name("mart"))
@@ -23,11 +27,7 @@ def test_it_serves_until_it_is_asked_to_stop_and_leaves_nothing_behind(
     tmp_path: Path, number: signal.Signals
 ) -> None:
     port = free_port()
-    environment = {
-        **os.environ,
-        "MART_ROUTER": f"tcp/127.0.0.1:{free_port()}",
-        "MART_DATA_DIR": str(tmp_path),
-    }
+    environment = _environment(tmp_path)
     with _running([_MART, "run", "--json", "--port", str(port)], environment) as process:
         assert process.stdout is not None
         told = json.loads(process.stdout.readline())
@@ -47,6 +47,30 @@ def test_it_serves_until_it_is_asked_to_stop_and_leaves_nothing_behind(
         process.send_signal(number)
         assert process.wait(60) == 0
     assert not [pid for pid in children if Path(f"/proc/{pid}").exists()]
+
+
+def test_a_room_that_was_opened_comes_back_with_its_plan(tmp_path: Path) -> None:
+    environment = _environment(tmp_path)
+    wanted = RoomsRequest.Open(room="lab", task="two_arm_drink_tray_lifting", episodes=50)
+    for request in (RoomsRequest(open=wanted), None):
+        with _running([_MART, "run", "--json", "--port", str(free_port())], environment) as process:
+            assert process.stdout is not None
+            assert json.loads(process.stdout.readline())["room"] == "room-1"
+            with (
+                ZenohBus.connect(environment["MART_ROUTER"]) as bus,
+                Mailbox(bus, keys.status("lab").key, RoomStatus) as statuses,
+            ):
+                if request is not None:
+                    bus.query(keys.rooms("platform-1"), codec.encode(request), timeout_s=45.0)
+                status = statuses.wait_for(lambda status: status.task == wanted.task)
+                assert (status.plan.episodes, status.plan.good) == (50, 0)
+            process.terminate()
+            assert process.wait(60) == 0
+
+
+def _environment(data_dir: Path) -> dict[str, str]:
+    router = f"tcp/127.0.0.1:{free_port()}"
+    return {**os.environ, "MART_ROUTER": router, "MART_DATA_DIR": str(data_dir)}
 
 
 @contextlib.contextmanager

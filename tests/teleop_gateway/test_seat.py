@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 
 import pytest
+from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
 from mart.protocol import clock, codec, keys
@@ -113,6 +114,15 @@ def test_the_bus_gets_what_the_operator_sees(on_seat: OnSeat) -> None:
             assert (picture.format, picture.frame_id) == ("h264", "arm0")
             age_s = clock.wall_ns() * 1e-9 - picture.timestamp.ToNanoseconds() * 1e-9
             assert 0 < age_s < 5
+
+    on_seat(body)
+
+
+def test_the_bus_gets_stills_for_the_lobby(on_seat: OnSeat) -> None:
+    async def body(seat: SeatUnderTest) -> None:
+        with Mailbox(seat.bus.bus, keys.still(seat.room.name, "arm0").key, CompressedImage) as stills:
+            still = await asyncio.to_thread(stills.wait_for, lambda image: image.data.startswith(b"\xff\xd8"))
+            assert (still.format, still.frame_id) == ("jpeg", "arm0")
 
     on_seat(body)
 

@@ -17,6 +17,7 @@ from mart.teleop_gateway import tick_code
 from mart.teleop_gateway.encoder import Codec
 from mart.teleop_gateway.handover import Closed, Handover
 from mart.teleop_gateway.renderer import load_model
+from mart.teleop_gateway.still import Still
 from mart.teleop_gateway.view import KEYFRAME_EVERY_S, Picture, View
 
 
@@ -26,8 +27,15 @@ class Watched:
     def __init__(self, model: Model, frames_per_s: float = 0.5) -> None:
         """A rate so low that no picture is late, however busy the machine."""
         self.pictures: queue.Queue[Picture] = queue.Queue()
-        self.view = View(load_model(model), "arm0", frames_per_s, self.pictures.put)
+        self.stills: queue.Queue[Still] = queue.Queue()
+        self.view = View(load_model(model), "arm0", frames_per_s, self._keep)
         self.view.start()
+
+    def _keep(self, made: Picture | Still) -> None:
+        if isinstance(made, Still):
+            self.stills.put(made)
+        else:
+            self.pictures.put(made)
 
     def next(self, holds: Callable[[Picture], bool] = lambda _: True, timeout_s: float = 30.0) -> Picture:
         end_s = clock.monotonic_s() + timeout_s
@@ -62,6 +70,13 @@ def test_a_state_becomes_a_picture_with_its_stamps(watched: Watched, world: Worl
     assert picture.encoded.keyframe  # the first
     stamps = picture.stamps
     assert before_ns == stamps.state_received_ns < stamps.rendered_ns < stamps.encoded_ns < clock.wall_ns()
+
+
+def test_a_small_still_of_it_follows(watched: Watched, world: World) -> None:
+    watched.view.offer(state(world, 7), 0)
+    still = watched.stills.get(timeout=30.0)
+    assert still.image_ns == 1007
+    assert still.jpeg.startswith(b"\xff\xd8")
 
 
 def test_a_slow_renderer_leaves_states_out(watched: Watched, world: World) -> None:

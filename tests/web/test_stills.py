@@ -1,11 +1,18 @@
 from __future__ import annotations
 
+import asyncio
+
 import pytest
+from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mart.protocol import codec, keys
+from mart.protocol.bus.memory import MemoryBus
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.web.stills import FRESH_S, MAX_BYTES, Stills
+from tests.web.conftest import Enter
+from tests.web.room import Room
 
 JPEG = b"\xff\xd8\xff"
 SEATS = st.tuples(st.sampled_from(["room-1", "room-2"]), st.sampled_from(["arm0", "arm1", "arm2"]))
@@ -61,3 +68,19 @@ def test_memory_is_bounded() -> None:
         stills.see(f"room-{number}", "arm0", JPEG, 0.0)
     assert stills.number("room-0", 0.0) == 0
     assert stills.number("room-299", 0.0) == 300
+
+
+@pytest.mark.anyio
+async def test_who_has_joined_sees_what_is_happening_in_a_room(
+    enter: Enter, room: Room, bus: MemoryBus
+) -> None:
+    ana, nobody = await enter("Ana"), await enter()
+    assert (await ana.get("/api/rooms")).json()["rooms"][0]["still"] == 0
+    assert (await ana.get("/api/rooms/room-1/still")).status_code == 404
+    bus.publisher(keys.still(room.name, "arm0")).put(codec.encode(CompressedImage(data=JPEG, format="jpeg")))
+    bus.publisher(keys.still(room.name, "arm1")).put(b"nonsense")  # is told in the log and changes nothing
+    await asyncio.sleep(0)
+    assert (await ana.get("/api/rooms")).json()["rooms"][0]["still"] > 0
+    answer = await ana.get("/api/rooms/room-1/still")
+    assert (answer.content, answer.headers["Content-Type"]) == (JPEG, "image/jpeg")
+    assert (await nobody.get("/api/rooms/room-1/still")).status_code == 401

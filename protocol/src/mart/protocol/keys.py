@@ -79,10 +79,6 @@ def still(room: str, camera: str) -> Topic:
     return Topic(_key(room, "view", camera, "still"), Priority.LOW)
 
 
-def videos(room: str) -> str:
-    return f"{ROOT}/{_segment('room', room)}/view/*/video"
-
-
 DETAILED = b"detailed"
 
 

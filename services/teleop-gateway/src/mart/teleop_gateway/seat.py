@@ -7,8 +7,6 @@ import contextlib
 import logging
 from collections.abc import Awaitable, Callable
 
-from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
-
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.bus.base import Bus, Closable
@@ -31,6 +29,7 @@ from mart.teleop_gateway.cues import Presses
 from mart.teleop_gateway.driving import Driving, Input
 from mart.teleop_gateway.encoder import Codec
 from mart.teleop_gateway.latency import MotionToPhoton
+from mart.teleop_gateway.outlet import Outlet
 from mart.teleop_gateway.peer import MAX_SDP_CHARACTERS, Peer
 from mart.teleop_gateway.peers import Peers
 from mart.teleop_gateway.quality import QUALITIES
@@ -40,6 +39,7 @@ from mart.teleop_gateway.retarget import Retarget
 from mart.teleop_gateway.scenery import Scenery
 from mart.teleop_gateway.settings import GatewaySettings
 from mart.teleop_gateway.signaling import admit
+from mart.teleop_gateway.still import Still
 from mart.teleop_gateway.view import Picture
 
 _log = logging.getLogger(__name__)
@@ -64,7 +64,7 @@ class Seat:
         self._commands = bus.publisher(keys.command(room, arm))
         self._announcements = Announcements(bus, room, arm)
         self._presses = Presses()
-        self._video = video_bus.publisher(keys.video(room, arm))
+        self._outlet = Outlet(video_bus, room, arm)
         look = QUALITIES[settings.quality]
         self._scenery = Scenery(
             bus, room, arm, sink=self._on_picture, on_azimuth=self._on_azimuth, quality=look
@@ -100,7 +100,7 @@ class Seat:
         state = bus.bus.subscribe(keys.state(room).key, Reader(State, self._on_state_arrival))
         # Last: whoever sees this token may send an offer.
         alive = bus.bus.announce(keys.alive(SEAT_KIND, self.id))
-        return [*served, status, state, self._commands, self._announcements, self._video, alive]
+        return [*served, status, state, self._commands, self._announcements, self._outlet, alive]
 
     # Signalling
 
@@ -272,13 +272,11 @@ class Seat:
         waiting = tuple(waiting.arm for waiting in self._status.waiting_for)
         return driving.engaged(now_s), driving.holding, driving.active, self._status.barrier, waiting
 
-    def _on_picture(self, picture: Picture) -> None:
+    def _on_picture(self, made: Picture | Still) -> None:
         """On the view's thread: first to those who wait for it, then onto the bus."""
-        self._loop.call_soon_threadsafe(self._pass_on, picture)
-        if picture.encoded.codec is Codec.H264:
-            message = CompressedVideo(frame_id=self.arm, data=picture.encoded.data, format="h264")
-            message.timestamp.FromNanoseconds(picture.image_ns)
-            self._video.put(codec.encode(message))
+        if isinstance(made, Picture):
+            self._loop.call_soon_threadsafe(self._pass_on, made)
+        self._outlet.put(made)
 
     def _pass_on(self, picture: Picture) -> None:
         self._peers.put(picture.encoded)

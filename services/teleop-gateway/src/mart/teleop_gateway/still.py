@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -11,17 +13,25 @@ _SIZE_PX = (384, 288)
 _JPEG_QUALITY = 80
 
 
+@dataclass(frozen=True)
+class Still:
+    """image_ns: when the world was in this state."""
+
+    jpeg: bytes
+    image_ns: int
+
+
 class Stills:
     """Says when one is due, and makes it."""
 
     def __init__(self) -> None:
         self._due_s = 0.0
 
-    def take(self, picture_rgb: NDArray[np.uint8], now_s: float) -> bytes | None:
-        """A JPEG of a picture of shape (height, width, 3); None where the last one is not old enough."""
+    def take(self, picture_rgb: NDArray[np.uint8], image_ns: int, now_s: float) -> Still | None:
+        """Of a picture of shape (height, width, 3); None where the last one is not old enough."""
         if now_s < self._due_s:
             return None
         self._due_s = now_s + EVERY_S
         small = cv2.resize(picture_rgb, _SIZE_PX, interpolation=cv2.INTER_AREA)
         _, jpeg = cv2.imencode(".jpg", small[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])
-        return jpeg.tobytes()
+        return Still(jpeg.tobytes(), image_ns)

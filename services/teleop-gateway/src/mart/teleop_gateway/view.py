@@ -27,6 +27,7 @@ from mart.teleop_gateway.quality import FAST, Quality
 from mart.teleop_gateway.rate import RateLimit
 from mart.teleop_gateway.renderer import Renderer
 from mart.teleop_gateway.sizing import Sizing
+from mart.teleop_gateway.still import Still, Stills
 
 _log = logging.getLogger(__name__)
 
@@ -46,7 +47,7 @@ class Picture:
     stamps: PictureStamps
 
 
-Sink = Callable[[Picture], None]
+Sink = Callable[[Picture | Still], None]
 
 
 class _Easel:
@@ -133,7 +134,7 @@ class View:
             easel.close()
 
     def _draw_until_closed(self, easel: _Easel) -> None:
-        sizing = Sizing(self._frames_per_s)
+        sizing, stills = Sizing(self._frames_per_s), Stills()
         drawn: Fresh | None = None
         rendered_ns = 0
         while True:
@@ -154,6 +155,9 @@ class View:
             if fresh is not None:
                 now_s = clock.monotonic_s()
                 sizing.made(now_s - begun_s, now_s)
+                still = stills.take(easel.picture_rgb, fresh.state.stamps.stepped_ns, now_s)
+                if still is not None:
+                    self._sink(still)
 
     def _encode(self, easel: _Easel, drawn: Fresh, rendered_ns: int) -> None:
         now_s = clock.monotonic_s()

@@ -17,6 +17,7 @@ from mart.protocol.messages import (
     phase_word,
 )
 from mart.protocol.tasks import get_task
+from mart.web.stills import Stills
 
 STALE_AFTER_S = 1.0  # a sim speaks five times a second
 GONE_AFTER_S = 3.0  # without its liveliness token; a router's restart takes every token for about 2 s
@@ -35,6 +36,7 @@ class Lobby:
     """Every room that was heard of. A silent room is stale; a silent one whose sim is gone disappears."""
 
     def __init__(self) -> None:
+        self.stills = Stills()
         self._rooms: dict[str, _Room] = {}
         self._alive: set[str] = set()
 
@@ -77,7 +79,8 @@ class Lobby:
 
     def _json(self, room: _Room, holder_id: str, now_s: float) -> Json:
         stale = not room.alive or now_s - room.seen_s > STALE_AFTER_S
-        return {**_status_json(room.status, holder_id), "stale": stale}
+        still = self.stills.number(room.status.room, now_s)
+        return {**_status_json(room.status, holder_id), "stale": stale, "still": still}
 
     def _forget(self, now_s: float) -> None:
         self._rooms = {

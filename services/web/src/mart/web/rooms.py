@@ -8,6 +8,8 @@ import logging
 from collections import OrderedDict, deque
 from collections.abc import Iterator
 
+from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
+
 from mart.protocol import clock, codec, keys
 from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.bus.base import Closable, Sample
@@ -25,6 +27,7 @@ from mart.protocol.messages import (
     SeatRequest,
     raise_error,
 )
+from mart.web import stills
 from mart.web.lobby import Json, Lobby, event_json
 from mart.web.people import Person
 
@@ -34,6 +37,7 @@ PLATFORM = "platform"
 QUERY_TIMEOUT_S = 5.0
 PLATFORM_TIMEOUT_S = 45.0  # a sim that is stopped may take its time
 _MAX_STATUS_BYTES = 64 * 1024
+_MAX_STILL_BYTES = stills.MAX_BYTES + 1024
 _MAX_WAITING_EVENTS = 64
 _SETTLE_S = 2.0
 _MAX_DELAYS = 256
@@ -78,6 +82,7 @@ class Rooms:
             bus.watch(keys.EVERY_ALIVE, self._on_alive),
             bus.subscribe(keys.EVERY_STATUS, self._on_status),
             bus.subscribe(keys.EVERY_EVENT, self._on_event),
+            bus.subscribe(keys.EVERY_STILL, self._on_still),
         ]
 
     def close(self) -> None:
@@ -196,6 +201,14 @@ class Rooms:
             if status.room != keys.room_of(sample.key):
                 raise InvalidInput(f"A status of room {status.room!r} was given on {sample.key}.")
             self._see(status)
+        except MartError as error:
+            self._warn(sample.key, error)
+
+    def _on_still(self, sample: Sample) -> None:
+        try:
+            image = codec.decode(CompressedImage, sample.payload, _MAX_STILL_BYTES)
+            room, camera = keys.room_of(sample.key), keys.camera_of(sample.key)
+            self.lobby.stills.see(room, camera, image.data, clock.monotonic_s())
         except MartError as error:
             self._warn(sample.key, error)
 

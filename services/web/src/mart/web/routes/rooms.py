@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from mart.protocol import clock
@@ -55,6 +55,13 @@ async def tasks(site: TheSite, _person: Joined) -> Json:
 @router.post("/rooms")
 async def open_room(body: NewRoom, site: TheSite, _person: Joined) -> Json:
     return {"room": await site.rooms.open(RoomsRequest.Open(**body.model_dump()))}
+
+
+@router.get("/rooms/{room}/still")
+async def still(room: str, site: TheSite, _person: Joined) -> Response:
+    """The room's newest small picture. Whoever asks for another one gives another query: this one may be kept."""
+    jpeg = site.rooms.lobby.stills.jpeg(room, clock.monotonic_s())
+    return Response(jpeg, media_type="image/jpeg", headers={"Cache-Control": "private, max-age=60"})
 
 
 @router.delete("/rooms/{room}")

@@ -13,7 +13,11 @@ import { phaseText, planText, waitingText } from "./words.js";
 export function roomCard(attempt, policies) {
   const title = element("h2");
   const picture = element("img", { class: "scene", alt: "", width: 384, height: 288 });
-  picture.addEventListener("error", () => picture.remove()); // a newer sim's task
+  let shown = { room: "", task: "", still: 0 };
+  picture.addEventListener("error", () => {
+    if (shown.still) picture.src = sceneOf(shown.task); // nobody looks any more
+    else picture.remove(); // a newer sim's task
+  });
   const close = closing(attempt);
   const phase = element("span", { class: "soft" });
   const instruction = element("p");
@@ -28,10 +32,16 @@ export function roomCard(attempt, policies) {
   );
   const rows = new Map();
 
+  /** What somebody sees there now; where nobody looks, the task's scene. */
+  function show({ room, task, title, still }) {
+    shown = { room, task, still };
+    picture.src = still ? `/api/rooms/${room}/still?number=${still}` : sceneOf(task);
+    picture.alt = still ? `${title} in ${room}, now` : "";
+  }
+
   function update(room) {
     setText(title, room.title);
-    const source = `/static/tasks/${room.task}.jpg`;
-    if (picture.getAttribute("src") !== source) picture.src = source;
+    if (shown.room !== room.room || shown.task !== room.task || shown.still !== room.still) show(room);
     close.update(room);
     setText(phase, room.stale ? "Not answering" : waitingText(room) || phaseText(room.episode));
     setText(instruction, room.instruction);
@@ -49,6 +59,8 @@ export function roomCard(attempt, policies) {
 
   return { node, update };
 }
+
+const sceneOf = (task) => `/static/tasks/${task}.jpg`;
 
 /** For a room that nobody needs: pressed twice, and only while it is empty. */
 function closing(attempt) {
