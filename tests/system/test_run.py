@@ -62,7 +62,7 @@ def test_a_room_that_was_opened_comes_back_with_its_plan(tmp_path: Path) -> None
             ):
                 if request is not None:
                     bus.query(keys.rooms("platform-1"), codec.encode(request), timeout_s=45.0)
-                status = statuses.wait_for(lambda status: status.task == wanted.task)
+                status = statuses.wait_for(lambda status: status.task == wanted.task, timeout_s=45.0)
                 assert (status.plan.episodes, status.plan.good) == (50, 0)
             process.terminate()
             assert process.wait(60) == 0
