@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import queue
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -178,6 +179,7 @@ def third_person_is_refused(browser: Browser, platform: Platform) -> None:
         for arm, holder in (("arm0", "Ana"), ("arm1", "Ben")):
             expect(cleo.seat(arm)).to_contain_text(holder)
             expect(cleo.seat(arm).get_by_role("button", name="Take seat")).to_be_hidden()
+        sees_the_room_live(cleo)
         cleo.shoot("lobby-full")
         # Also where the page is not asked.
         answer = cleo.page.evaluate(
@@ -192,6 +194,14 @@ def third_person_is_refused(browser: Browser, platform: Platform) -> None:
         )
         assert answer[0] == 409
         assert "Ana" in answer[1]
+
+
+def sees_the_room_live(someone: Person) -> None:
+    picture = someone.page.get_by_role("img", name="in room-1, now")
+    expect(picture).to_have_attribute("src", re.compile(r"^/api/rooms/room-1/still\?number=\d+$"))
+    someone.page.wait_for_function(
+        "picture => picture.complete && picture.naturalWidth", arg=picture.element_handle()
+    )
 
 
 def assert_file_tells_who_drove(path: Path) -> None:
