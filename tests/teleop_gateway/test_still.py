@@ -7,9 +7,9 @@ from mart.teleop_gateway.still import EVERY_S, Stills
 
 
 def test_it_is_the_picture_made_small() -> None:
-    picture_rgb = np.zeros((480, 640, 3), np.uint8)
-    picture_rgb[:, :320] = (200, 30, 30)
-    still = Stills().take(picture_rgb, 7, 100.0)
+    view_rgb = np.zeros((480, 640, 3), np.uint8)
+    view_rgb[:, :320] = (200, 30, 30)
+    still = Stills().take(view_rgb, 7, 100.0)
     assert still is not None
     assert still.image_ns == 7
     seen_bgr = cv2.imdecode(np.frombuffer(still.jpeg, np.uint8), cv2.IMREAD_COLOR)
@@ -20,7 +20,7 @@ def test_it_is_the_picture_made_small() -> None:
 
 
 def test_one_is_made_every_two_seconds() -> None:
-    stills, picture_rgb = Stills(), np.zeros((240, 320, 3), np.uint8)
-    made_s = [now_s for now_s in np.arange(0.0, 10.0, 0.05) if stills.take(picture_rgb, 0, now_s) is not None]
+    stills, view_rgb = Stills(), np.zeros((240, 320, 3), np.uint8)
+    made_s = [now_s for now_s in np.arange(0.0, 10.0, 0.05) if stills.take(view_rgb, 0, now_s) is not None]
     assert len(made_s) == 5
     assert np.all(np.diff(made_s) >= EVERY_S - 1e-9)

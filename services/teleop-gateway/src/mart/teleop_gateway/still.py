@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import cv2
-import numpy as np
-from numpy.typing import NDArray
+
+from mart.teleop_gateway.quality import Image
 
 EVERY_S = 2.0
 _SIZE_PX = (384, 288)
@@ -27,11 +27,11 @@ class Stills:
     def __init__(self) -> None:
         self._due_s = 0.0
 
-    def take(self, picture_rgb: NDArray[np.uint8], image_ns: int, now_s: float) -> Still | None:
-        """Of a picture of shape (height, width, 3); None where the last one is not old enough."""
+    def take(self, view_rgb: Image, image_ns: int, now_s: float) -> Still | None:
+        """Of a view of shape (height, width, 3); None where the last one is not old enough."""
         if now_s < self._due_s:
             return None
         self._due_s = now_s + EVERY_S
-        small = cv2.resize(picture_rgb, _SIZE_PX, interpolation=cv2.INTER_AREA)
+        small = cv2.resize(view_rgb, _SIZE_PX, interpolation=cv2.INTER_AREA)
         _, jpeg = cv2.imencode(".jpg", small[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])
         return Still(jpeg.tobytes(), image_ns)

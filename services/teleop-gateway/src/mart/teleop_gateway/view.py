@@ -23,7 +23,7 @@ from mart.protocol.messages import State
 from mart.teleop_gateway.encoder import CLOCK_HZ, Codec, Encoded, Encoder, to_i420
 from mart.teleop_gateway.handover import Closed, Fresh, Handover
 from mart.teleop_gateway.latency import PictureStamps
-from mart.teleop_gateway.quality import FAST, Quality
+from mart.teleop_gateway.quality import FAST, Image, Quality
 from mart.teleop_gateway.rate import RateLimit
 from mart.teleop_gateway.renderer import Renderer
 from mart.teleop_gateway.sizing import Sizing
@@ -66,6 +66,11 @@ class _Easel:
 
     def draw(self, state: State) -> None:
         self._renderer.draw(state.integration_state, state.tick, self.picture_rgb)
+
+    @property
+    def view_rgb(self) -> Image:
+        """The picture without the strip."""
+        return self.picture_rgb[: self._quality.view_height_px]
 
     def close(self) -> None:
         self._renderer.close()
@@ -155,7 +160,7 @@ class View:
             if fresh is not None:
                 now_s = clock.monotonic_s()
                 sizing.made(now_s - begun_s, now_s)
-                still = stills.take(easel.picture_rgb, fresh.state.stamps.stepped_ns, now_s)
+                still = stills.take(easel.view_rgb, fresh.state.stamps.stepped_ns, now_s)
                 if still is not None:
                     self._sink(still)
 
