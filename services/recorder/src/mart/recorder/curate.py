@@ -85,9 +85,5 @@ def _act(
     return Curated(now, len(said), now_ns, dict(left_out or {}))
 
 
-def _everything(root: Path) -> dict[str, Labelled]:
-    return labels.fold(labels.read(root))
-
-
 def _counted(left_out: Mapping[str, int]) -> str:
     return ", ".join(f"{count} {why}" for why, count in sorted(left_out.items())) or "no episode was chosen"
