@@ -50,7 +50,7 @@ function bar(lane, span, wall) {
   const left = (100 * span.begin_s) / (wall || 1);
   const width = Math.max(0.2, (100 * (span.end_s - span.begin_s)) / (wall || 1));
   const arm = ["driver", "engaged", "waiting", "cue"].includes(lane.kind) ? { arm: lane.name } : {};
-  const label = lane.kind === "driver" ? driverText(span.text) : "";
+  const label = { driver: driverText, cue: cueText }[lane.kind]?.(span.text) ?? "";
   const node = element("span", { class: `bar ${lane.kind}`, title: spanText(lane, span), dataset: { ...arm, text: span.text } }, label);
   Object.assign(node.style, { left: `${left}%`, width: `${width}%` });
   return node;
