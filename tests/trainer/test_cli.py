@@ -28,6 +28,9 @@ def test_it_trains_and_goes_on(episodes: Recorded, tmp_path: Path) -> None:
     assert first.exit_code == 0, first.output
     result = json.loads(first.stdout)
     assert (result["model"], result["episodes"], result["seeds"]) == ("d-HBC", 3, [0, 1])
+    assert result["times_seen"] == pytest.approx(
+        8 * 8 * 10 / result["ticks"], abs=0.06
+    )  # of debug's batch and window
     assert "base 8/8" in first.stderr
     assert load_policy(Path(result["checkpoints"][-1])).record.updates == 8
     assert RunDirectory(run).request.weights == {"human": 3.0}

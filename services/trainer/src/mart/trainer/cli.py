@@ -169,6 +169,7 @@ def _result(run: RunDirectory) -> dict[str, Any]:
         "task": data["task"],
         "episodes": len(data["episodes"]),
         "ticks": data["ticks"],
+        "times_seen": round(run.request.times_seen(data["ticks"]), 1),
         "dataset": data.get("dataset"),
         "seeds": list(run.request.seeds),
         "checkpoints": [
@@ -187,7 +188,8 @@ def _of_dataset(dataset: dict[str, Any] | None) -> str:
 
 def _words(result: dict[str, Any]) -> str:
     newest = result["checkpoints"][-len(result["seeds"]) :]
-    learned = f"from {result['episodes']} episodes ({result['ticks']} ticks){_of_dataset(result['dataset'])}"
+    ticks = f"{result['ticks']} ticks, each seen {result['times_seen']:g} times"
+    learned = f"from {result['episodes']} episodes ({ticks}){_of_dataset(result['dataset'])}"
     then = "Judge them: mart eval --checkpoint" if result["complete"] else "Go on: mart train --resume"
     lines = [
         f"{result['model']} for {result['task']}, {learned}, {len(result['checkpoints'])} checkpoints",

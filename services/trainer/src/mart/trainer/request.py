@@ -77,6 +77,12 @@ class TrainRequest(BaseModel):
         """Raises NotFound or InvalidInput where `model` names none."""
         return Model.parse(self.model)
 
+    def times_seen(self, ticks: int) -> float:
+        """How often each of so many recorded ticks is learned from, on average: what long tasks want more of."""
+        sizes = self.hyperparameters
+        actions = sizes.flow_chunk if self.point.network == "flow" else sizes.window
+        return sizes.updates * sizes.batch_size * actions / ticks
+
     @property
     def hyperparameters(self) -> Hyperparameters:
         """The preset's with the changes. Raises NotFound for its name, InvalidInput for a change."""
