@@ -88,7 +88,7 @@ class Browser:
             await asyncio.sleep(1 / 60)
 
     async def wait_told(
-        self, holds: Callable[[dict[str, Any]], bool], timeout_s: float = 10.0
+        self, holds: Callable[[dict[str, Any]], bool], timeout_s: float = 30.0
     ) -> dict[str, Any]:
         """The next status message for which `holds`."""
         seen = len(self.told)
