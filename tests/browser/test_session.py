@@ -17,7 +17,7 @@ from mart.protocol import keys
 from mart.protocol.bus.base import Sample
 from mart.protocol.codec import decode
 from mart.protocol.messages import OUTCOME_SUCCESS, ArmState, Event, State
-from tests.browser.pages.test_pages import INSPECT
+from tests.browser.pages.visits import INSPECT
 from tests.browser.people import Person, Phone, person
 
 WAIT_S = 60.0

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.pages.test_pages import SIZES, listen
+from tests.browser.pages.visits import listen, window
 
 
 @contextlib.contextmanager
@@ -15,20 +15,14 @@ def joined(
     browser: Browser, url: str, join_code: str, page: str, *, size: str, scheme: str
 ) -> Iterator[Page]:
     """`url`: of the site, with its slash; page: below it."""
-    width, height = SIZES[size]
-    with browser.new_context(
-        ignore_https_errors=True,
-        viewport={"width": width, "height": height},
-        color_scheme=scheme,  # type: ignore[arg-type]
-        reduced_motion="reduce",
-    ) as context:
-        window = context.new_page()
+    with window(browser, size, scheme) as context:
+        looked_at = context.new_page()
         noise: list[str] = []
-        window.goto(f"{url}#code={join_code}")
-        window.get_by_label("Your name").fill("Ana")
-        window.get_by_role("button", name="Join and choose a seat").click()
-        expect(window.locator("#me")).to_contain_text("Ana")
-        listen(window, noise)
-        window.goto(f"{url}{page}")
-        yield window
+        looked_at.goto(f"{url}#code={join_code}")
+        looked_at.get_by_label("Your name").fill("Ana")
+        looked_at.get_by_role("button", name="Join and choose a seat").click()
+        expect(looked_at.locator("#me")).to_contain_text("Ana")
+        listen(looked_at, noise)
+        looked_at.goto(f"{url}{page}")
+        yield looked_at
         assert noise == []

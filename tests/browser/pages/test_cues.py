@@ -11,7 +11,7 @@ from mart.platform.supervise import Platform
 from mart.protocol import codec
 from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.messages import CUE_GO, CUE_WAIT, Event
-from tests.browser.pages.test_pages import Visit, driving, visit
+from tests.browser.pages.visits import Visit, driving, visit
 
 
 def takes_the_other_seat(ben: Visit) -> Page:

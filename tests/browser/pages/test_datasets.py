@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, Page, expect
 from mart.protocol.episodes import labels
 from mart.protocol.episodes.labels import Kind
 from tests.browser.pages.joined import joined
-from tests.browser.pages.test_pages import INSPECT, LOOKS, SCREENSHOTS
+from tests.browser.pages.visits import INSPECT, LOOKS, SCREENSHOTS
 from tests.recorder.files import write_episode
 from tests.support.processes import free_port, running_router, running_service
 

@@ -216,3 +216,11 @@ def test_whatever_is_typed_becomes_a_name_that_a_data_set_may_have(run: Run) -> 
     assert names == ["cubes-good", "a", "nder-2", "x" * 64, "ok_1-2", ""]
     for name in filter(None, names):
         Label("a", Kind.JOIN, name, 1)
+
+
+def test_who_takes_all_that_are_shown_knows_how_many_did_not_succeed(run: Run) -> None:
+    texts = run("episodes/words.js", "({ allText }, counts) => counts.map(allText)", [0, 3])
+    assert texts == [
+        "All that are shown; tick some to choose fewer",
+        "All that are shown, also 3 without success; tick some to choose fewer",
+    ]

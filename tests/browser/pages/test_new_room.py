@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Browser, Route, expect
 
 from mart.platform.supervise import Platform
-from tests.browser.pages.test_pages import visit
+from tests.browser.pages.visits import visit
 
 
 def test_a_room_is_opened_and_closed_from_the_lobby(browser: Browser, platform: Platform) -> None:

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mart.platform.supervise import Platform
-from tests.browser.pages.test_pages import HERE, INSPECT, SCREENSHOTS, driving, listen, visit
+from tests.browser.pages.visits import HERE, INSPECT, SCREENSHOTS, driving, listen, visit
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Browser, expect
 
 from mart.platform.supervise import Platform
-from tests.browser.pages.test_pages import visit
+from tests.browser.pages.visits import visit
 
 
 @pytest.mark.parametrize(("size", "scheme"), [("narrow", "dark"), ("wide", "light")])

@@ -2,12 +2,13 @@
 
 import * as api from "../api.js";
 import { byId, element, setShown, setText } from "../dom.js";
-import { curatedText, datasetName, plural } from "./words.js";
+import { allText, curatedText, datasetName, plural } from "./words.js";
 
 export class Curation {
   #chosen = new Set();
   #filter = {};
   #matching = 0;
+  #unsuccessful = 0;
 
   /** `attempt(deed)` runs a change and shows its failure; `onChanged()` is called after one. */
   constructor({ attempt, onChanged }) {
@@ -23,10 +24,11 @@ export class Curation {
   }
 
   /** `filter`: what is shown, by name. */
-  show({ matching, datasets }, filter) {
+  show({ matching, successes, datasets }, filter) {
     if (JSON.stringify(filter) !== JSON.stringify(this.#filter)) this.#chosen.clear();
     this.#filter = filter;
     this.#matching = matching;
+    this.#unsuccessful = matching - successes;
     byId("dataset-names").replaceChildren(...datasets.map(({ name, episodes }) => element("option", { value: name }, plural(episodes))));
     setShown(byId("curation"), matching > 0);
     this.#update();
@@ -45,7 +47,7 @@ export class Curation {
   #update() {
     const count = this.#chosen.size;
     const { dataset } = this.#filter;
-    setText(byId("chosen"), count ? `${plural(count)} chosen` : "All that are shown; tick some to choose fewer");
+    setText(byId("chosen"), count ? `${plural(count)} chosen` : allText(this.#unsuccessful));
     setText(byId("use"), `Use ${count || this.#matching} for training`);
     setShown(byId("choose-none"), count > 0);
     setShown(byId("take-out"), Boolean(dataset));

@@ -56,6 +56,12 @@ export function remarks({ complete, repaired, interrupted, missing_ticks: missin
 
 export const plural = (count) => `${count} ${count === 1 ? "episode" : "episodes"}`;
 
+/** What is taken where nothing is ticked: also what did not succeed, because a data set is learned from whole. */
+export function allText(unsuccessful) {
+  const failed = unsuccessful ? `, also ${unsuccessful} without success` : "";
+  return `All that are shown${failed}; tick some to choose fewer`;
+}
+
 /** "61 episodes joined “cubes-good”. It holds 61 now. Left out: 2 discarded, 1 dropped." */
 export function curatedText({ dataset, changed, left_out: leftOut, episodes }, did) {
   const why = Object.entries(leftOut).map(([reason, count]) => `${count} ${reason}`);

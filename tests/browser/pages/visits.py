@@ -1,0 +1,84 @@
+"""Somebody's browser window at the pages of a running platform: its size, how it looks, what it complains about."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from playwright.sync_api import Browser, BrowserContext, Page, expect
+
+from mart.platform.supervise import Platform
+
+HERE = Path(__file__).parent
+INSPECT = (HERE / "inspect_page.js").read_text()
+SCREENSHOTS = Path("test-output/browser/pages")
+SIZES = {"narrow": (360, 740), "wide": (1440, 900), "wall": (3840, 2160)}
+LOOKS = [("narrow", "dark"), ("narrow", "light"), ("wide", "dark"), ("wide", "light"), ("wall", "light")]
+
+
+@dataclass
+class Visit:
+    """A browser window. `noise`: what the page complained about."""
+
+    platform: Platform
+    context: BrowserContext
+    page: Page
+    noise: list[str] = field(default_factory=list)
+
+    def join(self, name: str, button: str) -> None:
+        self.page.goto(f"{self.platform.url}#code={self.platform.join_code}")
+        self.page.get_by_label("Your name").fill(name)
+        self.page.get_by_role("button", name=button).click()
+
+    def try_it(self, name: str) -> None:
+        """Drives arm0 and sees the picture."""
+        self.join(name, "Try it")
+        expect(self.page.locator("#picture.live")).to_be_visible()
+
+    def is_fine(self, what: str) -> None:
+        SCREENSHOTS.mkdir(parents=True, exist_ok=True)
+        self.page.screenshot(path=SCREENSHOTS / f"{what}.png", full_page=True)
+        assert self.page.evaluate(INSPECT) == []
+        assert self.noise == []
+
+
+@contextlib.contextmanager
+def window(browser: Browser, size: str, scheme: str) -> Iterator[BrowserContext]:
+    """`size`: one of SIZES; scheme: dark or light."""
+    width, height = SIZES[size]
+    with browser.new_context(
+        ignore_https_errors=True,
+        viewport={"width": width, "height": height},
+        color_scheme=scheme,  # type: ignore[arg-type]
+        reduced_motion="reduce",
+    ) as context:
+        yield context
+
+
+@contextlib.contextmanager
+def visit(browser: Browser, platform: Platform, size: str = "wide", scheme: str = "light") -> Iterator[Visit]:
+    with window(browser, size, scheme) as context:
+        visit = Visit(platform, context, context.new_page())
+        listen(visit.page, visit.noise)
+        yield visit
+
+
+def listen(page: Page, noise: list[str]) -> None:
+    page.on(
+        "console",
+        lambda message: noise.append(message.text) if message.type in ("error", "warning") else None,
+    )
+    page.on("pageerror", lambda error: noise.append(str(error)))
+
+
+@contextlib.contextmanager
+def driving(visit: Visit, name: str = "Ana") -> Iterator[Page]:
+    """Tries it, and leaves the seat whatever happens."""
+    visit.try_it(name)
+    try:
+        yield visit.page
+    finally:
+        left = "() => fetch('/api/rooms/room-1/seats/arm0', { method: 'DELETE' }).then(({ ok }) => ok)"
+        assert visit.page.evaluate(left)
