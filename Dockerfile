@@ -14,11 +14,18 @@ ARG BUILD_REQUIREMENTS=""
 RUN pip install pip setuptools wheel ${BUILD_REQUIREMENTS}
 # What the part needs changes less often than the part, so it is a layer of its own.
 COPY protocol/pyproject.toml protocol/
+COPY libraries/runtime/pyproject.toml libraries/runtime/
+COPY libraries/episodes/pyproject.toml libraries/episodes/
+COPY libraries/render/pyproject.toml libraries/render/
+COPY libraries/rollouts/pyproject.toml libraries/rollouts/
+COPY libraries/operators/pyproject.toml libraries/operators/
 COPY ${PART}/pyproject.toml ${PART}/setup.p[y] ${PART}/
-RUN pip install --no-build-isolation --only-deps ./protocol ./${PART}
+ARG LIBRARIES=""
+RUN pip install --no-build-isolation --only-deps ./protocol ${LIBRARIES} ./${PART}
 COPY protocol protocol
+COPY libraries libraries
 COPY ${PART} ${PART}
-RUN pip install --no-build-isolation --no-deps ./protocol ./${PART} \
+RUN pip install --no-build-isolation --no-deps ./protocol ${LIBRARIES} ./${PART} \
  && pip uninstall -y pip setuptools wheel
 
 FROM debian:bookworm-slim

@@ -11,7 +11,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/pip --disable-pip-version-check -qq
 
 # Every part is a distribution of its own; this is the one list of them.
-DISTRIBUTIONS := protocol services/sim services/teleop-gateway services/recorder services/trainer services/web platform
+DISTRIBUTIONS := protocol libraries/runtime libraries/episodes libraries/render libraries/rollouts libraries/operators services/sim services/teleop-gateway services/recorder services/trainer services/web platform
 PARTS := $(patsubst %/pyproject.toml,%,$(wildcard $(addsuffix /pyproject.toml,$(DISTRIBUTIONS))))
 PART_SOURCES := $(addsuffix /pyproject.toml,$(PARTS)) $(wildcard services/sim/setup.py services/sim/src/mart/sim/world/*.c)
 
@@ -99,7 +99,7 @@ constraints: ## Pin the newest versions of everything anew, from a real installa
 .PHONY: clean
 clean: ## Remove everything that was built or recorded by tests; recorded episodes stay
 	@rm -rf $(VENV) test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
-	@find protocol services platform -name '*.egg-info' -prune -exec rm -rf {} + -o -name '*.so' -delete
+	@find protocol libraries services platform -name '*.egg-info' -prune -exec rm -rf {} + -o -name '*.so' -delete
 
 .PHONY: help
 help: ## List the verbs

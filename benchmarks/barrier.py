@@ -33,8 +33,6 @@ from report import Bar, report, spread
 from support.pair_of_worlds import PairOfWorlds
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Bus, Publisher
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.messages import (
     OPERATOR_SCRIPT,
     Command,
@@ -44,7 +42,10 @@ from mart.protocol.messages import (
     State,
     raise_error,
 )
-from mart.protocol.service import announced, connected
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus import Bus, Publisher
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.service import announced, connected
 from mart.sim.serving import serve_world
 from mart.sim.settings import SimSettings
 from mart.sim.world import World
@@ -104,7 +105,7 @@ def _measure(arms: int, endpoint: str, folder: Path) -> Times:
         _child(sys.executable, __file__, "echo", **environment),
         ZenohBus.connect(endpoint) as bus,
     ):
-        for kind, name in (("sim", room), ("bench", ECHO)):
+        for kind, name in ((ServiceKind.SIM, room), (ServiceKind.OPERATE, ECHO)):
             _await_alive(bus, keys.alive(kind, name))
         *early, last = (f"arm{index}" for index in range(arms))
         seats = [f"{arm}:{_seat(bus, room, arm)}" for arm in early]
@@ -115,7 +116,7 @@ def _measure(arms: int, endpoint: str, folder: Path) -> Times:
 def stream(room: str, *seats: str) -> None:
     """The operators of all `seats` ("ARM:EPOCH") but the last one's: 60 commands a second each."""
     epochs = {arm: int(epoch) for arm, _, epoch in (seat.partition(":") for seat in seats)}
-    with connected(SimSettings(), "bench", "bench-stream") as service:
+    with connected(SimSettings(), ServiceKind.OPERATE, "bench-stream") as service:
         publishers = {arm: service.bus.publisher(keys.command(room, arm)) for arm in epochs}
         for sequence in itertools.count(1):
             for arm, publisher in publishers.items():
@@ -214,7 +215,7 @@ def _seat(bus: Bus, room: str, arm: str) -> int:
 
 def echo() -> None:
     """Answers each command with as many bytes as it asks for."""
-    with connected(SimSettings(), "bench", ECHO) as service:
+    with connected(SimSettings(), ServiceKind.OPERATE, ECHO) as service:
         answer: Publisher = service.bus.publisher(keys.state(ECHO))
         subscription = service.bus.subscribe(
             keys.command(ECHO, "arm0").key,

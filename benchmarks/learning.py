@@ -19,8 +19,8 @@ import numpy as np
 from report import Bar, report
 from support.robomimic import robomimic_policy
 
-from mart.protocol.rollout import RolloutClient
 from mart.protocol.tasks import get_task
+from mart.rollouts.client import RolloutClient
 from mart.trainer.evaluate.replicas import worlds
 from mart.trainer.evaluate.rollouts import play
 from mart.trainer.evaluate.seeds import Purpose, world_seeds

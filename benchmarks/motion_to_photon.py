@@ -19,12 +19,12 @@ from report import Bar, report
 from mart.platform.browser import running_browser
 from mart.platform.crew import Crew
 from mart.platform.plan import Options
-from mart.platform.ports import free_port
 from mart.platform.supervise import Platform, running_platform
 from mart.protocol import keys
-from mart.protocol.bus.base import Sample
 from mart.protocol.codec import decode
 from mart.protocol.messages import Event
+from mart.runtime.bus.base import Sample
+from mart.runtime.ports import free_port
 
 REPORTS = 35  # one a second; the newest is of the last 100 pictures, 20 s, so that the start is left out
 SCREEN_HZ = 60.0

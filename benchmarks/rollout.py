@@ -33,11 +33,12 @@ from support.recorded import record
 from support.robosuite import Steps, robosuite
 
 from mart.protocol import keys
-from mart.protocol.bus import Bus
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.messages import RolloutRequest
-from mart.protocol.rollout import RolloutClient
 from mart.protocol.tasks import task_names
+from mart.protocol.vocabulary import ServiceKind
+from mart.rollouts.client import RolloutClient
+from mart.runtime.bus import Bus
+from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.sim.lockstep import Lockstep
 from mart.sim.world import World, osc
 
@@ -171,7 +172,7 @@ def services() -> Iterator[Bus]:
         ZenohBus.connect(ENDPOINT) as bus,
     ):
         up = threading.Event()
-        with contextlib.closing(bus.watch(keys.alive("replica", REPLICA), lambda *_: up.set())):
+        with contextlib.closing(bus.watch(keys.alive(ServiceKind.REPLICA, REPLICA), lambda *_: up.set())):
             if not up.wait(60):
                 raise SystemExit("the replica did not come up within a minute")
         yield bus

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
+
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.ports import free_port
 
 # A broken unit explains a broken session, so units run first.
 _LAST = ("system", "browser", "compose")
@@ -25,3 +29,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         return _LAST.index(folder) + 1 if folder in _LAST else 0
 
     items.sort(key=rank)
+
+
+@pytest.fixture
+def endpoint() -> Iterator[str]:
+    """A real router of the test's own."""
+    address = f"tcp/127.0.0.1:{free_port()}"
+    with ZenohBus.route(address):
+        yield address

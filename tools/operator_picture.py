@@ -9,8 +9,8 @@ from pathlib import Path
 from mart.platform.browser import open_operator_page, running_browser
 from mart.platform.crew import Crew
 from mart.platform.plan import Options
-from mart.platform.ports import free_port
 from mart.platform.supervise import running_platform
+from mart.runtime.ports import free_port
 
 PICTURE = Path(__file__).resolve().parents[1] / "docs" / "images" / "operator.png"
 ARMS = ("arm0", "arm1")

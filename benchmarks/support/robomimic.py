@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from support.peers import Peer, running
 
+from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import InvalidInput
 from mart.protocol.tasks import Task
-from mart.protocol.worlds import ACTION_SIZE
 from mart.recorder.export.robomimic import key_of
 
 Array = NDArray[np.float64]

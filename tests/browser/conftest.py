@@ -11,7 +11,7 @@ from mart.platform.browser import running_browser
 from mart.platform.opening import opening_rooms
 from mart.platform.plan import Options
 from mart.platform.supervise import Platform, running_platform
-from tests.support.processes import free_port
+from mart.runtime.ports import free_port
 
 _WAIT_MS = 30_000  # the pages share two cores with the platform behind them, and with two renderers
 

@@ -14,9 +14,9 @@ from playwright.sync_api import Browser, expect
 
 from mart.platform.supervise import Platform
 from mart.protocol import keys
-from mart.protocol.bus.base import Sample
 from mart.protocol.codec import decode
 from mart.protocol.messages import OUTCOME_SUCCESS, ArmState, Event, State
+from mart.runtime.bus.base import Sample
 from tests.browser.pages.visits import INSPECT
 from tests.browser.people import Person, Phone, person
 

@@ -14,11 +14,11 @@ from mart.platform.crew import Crew
 from mart.platform.plan import Options
 from mart.platform.session import Session
 from mart.platform.supervise import Platform
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.tasks import get_task
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.ports import free_port
 from tests.compose.stack import Stack, join_code_in
 from tests.contract.repository import ROOT
-from tests.support.processes import free_port
 
 pytestmark = pytest.mark.timeout(1200)  # the first build installs everything six times
 

@@ -8,9 +8,10 @@ from typing import Any
 import click
 import pytest
 import yaml
+from packaging.requirements import Requirement
 
-from mart.protocol.cli import cli
-from tests.contract.repository import ROOT, relative, tracked_files
+from mart.runtime.cli import cli
+from tests.contract.repository import ROOT, projects
 
 _SERVICES: dict[str, dict[str, Any]] = yaml.safe_load((ROOT / "docker-compose.yml").read_text())["services"]
 _BUILDS = {name: service["build"] for name, service in _SERVICES.items() if "build" in service}
@@ -62,6 +63,20 @@ def test_an_image_is_built_from_a_part_and_watches_the_service_that_it_runs(name
     assert set(arguments) <= set(re.findall(r"^ARG (\w+)", text, re.MULTILINE))
 
 
-def test_every_part_but_the_platform_has_an_image() -> None:
-    parts = {relative(path.parent) for path in tracked_files() if path.name == "pyproject.toml"}
-    assert {build["args"]["PART"] for build in _BUILDS.values()} == parts - {".", "platform"}
+def test_every_service_has_an_image() -> None:
+    services = {folder for folder in projects() if folder.startswith("services/")}
+    assert {build["args"]["PART"] for build in _BUILDS.values()} == services | {"libraries/runtime"}
+
+
+@pytest.mark.parametrize("name", _BUILDS)
+def test_an_image_holds_the_libraries_that_its_part_needs_and_no_others(name: str) -> None:
+    arguments = _BUILDS[name]["args"]
+    by_name = {project["name"]: folder for folder, project in projects().items()}
+
+    def needed(folder: str) -> set[str]:
+        names = {Requirement(text).name for text in projects()[folder]["dependencies"]}
+        direct = {by_name[name] for name in names & by_name.keys()}
+        return direct.union(*map(needed, direct))
+
+    libraries = needed(arguments["PART"]) - {"protocol"}
+    assert {word.removeprefix("./") for word in arguments.get("LIBRARIES", "").split()} == libraries

@@ -12,7 +12,7 @@ from pathlib import Path
 import click
 import pytest
 
-from mart.protocol.cli import cli
+from mart.runtime.cli import cli
 from tests.contract.repository import ROOT, relative, tracked_files
 
 _DOCUMENTS = [path for path in tracked_files() if path.suffix == ".md"]

@@ -5,9 +5,9 @@ import json
 import pytest
 from click.testing import CliRunner
 
-from mart.protocol.cli import cli
 from mart.protocol.errors import InvalidInput, MartError, NotFound, Unavailable
-from tests.support.processes import free_port
+from mart.runtime.cli import cli
+from mart.runtime.ports import free_port
 
 
 def failure(command: str, *arguments: str) -> MartError:

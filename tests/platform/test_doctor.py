@@ -3,8 +3,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from mart.platform.doctor import examine
-from mart.protocol.settings import Settings
-from tests.support.processes import free_port, running_router, running_service
+from mart.runtime.ports import free_port
+from mart.runtime.settings import Settings
+from tests.support.processes import running_router, running_service
 
 
 def test_without_a_router_it_says_how_to_start_one_and_looks_no_further(tmp_path: Path) -> None:

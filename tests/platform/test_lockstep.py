@@ -11,8 +11,6 @@ import pytest
 from mart.platform.lockstep import LockstepSession
 from mart.platform.session import Episode
 from mart.protocol import codec, keys
-from mart.protocol.bus import Bus, Request
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.errors import Conflict, Unavailable
 from mart.protocol.messages import (
     OUTCOME_SUCCESS,
@@ -22,6 +20,9 @@ from mart.protocol.messages import (
     RoomStatus,
     error_message,
 )
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus import Bus, Request
+from mart.runtime.bus.zenoh_bus import ZenohBus
 from tests.support.processes import running_router
 
 ROOMS = ("room-1", "room-2")
@@ -44,7 +45,10 @@ class ActedRoom:
         self._status = bus.publisher(keys.status(name))
         self._newest = newest
         self._closing = threading.Event()
-        self._opened = [bus.announce(keys.alive("sim", name)), bus.serve(keys.episode(name), self._answer)]
+        self._opened = [
+            bus.announce(keys.alive(ServiceKind.SIM, name)),
+            bus.serve(keys.episode(name), self._answer),
+        ]
         self._speaker = threading.Thread(target=self._speak)
         self._speaker.start()
 

@@ -8,8 +8,8 @@ import pytest
 from click.testing import CliRunner
 
 from mart.platform.operators import Operators, parse_operators
-from mart.protocol.cli import cli
 from mart.protocol.errors import InvalidInput
+from mart.runtime.cli import cli
 
 TASK = "three_arm_lift_wiping"
 

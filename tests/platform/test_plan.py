@@ -5,6 +5,7 @@ from pathlib import Path
 
 from mart.platform.plan import Options, environment, lockstep_processes, processes, training_processes
 from mart.platform.staff import configuration
+from mart.protocol.vocabulary import ServiceKind
 
 
 def test_the_router_comes_first_and_the_pages_last() -> None:
@@ -19,8 +20,8 @@ def test_options_reach_the_commands() -> None:
         Options(Path("data"), room="lab", task="t", control_hz=30.0, seed=7, public_host="lab.local")
     )
     words = {process.kind: " ".join(process.command) for process in plan}
-    assert words["sim"] == "sim --room lab --task t --control-hz 30 --seed 7"
-    assert words["web"] == "web --host 127.0.0.1 --port 8443 --public-host lab.local"
+    assert words[ServiceKind.SIM] == "sim --room lab --task t --control-hz 30 --seed 7"
+    assert words[ServiceKind.WEB] == "web --host 127.0.0.1 --port 8443 --public-host lab.local"
 
 
 def test_in_lockstep_there_are_rooms_and_who_saves_and_nobody_who_looks() -> None:

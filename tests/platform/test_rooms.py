@@ -5,9 +5,10 @@ import pytest
 from mart.platform.rooms import as_json, in_words, open_rooms
 from mart.protocol import keys
 from mart.protocol import messages as m
-from mart.protocol.bus.base import Closable, Handler
-from mart.protocol.bus.memory import MemoryBus, MemoryNetwork
 from mart.protocol.codec import encode
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.base import Closable, Handler
+from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
 from tests.protocol.message_examples import examples
 
 
@@ -22,7 +23,7 @@ class Answering(MemoryBus):
 
 def test_a_room_is_shown_with_its_people_and_whom_it_waits_for() -> None:
     bus = Answering(MemoryNetwork())
-    bus.announce(keys.alive("sim", "room-1"))
+    bus.announce(keys.alive(ServiceKind.SIM, "room-1"))
     (status,) = open_rooms(bus)
     assert "arm0 Ana" in in_words(status)
     assert "waiting for arm1 for 0.8 s" in in_words(status)

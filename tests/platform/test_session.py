@@ -7,9 +7,9 @@ import pytest
 from mart.platform.session import Episode, Session
 from mart.protocol import keys
 from mart.protocol import messages as m
-from mart.protocol.bus.memory import MemoryNetwork
 from mart.protocol.codec import encode
 from mart.protocol.errors import Unavailable
+from mart.runtime.bus.memory import MemoryNetwork
 
 _SECOND_NS = 1_000_000_000
 

@@ -4,6 +4,7 @@ import pytest
 
 from mart.protocol import keys
 from mart.protocol.errors import InvalidInput
+from mart.protocol.vocabulary import ServiceKind
 
 
 def test_the_keys_are_those_of_the_spec() -> None:
@@ -21,7 +22,7 @@ def test_the_keys_are_those_of_the_spec() -> None:
     assert keys.rooms("platform-1").key == "mart/@platform/platform-1/rooms"
     assert keys.catalogue("catalogue-1").key == "mart/@catalogue/catalogue-1/episodes"
     assert keys.signal("room-1", "arm0", "phone").key == "mart/room-1/signal/arm0/phone"
-    assert keys.alive("sim", "room-1") == "mart/@live/sim/room-1"
+    assert keys.alive(ServiceKind.SIM, "room-1") == "mart/@live/sim/room-1"
 
 
 def test_what_is_small_and_urgent_is_dropped_and_what_must_arrive_blocks() -> None:
@@ -36,11 +37,11 @@ def test_parts_of_keys_are_found_again() -> None:
     assert keys.room_of(keys.state("room-7").key) == "room-7"
     assert keys.arm_of(keys.command("room-7", "arm3").key) == "arm3"
     assert keys.camera_of(keys.video("room-7", "front").key) == "front"
-    assert keys.last_of(keys.alive("gateway", "gateway-1")) == "gateway-1"
+    assert keys.last_of(keys.alive(ServiceKind.GATEWAY, "gateway-1")) == "gateway-1"
 
 
 @pytest.mark.parametrize("name", ["", "a/b", "*", "**", "Room", "@live", "a b", "-a", "a" * 65, "../x", "$*"])
 def test_a_name_that_could_be_read_as_a_key_expression_is_refused(name: str) -> None:
-    for build in (keys.state, keys.commands, keys.alive_of, keys.open_seat, keys.training):
+    for build in (keys.state, keys.commands, keys.open_seat, keys.training):
         with pytest.raises(InvalidInput, match="lower-case"):
             build(name)

@@ -7,14 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mart.protocol.errors import Corrupt
-from mart.protocol.recording import (
-    CadenceRecord,
-    EpisodeRecord,
-    OperatorsRecord,
-    Shift,
-    Verdict,
-    VerificationRecord,
-)
+from mart.protocol.recording import CadenceRecord, EpisodeRecord, OperatorsRecord, Shift, VerificationRecord
+from mart.protocol.vocabulary import Verdict
 
 _words = st.text(st.characters(exclude_categories=["Cs"]), max_size=40)
 _arms = st.sampled_from(["arm0", "arm1", "arm2", "arm10"])

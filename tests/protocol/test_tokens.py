@@ -1,15 +1,13 @@
 from __future__ import annotations
 
-import stat
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import jwt
 import pytest
 
-from mart.protocol.errors import Forbidden, InvalidInput
-from mart.protocol.tokens import Role, SeatToken, load_or_create_secret, sign, verify
+from mart.protocol.errors import Forbidden
+from mart.protocol.tokens import Role, SeatToken, sign, verify
 
 SECRET = b"s" * 64
 TOKEN = SeatToken("room-1", "arm0", 7, Role.PHONE, "h1", float(int(time.time()) + 600))
@@ -50,18 +48,3 @@ def test_an_expired_token_says_so() -> None:
 def test_an_incomplete_token_is_refused() -> None:
     with pytest.raises(Forbidden):
         verify(jwt.encode({"room": "room-1", "exp": time.time() + 60}, SECRET, "HS256"), SECRET)
-
-
-def test_the_secret_is_made_once_and_readable_by_its_owner_alone(tmp_path: Path) -> None:
-    path = tmp_path / "secrets" / "seat-token"
-    secret = load_or_create_secret(path)
-    assert load_or_create_secret(path) == secret
-    assert len(secret) == 64
-    assert stat.S_IMODE(path.stat().st_mode) == 0o600
-
-
-def test_a_short_secret_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "seat-token"
-    path.write_text("abc")
-    with pytest.raises(InvalidInput, match="delete the file"):
-        load_or_create_secret(path)

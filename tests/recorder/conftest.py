@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from mart.protocol.cli import main
+from mart.runtime.cli import main
+from mart.runtime.ports import free_port
 from tests.recorder.files import write_episode
-from tests.support.processes import free_port
 
 
 class Mart:

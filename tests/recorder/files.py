@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.messages import State
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.recorder.entry import command_entry, event_entry, state_entries, video_entry

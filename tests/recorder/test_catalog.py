@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from mart.protocol.episodes import labels
-from mart.protocol.episodes.labels import Kind
+from mart.episodes import labels
+from mart.episodes.labels import Kind
 from mart.recorder import catalog
 from mart.recorder.catalog import Row, list_folder
 from tests.recorder import synthetic

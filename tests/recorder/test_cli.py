@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mart.protocol.episodes.labels import Kind, read
+from mart.episodes.labels import Kind, read
 from tests.recorder import synthetic
 from tests.recorder.conftest import Mart
 from tests.recorder.files import write_part

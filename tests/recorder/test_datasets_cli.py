@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mart.protocol.episodes import labels
+from mart.episodes import labels
 from mart.recorder.catalog import FILE_NAME
 from tests.recorder import synthetic
 from tests.recorder.conftest import Mart

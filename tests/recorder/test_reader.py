@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.writer import Writer
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import recording
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, NotFound
 from tests.recorder.files import write_episode
 

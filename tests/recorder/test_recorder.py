@@ -10,17 +10,18 @@ from pathlib import Path
 
 import pytest
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import clock, codec, keys, recording
-from mart.protocol.bus import Sample
-from mart.protocol.bus.memory import MemoryBus, MemoryNetwork
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import InvalidInput
 from mart.protocol.keys import Topic
 from mart.protocol.messages import Event, State
+from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.capture import Capture, Inbox
 from mart.recorder.catalog import FILE_NAME
 from mart.recorder.recorder import Recorder
 from mart.recorder.verify import replica, verify
+from mart.runtime.bus import Sample
+from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
 from tests.recorder import synthetic
 from tests.recorder.files import write_part
 
@@ -40,7 +41,7 @@ class Session:
         self.bus.serve(
             keys.model(synthetic.ROOM), lambda request: request.reply(codec.encode(synthetic.MODEL))
         )
-        self.bus.announce(keys.alive("replica", "replica-1"))
+        self.bus.announce(keys.alive(ServiceKind.REPLICA, "replica-1"))
         self.bus.serve(
             keys.rollout("replica-1"), lambda request: request.reply(synthetic.rollout_reply(request.payload))
         )

@@ -13,10 +13,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mcap.opcode import Opcode
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec, recording
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Unavailable
-from mart.protocol.recording import Verdict
+from mart.protocol.vocabulary import Verdict
 from mart.recorder.entry import video_entry
 from mart.recorder.repair import Repaired, repair_all
 from mart.recorder.salvage import Found, Salvage

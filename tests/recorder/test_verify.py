@@ -8,14 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.bus.memory import MemoryNetwork
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt
 from mart.protocol.keys import alive, rollout
 from mart.protocol.messages import Error, RolloutReply, RolloutRequest, State
-from mart.protocol.recording import RoomRecord, Verdict, VerificationRecord
+from mart.protocol.recording import RoomRecord, VerificationRecord
+from mart.protocol.vocabulary import ServiceKind, Verdict
 from mart.recorder.verify import compare, replica, stretches, verify
+from mart.runtime.bus.memory import MemoryNetwork
 from tests.recorder import synthetic
 from tests.recorder.files import write_part
 
@@ -109,7 +110,7 @@ def test_a_replica_is_asked_over_the_bus(tmp_path: Path) -> None:
     server.serve(
         rollout("replica-1"), lambda request: request.reply(synthetic.rollout_reply(request.payload))
     )
-    server.announce(alive("replica", "replica-1"))
+    server.announce(alive(ServiceKind.REPLICA, "replica-1"))
     said = verify(recorded(tmp_path, synthetic.states(30)), _ROOM, replica(network.connect(), "replica-1"))
     assert said.verdict is Verdict.VERIFIED
 
@@ -126,7 +127,7 @@ def test_what_a_replica_refuses_is_said(tmp_path: Path) -> None:
     server = network.connect()
     refusal = codec.encode(RolloutReply(error=Error(code="Conflict", message="Another model is compiled.")))
     server.serve(rollout("replica-1"), lambda request: request.reply(refusal))
-    server.announce(alive("replica", "replica-1"))
+    server.announce(alive(ServiceKind.REPLICA, "replica-1"))
     said = verify(recorded(tmp_path, synthetic.states(3)), _ROOM, replica(network.connect(), "replica-1"))
     assert (said.verdict, said.detail) == (Verdict.UNVERIFIED, "Another model is compiled.")
 

@@ -7,8 +7,8 @@ from collections import Counter
 import pytest
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.memory import MemoryNetwork
 from mart.protocol.messages import Model
+from mart.runtime.bus.memory import MemoryNetwork
 from mart.sim.doorway import Doorway
 from mart.sim.world import World
 from tests.sim.stage import Stage

@@ -13,10 +13,10 @@ from click.testing import CliRunner
 from mcap.writer import Writer
 
 from mart.protocol import codec
-from mart.protocol.cli import cli
 from mart.protocol.errors import Corrupt, InvalidInput, MartError, NotFound
 from mart.protocol.messages import State
 from mart.protocol.recording import MODEL_ATTACHMENT, PROFILE, STATE, RoomRecord
+from mart.runtime.cli import cli
 from mart.sim import film
 from mart.sim.world import World
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from mart.protocol.batch_state import Worlds, unpack
 from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest
 from mart.protocol.tasks import get_task
-from mart.protocol.worlds import Worlds, unpack
 from mart.sim.lockstep import IDLE_S, MAX_SESSIONS, MAX_WORLDS, Lockstep
 from mart.sim.world import World
 

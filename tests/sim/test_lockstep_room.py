@@ -9,8 +9,6 @@ from functools import partial
 import pytest
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus.base import Handler
-from mart.protocol.bus.memory import MemoryBus, MemoryNetwork
 from mart.protocol.messages import (
     OPERATOR_SCRIPT,
     OUTCOME_FAILURE,
@@ -20,6 +18,8 @@ from mart.protocol.messages import (
     Event,
     State,
 )
+from mart.runtime.bus.base import Handler
+from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
 from mart.sim.episode import COUNTDOWN_S, ENDED_S, Terms
 from mart.sim.experts import get_skill
 from mart.sim.lockstep_room import LockstepRoom, OrderedVoice, SimulatedTime

@@ -1,14 +1,9 @@
-"""Work that waits, and the log that cannot be flooded."""
+"""Work that waits for whoever may do it."""
 
 from __future__ import annotations
 
-import logging
 import threading
-from collections import Counter
 
-import pytest
-
-from mart.protocol.complaints import Complaints
 from mart.sim.mailbox import Mailbox
 
 
@@ -60,20 +55,3 @@ def test_a_flood_is_bounded() -> None:
         mailbox.put(lambda: done.append(1))
     mailbox.work(timeout_s=0.0)
     assert 0 < len(done) <= 2000
-
-
-def test_a_flood_makes_one_line_a_second(caplog: pytest.LogCaptureFixture) -> None:
-    complaints, counted = Complaints(), Counter[str]()
-    with caplog.at_level(logging.WARNING):
-        for tenth in range(21):
-            counted["old sequence"] += 5
-            complaints.say(counted, now_s=100.0 + 0.1 * tenth)
-    assert len(caplog.messages) == 3
-    assert caplog.messages[1] == "Not used: 50 x old sequence"
-
-
-def test_silence_is_not_reported(caplog: pytest.LogCaptureFixture) -> None:
-    complaints = Complaints()
-    with caplog.at_level(logging.WARNING):
-        complaints.say(Counter(), now_s=100.0)
-    assert caplog.messages == []

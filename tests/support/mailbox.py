@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 from google.protobuf.message import Message
 
 from mart.protocol import clock, codec
-from mart.protocol.bus.base import Bus, Sample
+from mart.runtime.bus.base import Bus, Sample
 
 M = TypeVar("M", bound=Message)
 

@@ -14,7 +14,6 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -24,8 +23,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mart.protocol import clock, keys
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.errors import Unavailable
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.ports import free_port
 
 _START_TIMEOUT_S = 60.0
 _STOP_TIMEOUT_S = 30.0
@@ -78,14 +79,6 @@ class Running:
         self.process.wait()
 
 
-def free_port() -> int:
-    """A TCP port on the loopback that nobody listens at now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
-
-
 @contextlib.contextmanager
 def running_router(port: int | None = None) -> Iterator[str]:
     """A router of its own; yields its endpoint."""
@@ -110,7 +103,7 @@ def running_service(
     Raises DidNotStart, with the process's output, where it ends or stays silent for `timeout_s`.
     """
     with started(command, endpoint, data_dir, environment) as running:
-        _await_token(running, command, endpoint, keys.alive(kind, id), timeout_s)
+        _await_token(running, command, endpoint, keys.alive(ServiceKind(kind), id), timeout_s)
         yield running
 
 

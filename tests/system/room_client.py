@@ -7,7 +7,6 @@ from types import TracebackType
 from typing import Self
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.messages import (
     OPERATOR_HUMAN,
     Command,
@@ -22,6 +21,7 @@ from mart.protocol.messages import (
     SeatRequest,
     State,
 )
+from mart.runtime.bus.zenoh_bus import ZenohBus
 from tests.support.mailbox import Mailbox, NothingCame
 
 _TIMEOUT_S = 30.0

@@ -20,11 +20,12 @@ from mart.platform.crew import Crew, Person
 from mart.platform.plan import Options
 from mart.platform.supervise import Platform, running_platform
 from mart.protocol import clock, keys
-from mart.protocol.bus.base import Sample
 from mart.protocol.codec import decode
 from mart.protocol.messages import OPERATOR_HUMAN, Event, State
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.base import Sample
+from mart.runtime.ports import free_port
 from tests.support.crashing import frozen_service, kill_seat_process, kill_service
-from tests.support.processes import free_port
 
 ARMS = ("arm0", "arm1")
 TICKS_PER_S = 20
@@ -134,7 +135,9 @@ def test_kill_9_of_the_recorder(platform: Platform, people: list[Person], witnes
     before = two_seconds_into_an_episode(platform, people, witness)
     gone = threading.Event()
     with contextlib.closing(
-        platform.bus.watch(keys.alive_of("recorder"), lambda _key, alive: None if alive else gone.set())
+        platform.bus.watch(
+            keys.alive_of(ServiceKind.RECORDER), lambda _key, alive: None if alive else gone.set()
+        )
     ):
         kill_service(platform, "recorder")
         assert gone.wait(TOLD_WITHIN_S)

@@ -28,13 +28,15 @@ from mart.protocol.messages import (
     State,
 )
 from mart.protocol.tasks import get_task
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.ports import free_port
 from mart.sim.world import World
 from mart.trainer.request import TrainRequest
 from mart.trainer.runs import RunDirectory
 from mart.trainer.service.promotion import Origin, promote
 from mart.trainer.train import train
 from tests.support.mailbox import Mailbox
-from tests.support.processes import free_port, started
+from tests.support.processes import started
 from tests.trainer import recorded
 
 ROOM, MINE, OTHER = "room-1", "arm0", "arm1"
@@ -64,7 +66,7 @@ def platform(checkpoint: Path, tmp_path_factory: pytest.TempPathFactory) -> Iter
     data_dir = tmp_path_factory.mktemp("platform")
     promote(data_dir / "policies", "lifter", checkpoint, Origin(job="", evaluation=None), clock.wall_ns())
     options = Options(data_dir, router=f"tcp/127.0.0.1:{free_port()}", port=free_port(), seed=3)
-    policies = Process(("policies",), "policies", "policies")
+    policies = Process(("policies",), ServiceKind.POLICIES, "policies")
     with running_platform(options, (*processes(options), policies)) as running:
         yield running
 

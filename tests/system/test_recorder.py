@@ -10,10 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import clock, codec, keys, recording
-from mart.protocol.bus import Bus, Sample
-from mart.protocol.bus.zenoh_bus import ZenohBus
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Conflict
 from mart.protocol.messages import (
     OPERATOR_SCRIPT,
@@ -24,12 +22,15 @@ from mart.protocol.messages import (
     State,
     raise_error,
 )
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus import Bus, Sample
+from mart.runtime.bus.zenoh_bus import ZenohBus
 from tests.recorder import synthetic
 from tests.support.processes import Running, running_router, running_service, started
 
 _PATIENCE_S = 60.0
 _ROOM = synthetic.ROOM
-_ALIVE = keys.alive("recorder", "recorder-1")
+_ALIVE = keys.alive(ServiceKind.RECORDER, "recorder-1")
 
 
 class Ear:

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
-from mart.protocol.rollout import RolloutClient
 from mart.protocol.tasks import get_task, task_names
+from mart.rollouts.client import RolloutClient
+from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.sim.world import World, WorldBatch
 from tests.support.processes import Running, running_router, running_service
 

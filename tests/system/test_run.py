@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.messages import RoomsRequest, RoomStatus
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.ports import free_port
 from tests.support.mailbox import Mailbox
-from tests.support.processes import free_port
 
 _MART = str(Path(sys.executable).with_name("mart"))
 

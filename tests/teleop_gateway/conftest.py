@@ -8,10 +8,10 @@ from collections.abc import Iterator
 import mujoco
 import pytest
 
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.messages import Model
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.ports import free_port
 from mart.sim.world.world import World
-from tests.support.processes import free_port
 from tests.teleop_gateway.room import Body, OnSeat, running_seat
 
 CONTROL_HZ = 20.0

@@ -11,8 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus.aio import AsyncBus
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.messages import (
     BARRIER_PHASE_RUNNING,
     OPERATOR_HUMAN,
@@ -33,6 +31,8 @@ from mart.protocol.messages import (
     Seat as SeatMessage,
 )
 from mart.protocol.tokens import Role, SeatToken, sign
+from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.sim.world.world import World
 from mart.teleop_gateway.assignment import Assignment
 from mart.teleop_gateway.seat import Seat

@@ -11,12 +11,8 @@ from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from mart.protocol import clock, codec, keys, tokens
-from mart.protocol.bus.aio import AsyncBus
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import (
     OPERATOR_HUMAN,
@@ -31,9 +27,11 @@ from mart.protocol.messages import (
     raise_error,
 )
 from mart.protocol.tokens import Role, SeatToken
-from mart.teleop_gateway.assignment import Assignment
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.secret_file import load_or_create_secret
 from mart.teleop_gateway.emulator import EmulatedPhone
-from mart.teleop_gateway.gateway import owner
 from mart.teleop_gateway.link import LinkProfile
 from tests.support.mailbox import Mailbox
 from tests.support.processes import Running, running_router, running_service
@@ -47,7 +45,7 @@ class Platform:
 
     def __init__(self, endpoint: str, gateway: Running, data_dir: Path) -> None:
         self.endpoint, self.gateway = endpoint, gateway
-        self._secret = tokens.load_or_create_secret(data_dir / "secrets" / "seat-token")
+        self._secret = load_or_create_secret(data_dir / "secrets" / "seat-token")
 
     @contextlib.asynccontextmanager
     async def bus(self) -> AsyncIterator[AsyncBus]:
@@ -216,7 +214,7 @@ def test_processes_end_with_the_seat_and_with_the_gateway(platform: Platform) ->
             if seen[:2] == [True, False]:
                 gone.set()
 
-        with contextlib.closing(bus.watch(keys.alive("seat", f"{ROOM}-arm0"), on_token)):
+        with contextlib.closing(bus.watch(keys.alive(ServiceKind.SEAT, f"{ROOM}-arm0"), on_token)):
             await platform.claim(bus)
             await platform.open(bus)
             await platform.release(bus)
@@ -239,17 +237,8 @@ def test_seat_processes_do_not_outlive_a_killed_gateway(platform: Platform) -> N
             if not alive:
                 ended.set()
 
-        with contextlib.closing(bus.watch(keys.alive("seat", f"{ROOM}-arm0"), on_token)):
+        with contextlib.closing(bus.watch(keys.alive(ServiceKind.SEAT, f"{ROOM}-arm0"), on_token)):
             platform.gateway.kill()
             await asyncio.wait_for(ended.wait(), 5)
 
     on_platform(platform, body)
-
-
-@given(st.sets(st.sampled_from([f"gateway-{i}" for i in range(6)]), min_size=2), st.integers(0, 3))
-def test_gateways_agree_and_move_only_the_seats_of_one_that_is_gone(names: set[str], arm: int) -> None:
-    seat = Assignment(ROOM, f"arm{arm}")
-    chosen = owner(frozenset(names), seat)
-    assert chosen in names
-    for gone in names - {chosen}:
-        assert owner(frozenset(names - {gone}), seat) == chosen

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.messages import (
     OPERATOR_SCRIPT,
     OUTCOME_SUCCESS,
@@ -22,7 +22,8 @@ from mart.protocol.messages import (
     TickStamps,
     pose_message,
 )
-from mart.protocol.recording import RoomRecord, Verdict, VerificationRecord
+from mart.protocol.recording import RoomRecord, VerificationRecord
+from mart.protocol.vocabulary import Verdict
 from mart.recorder.entry import event_entry, state_entries
 from mart.recorder.episode import Episode, RoomFacts
 from mart.recorder.save import part_path, save

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mart.protocol.episodes.labels import Kind, Label, append
+from mart.episodes.labels import Kind, Label, append
 from mart.trainer.service.choices import data_sets
 
 CUBES, TRAY = "two_arm_multi_cube_lifting", "two_arm_drink_tray_lifting"

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from mart.protocol.episodes import labels
+from mart.episodes import labels
 from mart.protocol.errors import Conflict, InvalidInput, MartError
 from mart.trainer.cli import train
 from mart.trainer.policies import load_policy

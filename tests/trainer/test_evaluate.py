@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import InvalidInput, NotFound, Unavailable
 from mart.protocol.messages import State
 from mart.protocol.recording import STATE
-from mart.protocol.rollout import RolloutClient
 from mart.protocol.tasks import get_task
+from mart.rollouts.client import RolloutClient
 from mart.trainer.evaluate import result
 from mart.trainer.evaluate.camera import Camera
 from mart.trainer.evaluate.cli import evaluate

@@ -15,9 +15,8 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
+from mart.episodes import labels
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus.zenoh_bus import ZenohBus
-from mart.protocol.episodes import labels
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
 from mart.protocol.messages import (
     JOB_STATE_CANCELLED,
@@ -31,6 +30,7 @@ from mart.protocol.messages import (
     TrainerRequest,
     raise_error,
 )
+from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.trainer.service.cli import show, submit, wait
 from tests.support.processes import Running, running_router, running_service, started
 from tests.trainer.conftest import Recorded

@@ -11,13 +11,14 @@ import pytest
 from ray.cluster_utils import Cluster
 
 from mart.protocol import clock
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import JOB_STATE_CANCELLED, JOB_STATE_DONE, JOB_STATE_QUEUED, JOB_STATE_RUNNING
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.ports import free_port
 from mart.trainer.jobs.executors.ray import RayExecutor
 from mart.trainer.jobs.order import LOG
 from mart.trainer.runs import RunDirectory
-from tests.support.processes import free_port, running_router
+from tests.support.processes import running_router
 from tests.trainer.conftest import Recorded
 from tests.trainer.test_jobs import Client, trainer, watched, worker_of
 

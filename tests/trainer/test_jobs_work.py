@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from mart.protocol import clock
+from mart.runtime.ports import free_port
 from mart.trainer.jobs.job import End, Judging
 from mart.trainer.jobs.order import WorkOrder, why_ended
 from mart.trainer.jobs.work import work
 from mart.trainer.policies import load_policy
 from mart.trainer.request import TrainRequest
 from mart.trainer.runs import RunDirectory
-from tests.support.processes import free_port
 from tests.trainer.conftest import Recorded
 from tests.trainer.recorded import TASK
 

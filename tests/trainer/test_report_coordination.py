@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mart.protocol.episodes import labels
+from mart.episodes import labels
 from mart.protocol.errors import NotFound
 from mart.protocol.tasks import Subtask, Task, get_task
 from mart.trainer.report import paper

@@ -11,8 +11,8 @@ from pathlib import Path
 import httpx
 import pytest
 
-from mart.protocol.bus.aio import AsyncBus
-from mart.protocol.bus.memory import MemoryBus, MemoryNetwork
+from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
 from mart.web.app import create_app
 from mart.web.certificate import ensure_certificate
 from mart.web.people import People

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus.base import Bus, Request
 from mart.protocol.errors import MartError
 from mart.protocol.messages import (
     BARRIER_PHASE_RUNNING,
@@ -18,6 +17,8 @@ from mart.protocol.messages import (
     error_message,
 )
 from mart.protocol.tasks import get_task
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.base import Bus, Request
 from mart.sim.episode import EpisodeCourse
 from mart.sim.seats import SeatHolder, SeatTable
 
@@ -39,7 +40,7 @@ class Room:
             self._statuses = opened.enter_context(contextlib.closing(bus.publisher(keys.status(name))))
             opened.enter_context(contextlib.closing(bus.serve(keys.seat(name), self._on_seat)))
             opened.enter_context(contextlib.closing(bus.serve(keys.episode(name), self._on_episode)))
-            opened.enter_context(contextlib.closing(bus.announce(keys.alive("sim", name))))
+            opened.enter_context(contextlib.closing(bus.announce(keys.alive(ServiceKind.SIM, name))))
             self._opened = opened.pop_all()
         self.publish()
 

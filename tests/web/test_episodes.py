@@ -10,12 +10,13 @@ from pathlib import Path
 import pytest
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.base import Request
-from mart.protocol.bus.memory import MemoryBus
 from mart.protocol.messages import CatalogueReply, CatalogueRequest
+from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.browse import answers as browse
 from mart.recorder.browse.answers import Answers
 from mart.recorder.browse.serve import answer
+from mart.runtime.bus.base import Request
+from mart.runtime.bus.memory import MemoryBus
 from mart.web.site import Site
 from tests.recorder import synthetic
 from tests.recorder.files import write_episode
@@ -38,7 +39,7 @@ def root(site: Site, bus: MemoryBus, tmp_path: Path) -> Iterator[Path]:
 
     with (
         contextlib.closing(bus.serve(keys.catalogue("catalogue-1"), take)),
-        contextlib.closing(bus.announce(keys.alive("catalogue", "catalogue-1"))),
+        contextlib.closing(bus.announce(keys.alive(ServiceKind.CATALOGUE, "catalogue-1"))),
     ):
         yield tmp_path
 

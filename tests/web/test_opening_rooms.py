@@ -7,10 +7,11 @@ from collections.abc import Iterator
 import pytest
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.base import Request
-from mart.protocol.bus.memory import MemoryBus
 from mart.protocol.errors import Conflict
 from mart.protocol.messages import RoomReply, RoomsRequest, RoomStatus, error_message
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.base import Request
+from mart.runtime.bus.memory import MemoryBus
 from mart.web.site import Site
 from tests.web.conftest import Enter
 
@@ -31,7 +32,7 @@ def asked(site: Site, bus: MemoryBus) -> Iterator[list[RoomsRequest]]:
 
     with (
         contextlib.closing(bus.serve(keys.rooms("platform-1"), answer)),
-        contextlib.closing(bus.announce(keys.alive("platform", "platform-1"))),
+        contextlib.closing(bus.announce(keys.alive(ServiceKind.PLATFORM, "platform-1"))),
     ):
         yield requests
 

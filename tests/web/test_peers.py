@@ -7,11 +7,12 @@ from typing import Any
 import pytest
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.base import Request
-from mart.protocol.bus.memory import MemoryBus
 from mart.protocol.errors import Conflict
 from mart.protocol.messages import Answer, Offer, OpenSeat, OpenSeatReply, error_message
 from mart.protocol.tokens import Role, SeatToken, sign, verify
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.base import Request
+from mart.runtime.bus.memory import MemoryBus
 from mart.web.site import Site
 from tests.web.conftest import Client, Enter
 from tests.web.room import Room
@@ -29,7 +30,7 @@ class Gateway:
         self.opened: list[OpenSeat] = []
         self.offers: list[Offer] = []
         self.refusal: Conflict | None = None
-        bus.announce(keys.alive("gateway", "gateway-1"))
+        bus.announce(keys.alive(ServiceKind.GATEWAY, "gateway-1"))
         bus.serve(keys.open_seat("gateway-1"), self._open)
         for role in roles:
             bus.serve(keys.signal("room-1", "arm0", role), self._answer)

@@ -5,8 +5,9 @@ import asyncio
 import pytest
 
 from mart.protocol import keys
-from mart.protocol.bus.memory import MemoryBus
 from mart.protocol.messages import EPISODE_PHASE_COUNTDOWN, OPERATOR_SCRIPT
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.memory import MemoryBus
 from mart.web.site import Site
 from tests.web.conftest import Enter
 from tests.web.room import Room
@@ -182,7 +183,9 @@ async def test_garbage_on_the_bus_disturbs_nobody(enter: Enter, room: Room, bus:
 async def test_health_names_who_is_alive(enter: Enter, room: Room, bus: MemoryBus) -> None:
     stranger = await enter()
     assert (await stranger.get("/api/health")).json() == {"ok": False, "services": {"sim": ["room-1"]}}
-    tokens = [bus.announce(keys.alive(kind, f"{kind}-1")) for kind in ("gateway", "recorder")]
+    tokens = [
+        bus.announce(keys.alive(kind, f"{kind}-1")) for kind in (ServiceKind.GATEWAY, ServiceKind.RECORDER)
+    ]
     await asyncio.sleep(0)
     assert (await stranger.get("/api/health")).json()["ok"]
     tokens[0].close()

@@ -15,9 +15,10 @@ import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.messages import Event
-from tests.support.processes import Running, free_port, running_router, running_service, started
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.ports import free_port
+from tests.support.processes import Running, running_router, running_service, started
 from tests.web.room import Room
 
 

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.memory import MemoryBus
 from mart.protocol.errors import InvalidInput, NotFound
+from mart.runtime.bus.memory import MemoryBus
 from mart.web.stills import FRESH_S, MAX_BYTES, Stills
 from tests.web.conftest import Enter
 from tests.web.room import Room

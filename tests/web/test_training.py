@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from mart.protocol.bus.memory import MemoryBus
+from mart.runtime.bus.memory import MemoryBus
 from mart.web.site import Site
 from tests.web.conftest import Enter
 from tests.web.trainer import VIDEO, Trainer

@@ -6,7 +6,6 @@ import contextlib
 import math
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.base import Bus, Request
 from mart.protocol.errors import Conflict, MartError, NotFound
 from mart.protocol.messages import (
     JOB_STATE_CANCELLED,
@@ -28,6 +27,8 @@ from mart.protocol.messages import (
     error_message,
 )
 from mart.protocol.messages import Policy as PromotedPolicy
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.base import Bus, Request
 
 TASK = "two_arm_multi_cube_lifting"
 OTHER_TASK = "two_arm_drink_tray_lifting"
@@ -56,7 +57,9 @@ class Trainer:
         self.rendered = False
         with contextlib.ExitStack() as opened:
             opened.enter_context(contextlib.closing(bus.serve(keys.training("trainer-1"), self._on_request)))
-            opened.enter_context(contextlib.closing(bus.announce(keys.alive("trainer", "trainer-1"))))
+            opened.enter_context(
+                contextlib.closing(bus.announce(keys.alive(ServiceKind.TRAINER, "trainer-1")))
+            )
             self._opened = opened.pop_all()
 
     def close(self) -> None:

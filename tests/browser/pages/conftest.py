@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser
 
-from tests.support.processes import free_port, running_router, running_service
+from mart.runtime.ports import free_port
+from tests.support.processes import running_router, running_service
 
 Run = Callable[..., Any]
 

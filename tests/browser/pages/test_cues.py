@@ -7,9 +7,9 @@ import re
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from mart.episodes.reader import EpisodeFile
 from mart.platform.supervise import Platform
 from mart.protocol import codec
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.messages import CUE_GO, CUE_WAIT, Event
 from tests.browser.pages.visits import Visit, driving, visit
 

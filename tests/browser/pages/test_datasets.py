@@ -12,12 +12,13 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from mart.protocol.episodes import labels
-from mart.protocol.episodes.labels import Kind
+from mart.episodes import labels
+from mart.episodes.labels import Kind
+from mart.runtime.ports import free_port
 from tests.browser.pages.joined import joined
 from tests.browser.pages.visits import INSPECT, LOOKS, SCREENSHOTS
 from tests.recorder.files import write_episode
-from tests.support.processes import free_port, running_router, running_service
+from tests.support.processes import running_router, running_service
 
 EPISODES = 6
 

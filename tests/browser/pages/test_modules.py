@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import mart.web
-from mart.protocol.episodes.labels import Kind, Label
+from mart.episodes.labels import Kind, Label
 from mart.protocol.tasks import get_task
 from tests.browser.pages.conftest import Run
 

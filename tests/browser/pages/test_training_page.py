@@ -12,11 +12,12 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.messages import OPERATOR_POLICY
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.ports import free_port
 from tests.browser.pages.joined import joined
 from tests.browser.pages.visits import INSPECT, LOOKS
-from tests.support.processes import free_port, running_router, running_service
+from tests.support.processes import running_router, running_service
 from tests.web.room import Room
 from tests.web.trainer import OTHER_TASK, TASK, Trainer
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from mart.protocol.episodes import labels
+from mart.episodes import labels
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest
 from mart.recorder.browse import answers

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from mart.protocol.episodes.reader import EpisodeFile
+from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Conflict, InvalidInput
 from mart.protocol.tasks import get_task
 from mart.recorder.cli import export

@@ -11,12 +11,12 @@ import h5py
 import numpy as np
 import pytest
 
-from mart.protocol.episodes.labels import Kind, say
-from mart.protocol.episodes.reader import EpisodeFile
+from mart.episodes.labels import Kind, say
+from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput
 from mart.protocol.messages import OUTCOME_FAILURE, State
-from mart.protocol.recording import Verdict
 from mart.protocol.tasks import get_task
+from mart.protocol.vocabulary import Verdict
 from mart.recorder.cli import export
 from mart.recorder.export.choice import choose
 from mart.recorder.export.robomimic import key_of, write_robomimic

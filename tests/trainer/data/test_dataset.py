@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mart.protocol.episodes import labels
+from mart.episodes import labels
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_SCRIPT, OUTCOME_FAILURE, Operator, State
-from mart.protocol.recording import Verdict
+from mart.protocol.vocabulary import Verdict
 from mart.trainer.data.dataset import Dataset, load_dataset
 from mart.trainer.data.episode import from_states
 from mart.trainer.request import Selection

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from mart.protocol.episodes import labels
-from mart.protocol.episodes.labels import Kind
+from mart.episodes import labels
+from mart.episodes.labels import Kind
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import OUTCOME_FAILURE
-from mart.protocol.recording import Verdict
+from mart.protocol.vocabulary import Verdict
 from mart.trainer.data.dataset import load_dataset
 from mart.trainer.data.named import WHOLE, NamedData, find_dataset
 from tests.trainer import recorded

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.memory import MemoryBus, MemoryNetwork
 from mart.protocol.errors import NotFound
 from mart.protocol.messages import (
     OPERATOR_HOLD,
@@ -25,6 +24,7 @@ from mart.protocol.messages import (
     pose_message,
 )
 from mart.protocol.pose import Pose
+from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
 from mart.sim.seats import SeatTable
 from mart.trainer.operate.crews import Crews
 from mart.trainer.operate.service import OwnSeats

@@ -12,7 +12,8 @@ import click
 
 from mart.platform.plan import DEFAULT_TASK
 from mart.protocol import clock
-from mart.protocol.cli import cli, json_option, print_result
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
+from mart.runtime.cli import cli, json_option, print_result
 
 if TYPE_CHECKING:
     from mart.platform.collection import Order
@@ -20,12 +21,19 @@ if TYPE_CHECKING:
 
 _SKILLS = click.Choice(["expert", "average", "novice"])
 _TIME_LIMIT = click.FloatRange(0.0, 3600.0, min_open=True)
+_CONTROL_HZ_OPTION = click.option(
+    "--control-hz",
+    type=click.FloatRange(MIN_CONTROL_HZ, MAX_CONTROL_HZ),
+    default=DEFAULT_CONTROL_HZ,
+    show_default=True,
+    help="Ticks a second, at most.",
+)
 
 
 @click.command()
 @click.option("--task", default=DEFAULT_TASK, show_default=True, help="Name of the task.")
 @click.option("--room", default="room-1", show_default=True, help="Id of the room.")
-@click.option("--control-hz", default=20.0, show_default=True, help="Ticks a second, at most.")
+@_CONTROL_HZ_OPTION
 @click.option(
     "--episodes",
     type=click.IntRange(1, 10_000),
@@ -54,9 +62,9 @@ def run(
     from mart.platform.opening import opening_rooms
     from mart.platform.plan import Options, processes, training_processes
     from mart.platform.supervise import running_platform
-    from mart.protocol.service import stop_requested
-    from mart.protocol.settings import Settings
     from mart.protocol.tasks import get_task
+    from mart.runtime.service import stop_requested
+    from mart.runtime.settings import Settings
 
     get_task(task)
     settings = Settings()
@@ -78,7 +86,7 @@ def run(
 @click.option("--task", default=DEFAULT_TASK, show_default=True, help="Name of the task.")
 @click.option("--episodes", default=3, show_default=True, type=click.IntRange(1, 1000))
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0))
-@click.option("--control-hz", default=20.0, show_default=True, help="Ticks a second, at most.")
+@_CONTROL_HZ_OPTION
 @click.option("--out", default=Path("data/demo"), show_default=True, type=click.Path(path_type=Path))
 @json_option
 def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, as_json: bool) -> None:
@@ -107,7 +115,7 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
 @click.option(
     "--time-limit", type=_TIME_LIMIT, help="Of an episode, seconds simulated.  [default: the task's trial]"
 )
-@click.option("--control-hz", default=20.0, show_default=True, help="Ticks a second, at most.")
+@_CONTROL_HZ_OPTION
 @click.option("--lockstep", is_flag=True, help="As fast as the machine allows, without phones and video.")
 @click.option("--out", default=Path("data/collected"), show_default=True, type=click.Path(path_type=Path))
 @json_option
@@ -143,8 +151,8 @@ def collect(
 def rooms(as_json: bool) -> None:
     """Show what is open, who sits where, the real-time factor, and who is being waited for."""
     from mart.platform import rooms as view
-    from mart.protocol.bus.zenoh_bus import ZenohBus
-    from mart.protocol.settings import Settings
+    from mart.runtime.bus.zenoh_bus import ZenohBus
+    from mart.runtime.settings import Settings
 
     with ZenohBus.connect(Settings().router, wait_for_router=False) as bus:
         found = view.open_rooms(bus)
@@ -157,7 +165,7 @@ def rooms(as_json: bool) -> None:
 def doctor(as_json: bool) -> None:
     """Name what is missing or unreachable, layer by layer, and the mend."""
     from mart.platform.doctor import examine
-    from mart.protocol.settings import Settings
+    from mart.runtime.settings import Settings
 
     findings = list(examine(Settings()))
     lines = [

@@ -13,11 +13,11 @@ from mart.platform.crew import Crew
 from mart.platform.lockstep import LockstepSession
 from mart.platform.operators import Operators
 from mart.platform.plan import Options, lockstep_processes
-from mart.platform.ports import free_port
 from mart.platform.session import Episode, Session
 from mart.platform.supervise import running_platform
 from mart.protocol.errors import InvalidInput
 from mart.protocol.tasks import get_task
+from mart.runtime.ports import free_port
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mart.operators.room_watch import RoomWatch
 from mart.platform.browser import open_operator_page
 from mart.platform.plan import environment
 from mart.platform.supervise import Platform
@@ -22,7 +23,6 @@ from mart.platform.visitor import Visitor
 from mart.protocol import clock
 from mart.protocol.errors import Forbidden, Unavailable
 from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
-from mart.protocol.room_watch import RoomWatch
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser

@@ -13,10 +13,10 @@ from typing import Any
 from mart.platform.browser import chromium_path
 from mart.platform.rooms import open_rooms
 from mart.protocol import keys
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import barrier_word
-from mart.protocol.settings import Settings
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.settings import Settings
 
 _NEEDED_KINDS = ("sim", "replica", "experts", "gateway", "recorder", "catalogue", "web")
 _LEAST_FREE_BYTES = 2 * 1024**3

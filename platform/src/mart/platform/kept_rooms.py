@@ -9,7 +9,7 @@ from google.protobuf.json_format import MessageToJson, Parse, ParseError
 
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import RoomsRequest
-from mart.protocol.private_file import write_private
+from mart.runtime.atomic_file import write_atomically
 
 
 def load(path: Path) -> list[RoomsRequest.Open]:
@@ -28,4 +28,4 @@ def load(path: Path) -> list[RoomsRequest.Open]:
 
 def save(path: Path, rooms: Iterable[RoomsRequest.Open]) -> None:
     lines = (MessageToJson(room, indent=None, preserving_proto_field_name=True) for room in rooms)
-    write_private(path, "".join(f"{line}\n" for line in lines).encode())
+    write_atomically(path, "".join(f"{line}\n" for line in lines).encode())

@@ -15,9 +15,9 @@ from collections.abc import Iterator, Sequence
 from mart.platform.rooms import open_rooms
 from mart.platform.session import Episode, episode_of
 from mart.protocol import codec, keys
-from mart.protocol.bus.base import Bus, Sample
 from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import EpisodeRequest, Event, RoomReply, raise_error
+from mart.runtime.bus.base import Bus, Sample
 
 _UNSAVED_A_ROOM = 2  # one that is being made, one that is being verified
 _OF_AN_EPISODE = {"episode_started", "episode_ended", "episode_saved"}

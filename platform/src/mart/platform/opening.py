@@ -14,7 +14,7 @@ from mart.platform.plan import Options, room
 from mart.platform.staff import Staff
 from mart.platform.supervise import Platform
 from mart.protocol import codec, keys
-from mart.protocol.bus.base import Request, Sample
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, require_control_hz
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput, MartError, NotFound
 from mart.protocol.messages import (
     EPISODE_PHASE_COUNTDOWN,
@@ -26,14 +26,14 @@ from mart.protocol.messages import (
     error_message,
 )
 from mart.protocol.tasks import get_task
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.base import Request, Sample
 
 _log = logging.getLogger(__name__)
 
-KIND = "platform"
 NAME = "platform-1"
 MAX_ROOMS = 8
 MAX_EPISODES = 10_000
-CONTROL_HZ = (20.0, 30.0, 60.0)
 _MAX_REQUEST_BYTES = 1024
 _MAX_STATUS_BYTES = 64 * 1024
 _MAX_WAITING = 16
@@ -49,7 +49,7 @@ class Rooms:
 
     @property
     def names(self) -> list[str]:
-        return sorted(process.id for process in self._staff.processes if process.kind == "sim")
+        return sorted(process.id for process in self._staff.processes if process.kind == ServiceKind.SIM)
 
     def answer(self, request: RoomsRequest) -> RoomReply:
         match request.WhichOneof("what"):
@@ -79,7 +79,7 @@ class Rooms:
         wanted = RoomsRequest.Open(
             room=asked.room or self._free_name(),
             task=asked.task,
-            control_hz=asked.control_hz or CONTROL_HZ[0],
+            control_hz=asked.control_hz or DEFAULT_CONTROL_HZ,
             episodes=asked.episodes,
         )
         self._start(wanted)
@@ -90,8 +90,7 @@ class Rooms:
     def _start(self, wanted: RoomsRequest.Open) -> None:
         keys.status(wanted.room)  # raises where a room cannot be called so
         get_task(wanted.task)
-        if wanted.control_hz not in CONTROL_HZ:
-            raise InvalidInput(f"{wanted.control_hz:g} ticks a second were given; a room has 20, 30 or 60.")
+        require_control_hz(wanted.control_hz)
         if wanted.episodes > MAX_EPISODES:
             raise InvalidInput(
                 f"{wanted.episodes} episodes were given; plan at most {MAX_EPISODES}, or none (0)."
@@ -169,7 +168,7 @@ def opening_rooms(platform: Platform) -> Iterator[None]:
         for opened in (
             platform.bus.subscribe(keys.EVERY_STATUS, on_status),
             platform.bus.serve(keys.rooms(NAME), take),
-            platform.bus.announce(keys.alive(KIND, NAME)),
+            platform.bus.announce(keys.alive(ServiceKind.PLATFORM, NAME)),
         ):
             stack.callback(opened.close)
         yield

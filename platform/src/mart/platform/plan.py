@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mart.protocol.vocabulary import ServiceKind
+
 if TYPE_CHECKING:
     from mart.protocol.messages import RoomsRequest
 
@@ -18,7 +20,7 @@ class Process:
     """One `mart …` command; `kind` and `id` name its liveliness token. `awaited`: a session cannot begin without it."""
 
     command: tuple[str, ...]
-    kind: str
+    kind: ServiceKind
     id: str
     awaited: bool = True
 
@@ -55,11 +57,11 @@ def processes(options: Options) -> tuple[Process, ...]:
         _ROUTER,
         _sim(options, options.room),
         _REPLICA,
-        Process(("experts",), "experts", "experts"),
-        Process(("gateway", "--name", "gateway-1"), "gateway", "gateway-1"),
+        Process(("experts",), ServiceKind.EXPERTS, "experts"),
+        Process(("gateway", "--name", "gateway-1"), ServiceKind.GATEWAY, "gateway-1"),
         _RECORDER,
         _CATALOGUE,
-        Process(tuple(web), "web", "web"),
+        Process(tuple(web), ServiceKind.WEB, "web"),
     )
 
 
@@ -75,12 +77,12 @@ def lockstep_processes(options: Options, rooms: int) -> tuple[Process, ...]:
     return (_ROUTER, _REPLICA, _RECORDER, *(_sim(options, name, "--lockstep") for name in names))
 
 
-_ROUTER = Process(("router",), "router", "router")
-_REPLICA = Process(("replica", "--name", "replica-1"), "replica", "replica-1")
-_RECORDER = Process(("recorder", "--name", "recorder-1"), "recorder", "recorder-1")
-_CATALOGUE = Process(("catalogue", "--name", "catalogue-1"), "catalogue", "catalogue-1")
-_POLICIES = Process(("policies",), "policies", "policies", awaited=False)
-_TRAINER = Process(("trainer", "--name", "trainer-1"), "trainer", "trainer-1", awaited=False)
+_ROUTER = Process(("router",), ServiceKind.ROUTER, "router")
+_REPLICA = Process(("replica", "--name", "replica-1"), ServiceKind.REPLICA, "replica-1")
+_RECORDER = Process(("recorder", "--name", "recorder-1"), ServiceKind.RECORDER, "recorder-1")
+_CATALOGUE = Process(("catalogue", "--name", "catalogue-1"), ServiceKind.CATALOGUE, "catalogue-1")
+_POLICIES = Process(("policies",), ServiceKind.POLICIES, "policies", awaited=False)
+_TRAINER = Process(("trainer", "--name", "trainer-1"), ServiceKind.TRAINER, "trainer-1", awaited=False)
 
 
 def _sim(options: Options, room: str, *more: str) -> Process:
@@ -93,7 +95,7 @@ def _sim(options: Options, room: str, *more: str) -> Process:
     }
     for option, value in chosen.items():
         command += [] if value is None else [option, str(value)]
-    return Process((*command, *more), "sim", room)
+    return Process((*command, *more), ServiceKind.SIM, room)
 
 
 def room(options: Options, wanted: RoomsRequest.Open) -> Process:

@@ -7,16 +7,17 @@ import threading
 from typing import Any
 
 from mart.protocol import keys
-from mart.protocol.bus.base import Bus, Sample
 from mart.protocol.codec import decode
 from mart.protocol.messages import Plan, RoomStatus, barrier_word, operator_word, phase_word
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.base import Bus, Sample
 
 _STATUS_TIMEOUT_S = 2.0  # five times a second is promised
 
 
 def open_rooms(bus: Bus) -> list[RoomStatus]:
     """The newest status of every room whose sim is alive, sorted by room; a silent one is left out."""
-    awaited = {keys.last_of(key) for key in bus.alive(keys.alive_of("sim"))}
+    awaited = {keys.last_of(key) for key in bus.alive(keys.alive_of(ServiceKind.SIM))}
     heard: dict[str, RoomStatus] = {}
     complete = threading.Event()
 

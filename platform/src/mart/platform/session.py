@@ -11,10 +11,10 @@ from typing import Any
 
 from mart.platform.crew import Person
 from mart.protocol import keys
-from mart.protocol.bus.base import Bus, Sample
 from mart.protocol.codec import decode
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import EPISODE_PHASE_PRACTICE, Event, RoomStatus, outcome_word
+from mart.runtime.bus.base import Bus, Sample
 
 _EPISODE_TIMEOUT_S = 120.0
 _SAVE_TIMEOUT_S = 60.0

@@ -17,9 +17,9 @@ from pathlib import Path
 from mart.platform.plan import Options, Process, environment, processes
 from mart.platform.staff import BIN, Staff, logs_dir
 from mart.protocol import clock, keys
-from mart.protocol.bus.base import Bus
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.errors import Conflict, Unavailable
+from mart.runtime.bus.base import Bus
+from mart.runtime.bus.zenoh_bus import ZenohBus
 
 _log = logging.getLogger(__name__)
 

@@ -1,1 +1,1 @@
-"""What MART's services agree on: messages, keys, tasks, poses, clocks and the episode-file contract."""
+"""The contract between MART's parts: messages, keys, vocabulary, tasks, poses, clocks and the episode-file format."""

@@ -14,6 +14,7 @@ import re
 from dataclasses import dataclass, replace
 
 from mart.protocol.errors import InvalidInput
+from mart.protocol.vocabulary import ServiceKind
 
 ROOT = "mart"
 _SEGMENT = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
@@ -131,12 +132,13 @@ def rooms(platform: str) -> Topic:
     )
 
 
-def alive(kind: str, id: str) -> str:
-    """Liveliness token of one running service: `kind` is sim, replica, gateway, recorder, web, router, …"""
+def alive(kind: ServiceKind, id: str) -> str:
+    """Return the liveliness key of one running service."""
     return f"{ROOT}/@live/{_segment('kind', kind)}/{_segment('id', id)}"
 
 
-def alive_of(kind: str) -> str:
+def alive_of(kind: ServiceKind) -> str:
+    """Return the expression that meets the liveliness keys of every running service of a kind."""
     return f"{ROOT}/@live/{_segment('kind', kind)}/*"
 
 

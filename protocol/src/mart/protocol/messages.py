@@ -8,6 +8,7 @@ import numpy as np
 
 from mart.protocol.errors import InvalidInput, MartError, from_wire
 from mart.protocol.pose import Pose
+from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind
 from mart.v1.catalogue_pb2 import (
     CatalogueReply,
     CatalogueRequest,
@@ -203,14 +204,14 @@ def raise_error(error: Error) -> None:
         raise from_wire(error.code, error.message)
 
 
-def operator_word(operator: Operator) -> str:
-    """human, policy, script or hold."""
-    return _word(Operator.Name(operator), "OPERATOR_")
+def operator_word(operator: Operator) -> OperatorKind:
+    """Return the word for a member of the wire's enum: human, policy, script or hold."""
+    return OperatorKind(_word(Operator.Name(operator), "OPERATOR_"))
 
 
-def outcome_word(outcome: Outcome) -> str:
-    """success, failure, discarded or unspecified."""
-    return _word(Outcome.Name(outcome), "OUTCOME_")
+def outcome_word(outcome: Outcome) -> EpisodeOutcome:
+    """Return the word for a member of the wire's enum: success, failure, discarded or unspecified."""
+    return EpisodeOutcome(_word(Outcome.Name(outcome), "OUTCOME_"))
 
 
 def phase_word(phase: EpisodePhase) -> str:

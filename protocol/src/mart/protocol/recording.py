@@ -1,6 +1,6 @@
 """The episode file: names of topics, attachments and metadata records, and typed values for those records.
 
-The specification is docs/protocol.md, section 3; `mart.protocol.episodes` reads such files.
+The specification is docs/protocol.md, section 3; `mart.episodes` reads such files.
 A metadata record is a map from string to string; each class below turns itself into one (`to_strings`) and back
 (`from_strings`, which raises Corrupt where a value is missing or not of its type). A value that is not known is None in
 Python and absent from the file.
@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from enum import StrEnum
 from typing import Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from mart.protocol.errors import Corrupt
+from mart.protocol.vocabulary import Verdict
 
 PROFILE = "mart"
 SUFFIX = ".mcap"
@@ -41,14 +41,6 @@ def gripper_topic(arm: str) -> str:
 
 def video_topic(camera: str) -> str:
     return f"/view/{camera}/video"
-
-
-class Verdict(StrEnum):
-    """What re-simulation said about a file."""
-
-    VERIFIED = "verified"  # every recorded tick follows from the one before, bit for bit
-    DIVERGED = "diverged"
-    UNVERIFIED = "unverified"  # nobody could say, or a part could not be checked
 
 
 class Record(BaseModel):

@@ -6,18 +6,14 @@ readable by its owner alone and shared by the web service, which signs, and the 
 
 from __future__ import annotations
 
-import os
-import secrets
 from dataclasses import dataclass
 from enum import StrEnum
-from pathlib import Path
 
 import jwt
 
-from mart.protocol.errors import Forbidden, InvalidInput
+from mart.protocol.errors import Forbidden
 
 _ALGORITHM = "HS256"
-_SECRET_BYTES = 32
 _MAX_TOKEN_CHARACTERS = 2048
 
 
@@ -72,21 +68,3 @@ def verify(text: str, secret: bytes) -> SeatToken:
         raise Forbidden("This seat token has expired; reload the page to get a new one.") from error
     except (jwt.InvalidTokenError, ValueError) as error:
         raise Forbidden("This seat token is not valid; take a seat in the lobby to get one.") from error
-
-
-def load_or_create_secret(path: Path) -> bytes:
-    """The shared secret at `path`, made at first use with mode 0600; raises InvalidInput where it is too short."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    try:
-        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    except FileExistsError:
-        pass
-    else:
-        with os.fdopen(handle, "w") as file:
-            file.write(secrets.token_hex(_SECRET_BYTES))
-    secret = path.read_text().strip().encode()
-    if len(secret) < _SECRET_BYTES:
-        raise InvalidInput(
-            f"The secret in {path} has {len(secret)} characters; at least {_SECRET_BYTES} are needed: delete the file."
-        )
-    return secret

@@ -7,11 +7,11 @@ import threading
 from pathlib import Path
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Bus, Publisher
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Event, outcome_from_word
-from mart.protocol.recording import Verdict
+from mart.protocol.vocabulary import Verdict
 from mart.recorder.save import Saved
+from mart.runtime.bus import Bus, Publisher
 
 _log = logging.getLogger(__name__)
 

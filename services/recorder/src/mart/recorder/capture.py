@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from mart.protocol import clock, keys
-from mart.protocol.bus import Bus, Closable, Sample
+from mart.runtime.bus import Bus, Closable, Sample
 
 MAX_VIDEO_BYTES = 64 * 1024 * 1024
 MAX_OTHER_BYTES = 256 * 1024 * 1024

@@ -14,9 +14,9 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
-from mart.protocol.episodes import labels
-from mart.protocol.episodes.labels import Labelled
-from mart.protocol.episodes.reader import EpisodeFile
+from mart.episodes import labels
+from mart.episodes.labels import Labelled
+from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import MartError
 from mart.protocol.recording import SUFFIX
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mart.protocol import clock
-from mart.protocol.cli import Gathered, json_option, print_result
 from mart.protocol.errors import InvalidInput, Unavailable
 from mart.recorder.filters import OUTCOMES, VERDICTS, filters, passing
 from mart.recorder.settings import RecorderSettings
+from mart.runtime.cli import Gathered, json_option, print_result
 
 if TYPE_CHECKING:
     from mart.recorder.verify import Resimulate
@@ -64,7 +64,7 @@ def list_episodes(paths: tuple[Path, ...], as_json: bool, **wanted: Any) -> None
 @json_option
 def show(path: Path, as_json: bool) -> None:
     """Show everything that is known about one episode."""
-    from mart.protocol.episodes.reader import EpisodeFile
+    from mart.episodes.reader import EpisodeFile
     from mart.recorder import files, report
 
     file = EpisodeFile.open(path)
@@ -78,10 +78,10 @@ def show(path: Path, as_json: bool) -> None:
 @json_option
 def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     """Step episodes again in a replica: do they follow bit for bit? The answer is kept as a label."""
-    from mart.protocol.episodes import labels
-    from mart.protocol.episodes.paths import episode_files
-    from mart.protocol.episodes.reader import EpisodeFile
-    from mart.protocol.recording import Verdict
+    from mart.episodes import labels
+    from mart.episodes.paths import episode_files
+    from mart.episodes.reader import EpisodeFile
+    from mart.protocol.vocabulary import Verdict
     from mart.recorder.verify import verify as verify_file
 
     found = []
@@ -103,7 +103,7 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
 @json_option
 def replay(path: Path, replica: str | None, as_json: bool) -> int:
     """Step one episode again in a replica and report every stretch of ticks: where it agrees, where it does not."""
-    from mart.protocol.episodes.reader import EpisodeFile
+    from mart.episodes.reader import EpisodeFile
     from mart.recorder import report
     from mart.recorder.verify import compare
 
@@ -141,8 +141,8 @@ def label(
     paths: tuple[Path, ...], outcome: str | None, note: str | None, drop: bool | None, as_json: bool
 ) -> None:
     """Say something about episodes. Files never change: labels are appended to labels.jsonl beside them."""
-    from mart.protocol.episodes import labels
-    from mart.protocol.episodes.paths import episode_files
+    from mart.episodes import labels
+    from mart.episodes.paths import episode_files
     from mart.recorder import files, report
 
     use = None if drop is None else "drop" if drop else "keep"
@@ -215,8 +215,8 @@ def _given(paths: tuple[Path, ...]) -> tuple[Path, ...]:
 @contextmanager
 def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> Iterator[Resimulate]:
     """Asks a replica. Without a router it raises Unavailable: at once, or `wherever_possible` only when asked."""
-    from mart.protocol.bus.zenoh_bus import ZenohBus
     from mart.recorder import verify as verification
+    from mart.runtime.bus.zenoh_bus import ZenohBus
 
     settings = _settings(replica)
     try:

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mart.protocol.episodes import datasets, labels
-from mart.protocol.episodes.alike import require_alike
-from mart.protocol.episodes.datasets import NamedDataSet
-from mart.protocol.episodes.labels import Label, Labelled
+from mart.episodes import datasets, labels
+from mart.episodes.compatibility import require_alike
+from mart.episodes.datasets import NamedDataSet
+from mart.episodes.labels import Label, Labelled
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.recorder.catalog import Row
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mart.protocol import clock
-from mart.protocol.cli import json_option, print_result
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
 from mart.recorder.filters import ANY, filters, passing
 from mart.recorder.settings import RecorderSettings
+from mart.runtime.cli import json_option, print_result
 
 if TYPE_CHECKING:
     from mart.recorder.catalog import Row
@@ -46,7 +46,7 @@ def datasets() -> None:
 @json_option
 def list_datasets(folder: Path, as_json: bool) -> None:
     """List data sets: how many episodes they hold, and the digest of what they hold."""
-    from mart.protocol.episodes.datasets import named
+    from mart.episodes.datasets import named
     from mart.recorder import curate, report
 
     told = [report.dataset(one) for one in named(curate.said_in(folder)).values()]
@@ -59,7 +59,7 @@ def list_datasets(folder: Path, as_json: bool) -> None:
 @json_option
 def show(name: str, folder: Path, as_json: bool) -> None:
     """Show what a data set holds, also what has been dropped, discarded or deleted since."""
-    from mart.protocol.episodes.datasets import find
+    from mart.episodes.datasets import find
     from mart.recorder import curate, report
     from mart.recorder.catalog import list_folder
 
@@ -84,7 +84,7 @@ def show(name: str, folder: Path, as_json: bool) -> None:
 @json_option
 def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
     """Put episodes together under a new name: all that the filters let through, or those among PATHS."""
-    from mart.protocol.episodes.datasets import named
+    from mart.episodes.datasets import named
     from mart.recorder import curate
 
     if name in named(curate.said_in(folder)):
@@ -100,7 +100,7 @@ def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
 @json_option
 def add(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
     """Put more episodes into a data set: all that the filters let through, or those among PATHS."""
-    from mart.protocol.episodes.datasets import find
+    from mart.episodes.datasets import find
     from mart.recorder import curate
 
     find(curate.said_in(folder), name)
@@ -132,7 +132,7 @@ def remove(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
 @json_option
 def delete(name: str, folder: Path, as_json: bool) -> None:
     """Delete a data set: every episode leaves it, and stays where it is."""
-    from mart.protocol.episodes.datasets import find
+    from mart.episodes.datasets import find
     from mart.recorder import curate
 
     held = find(curate.said_in(folder), name).episodes
@@ -145,8 +145,8 @@ def delete(name: str, folder: Path, as_json: bool) -> None:
 @json_option
 def undo(name: str, folder: Path, as_json: bool) -> None:
     """Take back the last change of a data set; a second time does it again."""
-    from mart.protocol.episodes import labels
-    from mart.protocol.episodes.datasets import newest_act_ns
+    from mart.episodes import labels
+    from mart.episodes.datasets import newest_act_ns
     from mart.recorder import curate
 
     act_ns = newest_act_ns(labels.read(folder), name)
@@ -191,7 +191,7 @@ def _placed(folder: Path, path: Path) -> Path:
 
 def _below(folder: Path, path: Path) -> str:
     """As labels name it. Raises InvalidInput where its labels are in another folder."""
-    from mart.protocol.episodes import labels
+    from mart.episodes import labels
 
     root = labels.root_of(path)
     if root != folder:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from mart.protocol.episodes import labels
-from mart.protocol.episodes.paths import episode_files
+from mart.episodes import labels
+from mart.episodes.paths import episode_files
 from mart.recorder.catalog import Row, describe, list_folder, overlaid
 
 

@@ -7,9 +7,9 @@ import threading
 from hashlib import sha256
 
 from mart.protocol import codec, keys
-from mart.protocol.bus import Bus
 from mart.protocol.errors import MartError
 from mart.protocol.messages import Model
+from mart.runtime.bus import Bus
 
 _log = logging.getLogger(__name__)
 

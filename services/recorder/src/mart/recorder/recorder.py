@@ -19,7 +19,6 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 from google.protobuf.message import Message
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Bus
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Command, Event, RoomStatus, State
 from mart.recorder.announce import Announcer
@@ -30,6 +29,7 @@ from mart.recorder.room import Action, Closed, Opened, RoomTracker
 from mart.recorder.save import Verify, part_path
 from mart.recorder.saver import Saver, describe
 from mart.recorder.writer import EpisodeWriter
+from mart.runtime.bus import Bus
 
 M = TypeVar("M", bound=Message)
 

@@ -19,8 +19,8 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 from google.protobuf.message import Message
 from mcap.records import Attachment, Metadata
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, MartError
 from mart.protocol.messages import Command, Event, Model, State
 from mart.protocol.recording import MODEL_ATTACHMENT, PART_SUFFIX, RoomRecord

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from mart.protocol.episodes.datasets import NamedDataSet
+from mart.episodes.datasets import NamedDataSet
 from mart.recorder.catalog import Row
 from mart.recorder.curate import Curated
 from mart.recorder.repair import Repaired

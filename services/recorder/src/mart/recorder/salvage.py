@@ -12,7 +12,7 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import MAGIC_SIZE
 
-from mart.protocol.episodes.scan import RECORD_HEADER_BYTES, SYMPTOMS, BoundedFile, records, size_of, unpack
+from mart.episodes.scan import RECORD_HEADER_BYTES, SYMPTOMS, BoundedFile, records, size_of, unpack
 
 # How a zstd chunk goes on after its header, two times, size and checksum; see MCAP's specification, "Chunk (op=0x06)".
 _CHUNK_MARK = b"\x04\x00\x00\x00zstd"

@@ -11,7 +11,7 @@ from importlib.metadata import distributions
 from pathlib import Path
 from types import MappingProxyType
 
-from mart.protocol.episodes.reader import EpisodeFile
+from mart.episodes.reader import EpisodeFile
 from mart.protocol.recording import (
     PART_SUFFIX,
     SUFFIX,

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from contextlib import closing
 
-from mart.protocol.bus.zenoh_bus import ZenohBus
-from mart.protocol.service import announced, connected
+from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.capture import Capture, Inbox
 from mart.recorder.recorder import Recorder
 from mart.recorder.settings import RecorderSettings
 from mart.recorder.verify import replica, verify
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.service import announced, connected
 
 
 def serve_recorder(settings: RecorderSettings, name: str) -> None:
     """Until the process is asked to stop; what is being recorded then is saved as it is."""
     inbox = Inbox()
-    with connected(settings, "recorder", name) as service, ZenohBus.connect(settings.router) as video_bus:
+    with (
+        connected(settings, ServiceKind.RECORDER, name) as service,
+        ZenohBus.connect(settings.router) as video_bus,
+    ):
         ask = replica(service.bus, settings.replica)
         recorder = Recorder(settings.data_dir, service.bus, inbox, lambda file, room: verify(file, room, ask))
         with closing(Capture(service.bus, video_bus, inbox)), announced(service):

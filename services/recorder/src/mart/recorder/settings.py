@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from mart.protocol.settings import Settings
+from mart.runtime.settings import Settings
 
 
 class RecorderSettings(Settings):

@@ -13,12 +13,13 @@ from hashlib import blake2b
 
 import numpy as np
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec, keys, recording
-from mart.protocol.bus import Bus
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, MartError, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest, State, raise_error
-from mart.protocol.recording import RoomRecord, Verdict, VerificationRecord
+from mart.protocol.recording import RoomRecord, VerificationRecord
+from mart.protocol.vocabulary import ServiceKind, Verdict
+from mart.runtime.bus import Bus
 
 DIGEST_BYTES = 16
 ACTION_SIZE = 7
@@ -150,7 +151,7 @@ def replica(bus: Bus, name: str) -> Resimulate:
     """Asks the replica called `name`. Raises Unavailable at once where there is none, or where it does not answer."""
 
     def resimulate(request: RolloutRequest.Resimulate) -> bytes:
-        if not bus.alive(keys.alive("replica", name)):
+        if not bus.alive(keys.alive(ServiceKind.REPLICA, name)):
             raise Unavailable(f"No replica {name!r} is up; start one with `mart replica --name {name}`.")
         ticks = len(request.actions) // (8 * ACTION_SIZE * max(request.arms, 1))
         payload = codec.encode(RolloutRequest(resimulate=request))

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Bus
 from mart.protocol.messages import Event, RoomStatus, State
+from mart.runtime.bus import Bus
 
 
 class BusVoice:

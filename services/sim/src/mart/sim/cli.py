@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 
-from mart.protocol.cli import json_option, print_result
 from mart.protocol.errors import Unavailable
 from mart.protocol.tasks import SHARED_VIEWPOINT
+from mart.runtime.cli import json_option, print_result
 from mart.sim.settings import ExpertsSettings, ReplicaSettings, SimSettings
 
 

@@ -10,9 +10,9 @@ from typing import TypeVar
 import mujoco
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Bus, Closable, Request, Sample
 from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import EpisodeRequest, Event, RoomReply, SeatRequest, error_message
+from mart.runtime.bus import Bus, Closable, Request, Sample
 from mart.sim import publish
 from mart.sim.room import Room
 from mart.sim.world import World

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from dataclasses import dataclass
 
+from mart.operators.room_watch import RoomWatch
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Bus, Publisher
-from mart.protocol.complaints import Complaints
 from mart.protocol.errors import MartError
 from mart.protocol.messages import OPERATOR_SCRIPT, RoomStatus, Seat, State
-from mart.protocol.room_watch import RoomWatch
-from mart.protocol.service import running
 from mart.protocol.tasks import get_task
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus import Bus, Publisher
+from mart.runtime.service import running
+from mart.runtime.throttled_log import ThrottledLog
 from mart.sim.experts import Skill, get_skill
 from mart.sim.operate import REPEAT_S, ScriptedOperator
 from mart.sim.settings import ExpertsSettings
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass
@@ -34,7 +38,7 @@ class Experts:
         self._watch = RoomWatch(bus, settings.room)
 
     def run(self, stop: threading.Event) -> None:
-        complaints, unusable = Complaints(), self._watch.unusable
+        throttled_log, unusable = ThrottledLog(_log), self._watch.unusable
         while not stop.is_set():
             statuses, states = self._watch.take(REPEAT_S / 2)
             for room, status in statuses.items():
@@ -45,7 +49,7 @@ class Experts:
             for room, state in states.items():
                 self._show(room, state)
             self._repeat(clock.monotonic_s())
-            complaints.say(unusable, clock.monotonic_s())
+            throttled_log.report(unusable, clock.monotonic_s())
         self._watch.close()
 
     def _follow_seats(self, room: str, status: RoomStatus) -> None:
@@ -92,5 +96,5 @@ class Experts:
 def serve_experts(settings: ExpertsSettings) -> None:
     """Until the process is asked to stop. Raises NotFound for an unknown skill."""
     skill = get_skill(settings.skill)
-    with running(settings, "experts", settings.id) as service:
+    with running(settings, ServiceKind.EXPERTS, settings.id) as service:
         Experts(service.bus, settings, skill).run(service.stop)

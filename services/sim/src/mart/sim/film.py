@@ -11,8 +11,8 @@ from pathlib import Path
 import av
 import mujoco
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.messages import State
 from mart.protocol.recording import MODEL_ATTACHMENT, STATE

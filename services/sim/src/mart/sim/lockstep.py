@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from mart.protocol.batch_state import Array, Flags, check_actions, pack
 from mart.protocol.errors import Conflict, InvalidInput, NotFound, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest
-from mart.protocol.worlds import Array, Flags, check_actions, pack
 from mart.sim import publish
 from mart.sim.world import ACTION_SIZE, Diverged, World, WorldBatch
 

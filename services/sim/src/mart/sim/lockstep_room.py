@@ -7,19 +7,22 @@ the room as slow as who listens. Between episodes the world stands still: whoeve
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections import Counter
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Bus
-from mart.protocol.complaints import Complaints
 from mart.protocol.messages import OPERATOR_SCRIPT, Event, RoomStatus, SeatRequest, State, raise_error
 from mart.protocol.tasks import Task
+from mart.runtime.bus import Bus
+from mart.runtime.throttled_log import ThrottledLog
 from mart.sim.experts import Skill
 from mart.sim.mailbox import Mailbox
 from mart.sim.operate import REPEAT_S, ScriptedOperator
 from mart.sim.room import REPEAT_S as STATUS_S
 from mart.sim.room import Room
+
+_log = logging.getLogger(__name__)
 
 
 class SimulatedTime:
@@ -97,9 +100,9 @@ class LockstepRoom:
 
     def run(self, mailbox: Mailbox, garbled: Counter[str], stop: threading.Event) -> None:
         """Until `stop` is set. What comes in is answered between episodes: whoever asks twice gets two."""
-        complaints = Complaints()
+        throttled_log = ThrottledLog(_log)
         while not stop.is_set():
-            complaints.say(Counter(self._room.rejected) + garbled, clock.monotonic_s())
+            throttled_log.report(Counter(self._room.rejected) + garbled, clock.monotonic_s())
             self._voice.status(self._room.status(self._time.now_s()))
             mailbox.work_once(STATUS_S)
             self.play(stop)

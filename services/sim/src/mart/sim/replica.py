@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import queue
 import threading
 from collections import Counter
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Request
-from mart.protocol.complaints import Complaints
 from mart.protocol.errors import MartError
 from mart.protocol.messages import RolloutReply, RolloutRequest, error_message
-from mart.protocol.service import announced, connected
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus import Request
+from mart.runtime.service import announced, connected
+from mart.runtime.throttled_log import ThrottledLog
 from mart.sim import divergence
 from mart.sim.lockstep import Lockstep
 from mart.sim.settings import ReplicaSettings
+
+_log = logging.getLogger(__name__)
 
 _LONGEST_WAIT_S = 0.5  # so that a stop is noticed
 
@@ -27,7 +31,7 @@ def serve_replica(settings: ReplicaSettings) -> None:
     requests: queue.SimpleQueue[Request] = queue.SimpleQueue()
     keeper = divergence.Keeper(settings.diverged_dir, settings.name)
     with (
-        connected(settings, "replica", settings.name) as service,
+        connected(settings, ServiceKind.REPLICA, settings.name) as service,
         contextlib.closing(service.bus.serve(keys.rollout(settings.name), requests.put)),
         announced(service),
     ):
@@ -36,14 +40,14 @@ def serve_replica(settings: ReplicaSettings) -> None:
 
 def _answer_all(lockstep: Lockstep, requests: queue.SimpleQueue[Request], stop: threading.Event) -> None:
     refused: Counter[str] = Counter()
-    complaints = Complaints()
+    throttled_log = ThrottledLog(_log)
     while not stop.is_set():
         with contextlib.suppress(queue.Empty):
             request = requests.get(timeout=_LONGEST_WAIT_S)
             reply = _answer(lockstep, request.payload)
             refused[reply.error.message] += bool(reply.error.message)
             request.reply(codec.encode(reply))
-        complaints.say(refused, clock.monotonic_s())
+        throttled_log.report(refused, clock.monotonic_s())
 
 
 def _answer(lockstep: Lockstep, payload: bytes) -> RolloutReply:

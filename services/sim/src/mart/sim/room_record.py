@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import operator_from_word, operator_word
-from mart.protocol.private_file import write_private
+from mart.runtime.atomic_file import write_atomically
 from mart.sim.seats import Driver, SeatHolder
 
 
@@ -103,4 +103,4 @@ def load(path: Path) -> RoomRecord | None:
 
 def save(path: Path, record: RoomRecord) -> None:
     """It names holders, so it is readable by its owner alone."""
-    write_private(path, record.model_dump_json(indent=2).encode())
+    write_atomically(path, record.model_dump_json(indent=2).encode())

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import logging
 import secrets
 from collections import Counter
 from collections.abc import Callable
 
 from mart.protocol import clock
-from mart.protocol.complaints import Complaints
-from mart.protocol.service import announced, connected
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.service import announced, connected
+from mart.runtime.throttled_log import ThrottledLog
 from mart.sim import divergence, room_record
 from mart.sim.bus_voice import BusVoice
 from mart.sim.doorway import Doorway
@@ -23,6 +25,8 @@ from mart.sim.room_record import RoomRecord
 from mart.sim.settings import SimSettings
 from mart.sim.turns import Turns
 from mart.sim.world import World
+
+_log = logging.getLogger(__name__)
 
 _SEED_BITS = 32
 DEFAULT_SKILL = "expert"
@@ -42,7 +46,7 @@ def serve_room(settings: SimSettings) -> None:
 
 def serve_world(settings: SimSettings, world: World) -> None:
     """The room of `settings` around a world that exists already."""
-    with connected(settings, "sim", settings.room) as service, contextlib.ExitStack() as opened:
+    with connected(settings, ServiceKind.SIM, settings.room) as service, contextlib.ExitStack() as opened:
         voice = opened.enter_context(contextlib.closing(BusVoice(service.bus, settings.room)))
         room = Room(
             settings.room,
@@ -55,11 +59,11 @@ def serve_world(settings: SimSettings, world: World) -> None:
             terms=Terms(skill=settings.skill or "", time_limit_s=settings.time_limit_s),
             explain=divergence.Keeper(settings.diverged_dir, settings.room),
         )
-        complaints, garbled = Complaints(), Counter[str]()
+        throttled_log, garbled = ThrottledLog(_log), Counter[str]()
 
         def advance(now_s: float) -> float:
             next_s = room.advance(now_s)
-            complaints.say(Counter(room.rejected) + garbled, now_s)
+            throttled_log.report(Counter(room.rejected) + garbled, now_s)
             return next_s
 
         turns = Turns(advance)
@@ -75,7 +79,7 @@ def serve_world(settings: SimSettings, world: World) -> None:
 
 def serve_lockstep(settings: SimSettings, world: World, skill: Skill) -> None:
     """The same room on simulated time, with its scripts."""
-    with connected(settings, "sim", settings.room) as service, contextlib.ExitStack() as opened:
+    with connected(settings, ServiceKind.SIM, settings.room) as service, contextlib.ExitStack() as opened:
         mailbox, garbled, time = Mailbox(), Counter[str](), SimulatedTime()
         voice = OrderedVoice(service.bus, settings.room, world.arms)
         opened.enter_context(contextlib.closing(voice))

@@ -7,7 +7,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from mart.protocol.settings import Settings
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
+from mart.runtime.settings import Settings
 
 DEFAULT_TASK = "two_arm_multi_cube_lifting"
 
@@ -24,7 +25,9 @@ class SimSettings(_WorldSettings):
 
     room: str = Field("room-1", description="Id of the room.")
     task: str = Field(DEFAULT_TASK, description="Name of the task.")
-    control_hz: float = Field(20.0, ge=5.0, le=250.0, description="Ticks a second, at most.")
+    control_hz: float = Field(
+        DEFAULT_CONTROL_HZ, ge=MIN_CONTROL_HZ, le=MAX_CONTROL_HZ, description="Ticks a second, at most."
+    )
     arms: int | None = Field(None, ge=1, description="How many arms; default: the task's own number.")
     pace: float = Field(1.0, gt=0.0, le=1.0, description="Real-time factor that the world may reach at most.")
     seed: int | None = Field(None, ge=0, description="The room's seed; default: drawn once and kept.")

@@ -6,8 +6,8 @@ import asyncio
 from typing import Any
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.messages import Cue, Event
+from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.latency import MotionToPhoton
 
 LATENCY_EVERY_S = 1.0

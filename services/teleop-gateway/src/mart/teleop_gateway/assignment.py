@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass
 
 from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_POLICY
 
-SEAT_KIND = "seat"  # of the liveliness token that says that a seat's process answers offers
 SERVED = (OPERATOR_HUMAN, OPERATOR_POLICY)  # whose seats have a process, and with it a picture
 WARM = b"warm\n"  # said by a process that has imported everything and waits for its assignment
 

@@ -11,15 +11,16 @@ import click
 )
 def gateway(name: str) -> None:
     """Run a gateway: one process for each seat that a person holds."""
-    from mart.protocol.service import AsyncService, announced, run_async
-    from mart.teleop_gateway.gateway import KIND, Gateway
+    from mart.protocol.vocabulary import ServiceKind
+    from mart.runtime.service import AsyncService, announced, run_async
+    from mart.teleop_gateway.gateway import Gateway
     from mart.teleop_gateway.settings import GatewaySettings
 
     async def serve(service: AsyncService) -> None:
         with announced(service):
             await Gateway(service.bus, name).run()
 
-    run_async(GatewaySettings(), KIND, name, serve)
+    run_async(GatewaySettings(), ServiceKind.GATEWAY, name, serve)
 
 
 @click.command()
@@ -35,7 +36,8 @@ def phone(
     """Run an emulated phone, led by the intents of `mart experts --intent`."""
     import asyncio
 
-    from mart.protocol.service import AsyncService, announced, run_async
+    from mart.protocol.vocabulary import ServiceKind
+    from mart.runtime.service import AsyncService, announced, run_async
     from mart.teleop_gateway.emulator import EmulatedPhone
     from mart.teleop_gateway.link import LinkProfile
     from mart.teleop_gateway.pairing import LobbyClient, Pairing
@@ -67,4 +69,4 @@ def phone(
 
     settings = GatewaySettings()
     pairing = asyncio.run(pair())
-    run_async(settings, "phone", f"{pairing.room}-{pairing.arm}", drive)
+    run_async(settings, ServiceKind.PHONE, f"{pairing.room}-{pairing.arm}", drive)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from mart.teleop_gateway.rate import RateLimit
+from mart.runtime.rate_limit import RateLimit
 
 MAX_PER_S = 2
 _REMEMBERED = 8

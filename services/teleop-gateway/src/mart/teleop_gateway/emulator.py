@@ -13,14 +13,14 @@ from typing import Any
 from aiortc import RTCConfiguration, RTCDataChannel, RTCPeerConnection, RTCSessionDescription
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import Command, Model, State, pose_from_message
+from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.decoding_subscriber import DecodingSubscriber
 from mart.teleop_gateway import channel
 from mart.teleop_gateway.emulated_hand import EmulatedHand, Held, Intent, resting_pose
 from mart.teleop_gateway.frame import Flag, PhoneFrame
 from mart.teleop_gateway.link import Link, LinkProfile
-from mart.teleop_gateway.reading import Reader
 from mart.teleop_gateway.renderer import camera_azimuth_rad, load_model
 
 _log = logging.getLogger(__name__)
@@ -71,7 +71,10 @@ class EmulatedPhone:
         azimuth_rad = await self._camera_azimuth_rad()
         self._hand = EmulatedHand(azimuth_rad, resting_pose(_HEADING_RAD), self._scale)
         with contextlib.ExitStack() as stack:
-            intents, states = Reader(Command, self._on_intent), Reader(State, self._on_state)
+            intents, states = (
+                DecodingSubscriber(Command, self._on_intent),
+                DecodingSubscriber(State, self._on_state),
+            )
             stack.callback(self._bus.subscribe(keys.intent(self.room, self.arm).key, intents).close)
             stack.callback(self._bus.subscribe(keys.state(self.room).key, states).close)
             while not self._replaced:

@@ -6,33 +6,24 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import hashlib
 import logging
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.errors import MartError, Unavailable
+from mart.protocol.gateway_choice import gateway_of
 from mart.protocol.messages import Event, OpenSeat, OpenSeatReply, RoomStatus, error_message
-from mart.teleop_gateway.assignment import SEAT_KIND, SERVED, Assignment
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.decoding_subscriber import DecodingSubscriber
+from mart.teleop_gateway.assignment import SERVED, Assignment
 from mart.teleop_gateway.child import Child, Spares
-from mart.teleop_gateway.reading import Reader
 
 _log = logging.getLogger(__name__)
 
-KIND = "gateway"
 OPEN_TIMEOUT_S = 5.0
 _MAX_REQUEST_BYTES = 1024
 _CRASH_LOOP_S = 2.0  # a process that lives shorter than this is not followed by the next one at once
 _RESTART_DELAY_S = 1.0
-
-
-def owner(gateways: frozenset[str], seat: Assignment) -> str:
-    """Which of several gateways runs a seat: all reckon the same (rendezvous hashing, Thaler & Ravishankar, 1998)."""
-
-    def weight(gateway: str) -> bytes:
-        return hashlib.sha256(f"{gateway}/{seat.room}/{seat.arm}".encode()).digest()
-
-    return max(gateways, key=weight)
 
 
 class Gateway:
@@ -51,9 +42,9 @@ class Gateway:
         bus = self._bus
         with contextlib.ExitStack() as stack:
             for opened in (
-                bus.watch(keys.alive_of(SEAT_KIND), self._on_seat_token),
-                bus.watch(keys.alive_of(KIND), self._on_gateway_token),
-                bus.subscribe(keys.EVERY_STATUS, Reader(RoomStatus, self._on_status)),
+                bus.watch(keys.alive_of(ServiceKind.SEAT), self._on_seat_token),
+                bus.watch(keys.alive_of(ServiceKind.GATEWAY), self._on_gateway_token),
+                bus.subscribe(keys.EVERY_STATUS, DecodingSubscriber(RoomStatus, self._on_status)),
                 bus.serve(keys.open_seat(self.name), self._open_seat),
             ):
                 stack.callback(opened.close)
@@ -86,7 +77,7 @@ class Gateway:
     def _reconcile(self) -> None:
         gateways = frozenset(self._gateways)
         wanted = frozenset[Assignment]().union(*self._wanted.values())
-        mine = {seat for seat in wanted if owner(gateways, seat) == self.name}
+        mine = {seat for seat in wanted if gateway_of(gateways, seat.room, seat.arm) == self.name}
         for seat in mine - self._running.keys():
             self._running[seat] = self._bus.spawn(self._keep(seat))
         for seat in self._running.keys() - mine:

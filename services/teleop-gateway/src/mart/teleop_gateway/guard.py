@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mart.protocol.pose import Pose
+from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.frame import Flag, MalformedFrame, PhoneFrame
-from mart.teleop_gateway.rate import RateLimit
 
 MAX_FRAMES_PER_S = 120
 MAX_DISTANCE_M = 100.0

@@ -6,7 +6,7 @@ from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.base import Bus
+from mart.runtime.bus.base import Bus
 from mart.teleop_gateway.encoder import Codec
 from mart.teleop_gateway.still import Still
 from mart.teleop_gateway.view import Picture

@@ -18,6 +18,7 @@ from aiortc import (
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
 from mart.protocol.tokens import Role
+from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.aiortc_hooks import (
     offer_playout_delay,
     on_keyframe_request,
@@ -25,7 +26,6 @@ from mart.teleop_gateway.aiortc_hooks import (
     show_at_once,
 )
 from mart.teleop_gateway.encoder import Codec
-from mart.teleop_gateway.rate import RateLimit
 from mart.teleop_gateway.track import EncodedTrack
 
 _log = logging.getLogger(__name__)

@@ -6,9 +6,9 @@ import asyncio
 from collections.abc import Iterator, Sequence
 from typing import Protocol
 
-from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.errors import Conflict
 from mart.protocol.tokens import Role
+from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway import channel
 from mart.teleop_gateway.encoder import Codec, Encoded
 from mart.teleop_gateway.peer import Peer

@@ -8,10 +8,10 @@ from collections.abc import Callable
 from collections.abc import Set as AbstractSet
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.errors import MartError
 from mart.protocol.keys import DETAILED
 from mart.protocol.messages import Model, State
+from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.encoder import Codec
 from mart.teleop_gateway.quality import Quality
 from mart.teleop_gateway.renderer import camera_azimuth_rad, load_model

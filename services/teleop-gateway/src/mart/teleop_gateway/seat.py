@@ -8,8 +8,6 @@ import logging
 from collections.abc import Awaitable, Callable
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus.aio import AsyncBus
-from mart.protocol.bus.base import Bus, Closable
 from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import (
     Answer,
@@ -22,9 +20,14 @@ from mart.protocol.messages import (
 )
 from mart.protocol.pose import Pose
 from mart.protocol.tokens import Role
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.bus.base import Bus, Closable
+from mart.runtime.decoding_subscriber import DecodingSubscriber
+from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway import channel
 from mart.teleop_gateway.announcements import Announcements
-from mart.teleop_gateway.assignment import SEAT_KIND, SERVED, Assignment
+from mart.teleop_gateway.assignment import SERVED, Assignment
 from mart.teleop_gateway.cues import Presses
 from mart.teleop_gateway.driving import Driving, Input
 from mart.teleop_gateway.encoder import Codec
@@ -33,8 +36,6 @@ from mart.teleop_gateway.outlet import Outlet
 from mart.teleop_gateway.peer import MAX_SDP_CHARACTERS, Peer
 from mart.teleop_gateway.peers import Peers
 from mart.teleop_gateway.quality import QUALITIES
-from mart.teleop_gateway.rate import RateLimit
-from mart.teleop_gateway.reading import Reader
 from mart.teleop_gateway.retarget import Retarget
 from mart.teleop_gateway.scenery import Scenery
 from mart.teleop_gateway.settings import GatewaySettings
@@ -95,11 +96,11 @@ class Seat:
     def _open(self) -> list[Closable]:
         room, arm, bus = self.room, self.arm, self._bus
         served = [bus.serve(keys.signal(room, arm, role), self._answering(role)) for role in Role]
-        status = bus.subscribe(keys.status(room).key, Reader(RoomStatus, self._on_room_status))
+        status = bus.subscribe(keys.status(room).key, DecodingSubscriber(RoomStatus, self._on_room_status))
         # Not over the event loop: the view's thread must have the state before the loop finds time for it.
-        state = bus.bus.subscribe(keys.state(room).key, Reader(State, self._on_state_arrival))
+        state = bus.bus.subscribe(keys.state(room).key, DecodingSubscriber(State, self._on_state_arrival))
         # Last: whoever sees this token may send an offer.
-        alive = bus.bus.announce(keys.alive(SEAT_KIND, self.id))
+        alive = bus.bus.announce(keys.alive(ServiceKind.SEAT, self.id))
         return [*served, status, state, self._commands, self._announcements, self._outlet, alive]
 
     # Signalling

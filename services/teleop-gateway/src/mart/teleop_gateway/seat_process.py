@@ -12,10 +12,11 @@ import logging
 import os
 import sys
 
-from mart.protocol import tokens
-from mart.protocol.bus.zenoh_bus import ZenohBus
-from mart.protocol.service import AsyncService, run_async
-from mart.teleop_gateway.assignment import SEAT_KIND, WARM, Assignment
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.secret_file import load_or_create_secret
+from mart.runtime.service import AsyncService, run_async
+from mart.teleop_gateway.assignment import WARM, Assignment
 from mart.teleop_gateway.seat import Seat
 from mart.teleop_gateway.settings import GatewaySettings
 
@@ -34,13 +35,13 @@ def _serve(assignment: Assignment) -> None:
     settings = GatewaySettings()
 
     async def run(service: AsyncService) -> None:
-        secret = tokens.load_or_create_secret(settings.secret_path)
+        secret = load_or_create_secret(settings.secret_path)
         with contextlib.closing(await asyncio.to_thread(ZenohBus.connect, settings.router)) as video_bus:
             seat = Seat(service.bus, video_bus, settings, assignment, secret)
             await _until_gateway_ends(asyncio.create_task(seat.run()))
 
     logging.getLogger("aioice").setLevel(logging.WARNING)  # it tells about every candidate pair
-    run_async(settings, SEAT_KIND, assignment.id, run)
+    run_async(settings, ServiceKind.SEAT, assignment.id, run)
 
 
 async def _until_gateway_ends(seat: asyncio.Task[None]) -> None:

@@ -20,11 +20,11 @@ import mujoco
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import State
+from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.encoder import CLOCK_HZ, Codec, Encoded, Encoder, to_i420
 from mart.teleop_gateway.handover import Closed, Fresh, Handover
 from mart.teleop_gateway.latency import PictureStamps
 from mart.teleop_gateway.quality import FAST, Image, Quality
-from mart.teleop_gateway.rate import RateLimit
 from mart.teleop_gateway.renderer import Renderer
 from mart.teleop_gateway.sizing import Sizing
 from mart.teleop_gateway.still import Still, Stills

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 from pydantic import ValidationError
 
-from mart.protocol.cli import json_option, print_result
 from mart.protocol.errors import InvalidInput
+from mart.runtime.cli import json_option, print_result
 from mart.trainer.grid import model_names
 from mart.trainer.presets import PRESETS
 from mart.trainer.request import DataSetName, Selection, TrainRequest
@@ -66,7 +66,7 @@ _paths = click.Path(path_type=Path, exists=True)
 @json_option
 def train(resume: Path | None, out: Path | None, as_json: bool, **options: Any) -> int:
     """Fit a policy to episodes."""
-    from mart.protocol.service import stop_requested
+    from mart.runtime.service import stop_requested
     from mart.trainer.runs import RunDirectory
     from mart.trainer.train import train as train_run
 
@@ -121,7 +121,7 @@ def _data(
     paths: tuple[Path, ...], name: str | None
 ) -> tuple[DataSetName | None, tuple[Path, ...], Selection]:
     """The data set, the files or folders to read, and what is taken of them where nothing is said."""
-    from mart.protocol.settings import Settings
+    from mart.runtime.settings import Settings
     from mart.trainer.data.named import WHOLE, find_dataset
 
     if not name:

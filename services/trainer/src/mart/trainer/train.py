@@ -20,7 +20,7 @@ from torch import Tensor
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, InvalidInput
 from mart.protocol.messages import operator_from_word
-from mart.protocol.settings import Settings
+from mart.runtime.settings import Settings
 from mart.trainer import keep
 from mart.trainer.course import Course, stages
 from mart.trainer.data.dataset import Dataset, Digest, load_dataset

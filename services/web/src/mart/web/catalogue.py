@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, raise_error
+from mart.runtime.bus.aio import AsyncBus
 
-KIND = "catalogue"
 _TIMEOUT_S = 20.0  # a folder of many episodes is read when it is first asked for
 _MAX_REPLY_BYTES = 16 * 1024 * 1024
 

@@ -17,7 +17,7 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
-from mart.protocol.private_file import write_private
+from mart.runtime.atomic_file import write_atomically
 
 _log = logging.getLogger(__name__)
 
@@ -46,7 +46,7 @@ def ensure_certificate(folder: Path, names: Iterable[str], now: dt.datetime) -> 
     if kept is not None and wanted <= _names_of(kept) and now < kept.not_valid_after_utc - RENEWED_BEFORE:
         return Certificate(path, kept.not_valid_after_utc)
     made = _make(path, wanted, now)
-    write_private(folder / "site.crt", made.public_bytes(serialization.Encoding.PEM))
+    write_atomically(folder / "site.crt", made.public_bytes(serialization.Encoding.PEM))
     return Certificate(path, made.not_valid_after_utc)
 
 
@@ -75,7 +75,7 @@ def _make(path: Path, names: set[x509.GeneralName], now: dt.datetime) -> x509.Ce
     private = key.private_bytes(
         serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
     )
-    write_private(path, private + certificate.public_bytes(serialization.Encoding.PEM))
+    write_atomically(path, private + certificate.public_bytes(serialization.Encoding.PEM))
     _log.info("Made a certificate for %s in %s", ", ".join(sorted(str(name.value) for name in names)), path)
     return certificate
 

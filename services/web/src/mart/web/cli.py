@@ -6,7 +6,8 @@ from typing import Any
 
 import click
 
-from mart.protocol.cli import json_option, print_result
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.cli import json_option, print_result
 
 
 @click.command()
@@ -16,7 +17,7 @@ from mart.protocol.cli import json_option, print_result
 @json_option
 def web(as_json: bool, **options: Any) -> None:
     """Serve the lobby and the operators' and phones' pages over HTTPS."""
-    from mart.protocol.service import run_async
+    from mart.runtime.service import run_async
     from mart.web.join_code import load_or_make_join_code
     from mart.web.names import in_url
     from mart.web.server import listen, serve
@@ -29,4 +30,6 @@ def web(as_json: bool, **options: Any) -> None:
         name = next(iter(settings.public_names), settings.web_host)
         url = f"https://{in_url(name)}:{port}/"
         print_result({"url": url, "join_code": join_code}, f"Lobby {url}  join code {join_code}", as_json)
-        run_async(settings, "web", "web", lambda service: serve(settings, service, listener, join_code))
+        run_async(
+            settings, ServiceKind.WEB, "web", lambda service: serve(settings, service, listener, join_code)
+        )

@@ -7,7 +7,7 @@ import secrets
 from pathlib import Path
 
 from mart.protocol.errors import Forbidden, InvalidInput
-from mart.protocol.private_file import write_private
+from mart.runtime.atomic_file import write_atomically
 
 _ALPHABET = "23456789ABCDEFGHJKMNPQRSTVWXYZ"  # nothing that can be taken for something else
 _GROUP = 4
@@ -23,7 +23,7 @@ def load_or_make_join_code(path: Path, fixed: str = "") -> str:
             f"A join code of {len(_plain(code))} letters and digits was given; at least {_MIN_CHARACTERS} are needed."
         )
     if code != kept:
-        write_private(path, f"{code}\n".encode())
+        write_atomically(path, f"{code}\n".encode())
     return code
 
 

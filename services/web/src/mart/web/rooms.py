@@ -11,8 +11,6 @@ from collections.abc import Iterator
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus.aio import AsyncBus
-from mart.protocol.bus.base import Closable, Sample
 from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import (
     OPERATOR_HUMAN,
@@ -27,6 +25,9 @@ from mart.protocol.messages import (
     SeatRequest,
     raise_error,
 )
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.bus.base import Closable, Sample
 from mart.web import stills
 from mart.web.lobby import Json, Lobby, event_json
 from mart.web.people import Person
@@ -234,7 +235,7 @@ class Rooms:
         kind, name = key.split("/")[-2:]
         running = self._services.setdefault(kind, set())
         (running.add if alive else running.discard)(name)
-        if kind == "sim":
+        if kind == ServiceKind.SIM:
             self.lobby.set_alive(name, alive)
         self._tell()
 

@@ -14,8 +14,8 @@ import uvicorn
 
 from mart.protocol import clock
 from mart.protocol.errors import Unavailable
-from mart.protocol.service import AsyncService, announced
-from mart.protocol.tokens import load_or_create_secret
+from mart.runtime.secret_file import load_or_create_secret
+from mart.runtime.service import AsyncService, announced
 from mart.web.app import create_app
 from mart.web.certificate import Certificate, ensure_certificate
 from mart.web.guard import MAX_BODY_BYTES

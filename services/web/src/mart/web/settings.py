@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pydantic import Field
 
-from mart.protocol.settings import Settings
+from mart.runtime.settings import Settings
 
 
 class WebSettings(Settings):

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.aio import AsyncBus
-from mart.protocol.errors import Unavailable
+from mart.protocol.gateway_choice import gateway_of
 from mart.protocol.messages import Answer, Offer, OpenSeat, OpenSeatReply, raise_error
 from mart.protocol.tokens import SeatToken
+from mart.runtime.bus.aio import AsyncBus
 
 _OPEN_TIMEOUT_S = 20.0  # a gateway may have to fetch and load the room's model first
 _OFFER_TIMEOUT_S = 10.0
@@ -18,7 +17,7 @@ _MAX_ANSWER_BYTES = 64 * 1024
 
 async def answer_offer(bus: AsyncBus, gateways: Iterable[str], seat: SeatToken, token: str, sdp: str) -> str:
     """The answer's SDP. Raises Unavailable where no gateway runs, and whatever the gateway reports."""
-    gateway = choose_gateway(gateways, seat.room, seat.arm)
+    gateway = gateway_of(gateways, seat.room, seat.arm)
     opening = OpenSeat(room=seat.room, arm=seat.arm, seat_epoch=seat.epoch)
     opened = await bus.query(keys.open_seat(gateway), codec.encode(opening), _OPEN_TIMEOUT_S)
     raise_error(codec.decode(OpenSeatReply, opened, _MAX_ANSWER_BYTES).error)
@@ -27,11 +26,3 @@ async def answer_offer(bus: AsyncBus, gateways: Iterable[str], seat: SeatToken, 
     answer = codec.decode(Answer, reply, _MAX_ANSWER_BYTES)
     raise_error(answer.error)
     return answer.sdp
-
-
-def choose_gateway(gateways: Iterable[str], room: str, arm: str) -> str:
-    """The same one for a seat as long as it runs (rendezvous hashing: Thaler & Ravishankar, 1998)."""
-    running = list(gateways)
-    if not running:
-        raise Unavailable("No gateway is running, so there is no picture; start one with `mart gateway`.")
-    return max(running, key=lambda gateway: hashlib.sha256(f"{gateway}/{room}/{arm}".encode()).digest())

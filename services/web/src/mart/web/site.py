@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mart.protocol.bus.aio import AsyncBus
-from mart.web.catalogue import KIND as CATALOGUE
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.aio import AsyncBus
 from mart.web.catalogue import Catalogue
 from mart.web.limits import RateLimit
 from mart.web.pairing import PairingCodes
 from mart.web.people import People
 from mart.web.rooms import Rooms
-from mart.web.trainer import KIND as TRAINER
 from mart.web.trainer import Trainer
 
 
@@ -43,8 +42,8 @@ class Site:
 
     @property
     def catalogue(self) -> Catalogue:
-        return Catalogue(self.bus, lambda: self.rooms.services().get(CATALOGUE, []))
+        return Catalogue(self.bus, lambda: self.rooms.services().get(ServiceKind.CATALOGUE, []))
 
     @property
     def trainer(self) -> Trainer:
-        return Trainer(self.bus, lambda: self.rooms.services().get(TRAINER, []))
+        return Trainer(self.bus, lambda: self.rooms.services().get(ServiceKind.TRAINER, []))

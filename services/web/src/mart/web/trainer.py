@@ -9,11 +9,10 @@ from google.protobuf.json_format import MessageToDict
 from google.protobuf.message import Message
 
 from mart.protocol import codec, keys
-from mart.protocol.bus.aio import AsyncBus
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import JobState, TrainerReply, TrainerRequest, raise_error
+from mart.runtime.bus.aio import AsyncBus
 
-KIND = "trainer"
 _TIMEOUT_S = 10.0
 _MAX_REPLY_BYTES = 16 * 1024 * 1024
 _STATE = "JOB_STATE_"

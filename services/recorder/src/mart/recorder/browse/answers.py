@@ -7,10 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from mart.episodes import datasets, labels
+from mart.episodes.labels import Kind, Label
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import clock, codec
-from mart.protocol.episodes import datasets, labels
-from mart.protocol.episodes.labels import Kind, Label
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RecordedView, State
 from mart.protocol.recording import EVENT, STATE, VERSIONS, CadenceRecord, VerificationRecord, video_topic

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from mart.protocol.episodes.datasets import NamedDataSet
+from mart.episodes.datasets import NamedDataSet
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, RecordedEpisode
 from mart.protocol.messages import NamedDataSet as NamedDataSetMessage
 from mart.protocol.recording import OperatorsRecord

@@ -10,8 +10,8 @@ import av
 from av.video.codeccontext import VideoCodecContext
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, NotFound
 from mart.protocol.recording import video_topic
 

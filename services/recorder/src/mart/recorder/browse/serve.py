@@ -7,12 +7,13 @@ import os
 import queue
 
 from mart.protocol import codec, keys
-from mart.protocol.bus import Request
 from mart.protocol.errors import MartError
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, error_message
-from mart.protocol.service import announced, connected
+from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.browse.answers import Answers
 from mart.recorder.settings import RecorderSettings
+from mart.runtime.bus import Request
+from mart.runtime.service import announced, connected
 
 _MAX_REQUEST_BYTES = 64 * 1024
 _MAX_WAITING = 256
@@ -30,7 +31,7 @@ def serve_catalogue(settings: RecorderSettings, name: str) -> None:
         with contextlib.suppress(queue.Full):  # whoever asks hears nothing in time, and asks again
             inbox.put_nowait(request)
 
-    with connected(settings, "catalogue", name) as service, contextlib.ExitStack() as stack:
+    with connected(settings, ServiceKind.CATALOGUE, name) as service, contextlib.ExitStack() as stack:
         stack.enter_context(contextlib.closing(service.bus.serve(keys.catalogue(name), take)))
         stack.enter_context(announced(service))
         while not service.stop.is_set():

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from mart.protocol.episodes.alike import require_alike
-from mart.protocol.episodes.reader import EpisodeFile
+from mart.episodes.compatibility import require_alike
+from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.tasks import Task, get_task
 from mart.recorder.catalog import Row

@@ -18,9 +18,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Conflict
 from mart.protocol.tasks import Observation, Task
-from mart.protocol.worlds import ACTION_SIZE
 from mart.recorder.export.choice import Choice
 from mart.recorder.export.transitions import Transitions, read_transitions
 

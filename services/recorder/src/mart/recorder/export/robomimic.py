@@ -16,7 +16,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from mart.protocol.episodes.reader import EpisodeFile
+from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Conflict
 from mart.protocol.tasks import Task
 from mart.recorder.catalog import Row

@@ -14,7 +14,7 @@ import numpy as np
 from mujoco.batch import Batch, SimulationError
 from numpy.typing import NDArray
 
-from mart.protocol.worlds import Worlds
+from mart.protocol.batch_state import Worlds
 from mart.sim.tasks import scene_of
 from mart.sim.world.data import Array, Flags
 from mart.sim.world.last_states import KEPT, Diverged

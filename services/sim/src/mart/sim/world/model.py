@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import mujoco
 
-from mart.protocol.errors import InvalidInput
+from mart.protocol.control_rate import require_control_hz
 from mart.sim.world import osc, panda, scenery
 from mart.sim.world.meshes import Detail
 
@@ -15,7 +15,6 @@ if TYPE_CHECKING:  # scenes are built from parts of this package
     from mart.sim.tasks.scene import Scene
 
 _LARGEST_TIMESTEP_S = 0.002
-_CONTROL_HZ = (5.0, 100.0)
 
 
 def substeps(control_hz: float) -> tuple[int, float]:
@@ -24,12 +23,7 @@ def substeps(control_hz: float) -> tuple[int, float]:
     The substep is 2 ms or the longest shorter one that divides the period: 20 Hz 25 x 2 ms, 30 Hz 17 x 1.961 ms,
     60 Hz 9 x 1.852 ms. Raises InvalidInput outside 5 to 100 Hz.
     """
-    low, high = _CONTROL_HZ
-    if not low <= control_hz <= high:
-        raise InvalidInput(
-            f"A control rate of {control_hz} Hz was given; it must be from {low:g} to {high:g} Hz."
-        )
-    period_s = 1.0 / control_hz
+    period_s = 1.0 / require_control_hz(control_hz)
     number = math.ceil(period_s / _LARGEST_TIMESTEP_S - 1e-9)
     return number, period_s / number
 

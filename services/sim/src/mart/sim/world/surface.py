@@ -20,8 +20,6 @@ from mart.sim.world.shadows import Shadows
 if TYPE_CHECKING:  # scenes are built from parts of this package
     from mart.sim.tasks.scene import Judgement, Scene
 
-ACTION_SIZE = 7  # 6 of motion, 1 of gripper
-
 
 class Surface:
     """The scene must have been made for this data alone: it keeps views of it."""

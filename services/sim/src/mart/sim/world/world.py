@@ -17,6 +17,7 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import InvalidInput
 from mart.protocol.pose import Pose, quaternion_conjugate, quaternion_log, quaternion_multiply
 from mart.protocol.tasks import Task, get_task
@@ -27,7 +28,7 @@ from mart.sim.world.data import Array
 from mart.sim.world.last_states import Diverged, LastStates, Trail
 from mart.sim.world.meshes import Detail
 from mart.sim.world.progress import Progress, first_reasons
-from mart.sim.world.surface import ACTION_SIZE, Surface
+from mart.sim.world.surface import Surface
 
 if TYPE_CHECKING:  # scenes are built from parts of this package
     from mart.sim.tasks.scene import Judgement, Scene

@@ -14,7 +14,7 @@ import numpy as np
 from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
-from mart.protocol.episodes.reader import EpisodeFile
+from mart.episodes.reader import EpisodeFile
 from mart.trainer.data.episode import EpisodeArrays, read_episode
 from mart.trainer.data.layout import Layout
 

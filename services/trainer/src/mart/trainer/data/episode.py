@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.episodes.reader import EpisodeFile
+from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import ArmState, State
 from mart.protocol.recording import STATE
-from mart.protocol.worlds import ACTION_SIZE
 from mart.trainer.data.layout import Layout
 
 

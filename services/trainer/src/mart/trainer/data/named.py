@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict
 
-from mart.protocol.episodes import datasets, labels
+from mart.episodes import datasets, labels
 from mart.trainer.data.select import Candidate, why_left_out
 from mart.trainer.request import DataSetName, Selection
 

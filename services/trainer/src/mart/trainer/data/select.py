@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from mart.protocol.episodes import labels
-from mart.protocol.episodes.alike import require_alike
-from mart.protocol.episodes.paths import episode_files
-from mart.protocol.episodes.reader import EpisodeFile
+from mart.episodes import labels
+from mart.episodes.compatibility import require_alike
+from mart.episodes.paths import episode_files
+from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import InvalidInput
 from mart.protocol.recording import EpisodeRecord, Shift
 from mart.trainer.request import Selection

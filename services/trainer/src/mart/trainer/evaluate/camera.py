@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from mart.protocol import clock
-from mart.protocol.rollout import RolloutClient, Worlds
 from mart.protocol.tasks import Task
+from mart.rollouts.client import RolloutClient, Worlds
 from mart.trainer.evaluate.footage import Footage, write
 from mart.trainer.evaluate.rollouts import Course
 

@@ -34,10 +34,10 @@ from mart.protocol.recording import (
     OperatorsRecord,
     RoomRecord,
     Shift,
-    Verdict,
     VerificationRecord,
 )
 from mart.protocol.tasks import Task
+from mart.protocol.vocabulary import Verdict
 
 Array = NDArray[np.float64]
 

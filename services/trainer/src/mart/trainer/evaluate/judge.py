@@ -14,8 +14,8 @@ from pathlib import Path
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
-from mart.protocol.rollout import RolloutClient
 from mart.protocol.tasks import get_task
+from mart.rollouts.client import RolloutClient
 from mart.trainer.checkpoint import read_record
 from mart.trainer.evaluate import result
 from mart.trainer.evaluate.camera import Camera

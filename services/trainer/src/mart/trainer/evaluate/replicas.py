@@ -15,11 +15,12 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 from mart.protocol import clock, keys
-from mart.protocol.bus.base import Bus
-from mart.protocol.bus.zenoh_bus import ZenohBus
 from mart.protocol.errors import Unavailable
-from mart.protocol.rollout import RolloutClient
-from mart.protocol.settings import Settings
+from mart.protocol.vocabulary import ServiceKind
+from mart.rollouts.client import RolloutClient
+from mart.runtime.bus.base import Bus
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.settings import Settings
 from mart.trainer import leash
 
 _START_TIMEOUT_S = 60.0
@@ -72,7 +73,9 @@ def _connected(endpoint: str, replica: subprocess.Popen[bytes], log: Path) -> It
     up = threading.Event()
     deadline_s = clock.monotonic_s() + _START_TIMEOUT_S
     with ZenohBus.connect(endpoint) as bus:
-        watch = bus.watch(keys.alive("replica", _NAME), lambda _key, alive: up.set() if alive else None)
+        watch = bus.watch(
+            keys.alive(ServiceKind.REPLICA, _NAME), lambda _key, alive: up.set() if alive else None
+        )
         with contextlib.closing(watch):
             while not up.wait(0.5):
                 if replica.poll() is not None or clock.monotonic_s() > deadline_s:

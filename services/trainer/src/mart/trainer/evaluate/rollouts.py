@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.errors import InvalidInput
-from mart.protocol.rollout import ACTION_SIZE, RolloutClient, Worlds
 from mart.protocol.tasks import Task, get_task
+from mart.rollouts.client import ACTION_SIZE, RolloutClient, Worlds
 from mart.trainer.evaluate.result import Outcome, Played
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from mart.protocol.errors import MartError, Unavailable
-from mart.protocol.service import configure_logging, stop_requested
+from mart.runtime.service import configure_logging, stop_requested
 from mart.trainer.evaluate import words
 from mart.trainer.evaluate.judge import Judge, Rules
 from mart.trainer.evaluate.replicas import worlds

@@ -19,7 +19,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mart.protocol.worlds import ACTION_SIZE
+from mart.protocol.batch_state import ACTION_SIZE
 from mart.trainer.data.layout import Layout
 from mart.trainer.data.windows import Batch
 from mart.trainer.grid import Model

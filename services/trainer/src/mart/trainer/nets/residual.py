@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import torch
 from torch import Tensor, nn
 
-from mart.protocol.worlds import ACTION_SIZE
+from mart.protocol.batch_state import ACTION_SIZE
 from mart.trainer.nets.stack import MLP, Generators, full
 
 _NO_LENGTH = 1e-8

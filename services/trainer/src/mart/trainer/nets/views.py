@@ -9,7 +9,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from mart.protocol.worlds import ACTION_SIZE
+from mart.protocol.batch_state import ACTION_SIZE
 from mart.trainer.data.layout import Layout
 from mart.trainer.grid import Span
 

@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mart.operators.room_watch import RoomWatch
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Bus, Publisher
-from mart.protocol.complaints import Complaints
 from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import OPERATOR_HOLD, Event, RoomStatus, Seat, SeatRequest, State
-from mart.protocol.room_watch import RoomWatch
 from mart.protocol.tasks import Task, get_task
+from mart.runtime.bus import Bus, Publisher
+from mart.runtime.throttled_log import ThrottledLog
 from mart.trainer.operate.operator import PolicyOperator, parts_of
 
 if TYPE_CHECKING:
     from mart.trainer.policies.policy import Policy
 
 REPEAT_S = 0.1  # while no new state comes: the barrier hears that the policy is still there
+_log = logging.getLogger(__name__)
+
 _QUERY_TIMEOUT_S = 3.0
 
 CheckpointOf = Callable[[Seat], Path | None]  # of a seat that is to be driven; None: not by us
@@ -50,7 +53,7 @@ class Crews:
         self._crews: dict[tuple[str, Path], Crew] = {}
         self._failed: dict[tuple[str, Path], Mapping[str, int]] = {}  # with the epochs that were left
         self._watch = RoomWatch(bus, room)
-        self._complaints = Complaints()
+        self._throttled_log = ThrottledLog(_log)
 
     def close(self) -> None:
         self._watch.close()
@@ -65,7 +68,7 @@ class Crews:
         for room, state in states.items():
             self._show(room, state)
         self._speak(clock.monotonic_s())
-        self._complaints.say(self._watch.unusable, clock.monotonic_s())
+        self._throttled_log.report(self._watch.unusable, clock.monotonic_s())
 
     def _follow_seats(self, room: str, status: RoomStatus) -> None:
         wanted: dict[tuple[str, Path], dict[str, int]] = {}

@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mart.protocol import codec, keys
-from mart.protocol.bus import Bus
 from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound
 from mart.protocol.messages import OPERATOR_POLICY, RoomReply, Seat, SeatRequest, raise_error
-from mart.protocol.service import running
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus import Bus
+from mart.runtime.service import running
 from mart.trainer.operate.crews import Crews, Load
 from mart.trainer.operate.operator import parts_of
 from mart.trainer.operate.settings import OperateSettings, PoliciesSettings
@@ -34,7 +35,7 @@ def serve_policies(settings: PoliciesSettings, loader: Callable[[], Load]) -> No
         return settings.policies_dir / seat.policy if promoted else None
 
     with (
-        running(settings, "policies", settings.id) as service,
+        running(settings, ServiceKind.POLICIES, settings.id) as service,
         contextlib.closing(Crews(service.bus, settings.room, checkpoint_of, _late(loader))) as crews,
     ):
         threading.Thread(target=_warm_up, args=(loader,), daemon=True).start()
@@ -65,7 +66,7 @@ def operate(settings: OperateSettings, load: Load, seated: Callable[[str, tuple[
     name = settings.name or settings.checkpoint.name
     holder_id = f"operate-{secrets.token_hex(8)}"
     with (
-        running(settings, "operate", holder_id) as service,
+        running(settings, ServiceKind.OPERATE, holder_id) as service,
         _claimed(service.bus, settings.room, arms, holder_id, name) as seats,
     ):
         own = OwnSeats(settings.checkpoint, holder_id, seats)

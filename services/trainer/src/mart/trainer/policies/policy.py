@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from mart.protocol.worlds import ACTION_SIZE
+from mart.protocol.batch_state import ACTION_SIZE
 
 __all__ = ["ACTION_SIZE", "Array", "Policy"]
 

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from mart.episodes import labels
+from mart.episodes.paths import episode_files
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.episodes import labels
-from mart.protocol.episodes.paths import episode_files
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, NotFound
 from mart.protocol.messages import State
 from mart.protocol.recording import STATE, EpisodeRecord

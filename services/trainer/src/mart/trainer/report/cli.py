@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mart.protocol.cli import json_option, print_result
+from mart.runtime.cli import json_option, print_result
 
 if TYPE_CHECKING:
     from mart.trainer.report import paper

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.episodes.paths import episode_files
+from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.episodes.paths import episode_files
-from mart.protocol.episodes.reader import EpisodeFile
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import State
 from mart.protocol.recording import STATE

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from itertools import islice
 from pathlib import Path
 
-from mart.protocol.episodes import datasets, labels
+from mart.episodes import datasets, labels
 from mart.protocol.messages import DataSet, Order, TrainerReply
 from mart.protocol.recording import SUFFIX
 from mart.protocol.tasks import task_names

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from mart.protocol.cli import json_option, print_result
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.cli import json_option, print_result
 
 if TYPE_CHECKING:
     from mart.protocol.messages import TrainerReply, TrainerRequest
@@ -198,13 +199,13 @@ def promote(job: str, name: str, checkpoint: str, trainer: str, as_json: bool) -
 def _ask(trainer: str, request: TrainerRequest) -> TrainerReply:
     """Raises what the trainer answers, and Unavailable where none does."""
     from mart.protocol import codec, keys
-    from mart.protocol.bus.zenoh_bus import ZenohBus
     from mart.protocol.errors import Unavailable
     from mart.protocol.messages import TrainerReply, raise_error
-    from mart.protocol.settings import Settings
+    from mart.runtime.bus.zenoh_bus import ZenohBus
+    from mart.runtime.settings import Settings
 
     with ZenohBus.connect(Settings().router, wait_for_router=False) as bus:
-        if not bus.alive(keys.alive("trainer", trainer)):
+        if not bus.alive(keys.alive(ServiceKind.TRAINER, trainer)):
             raise Unavailable(f"No trainer {trainer!r} is up; start it with `mart trainer --name {trainer}`.")
         reply = codec.decode(TrainerReply, bus.query(keys.training(trainer), codec.encode(request), 30.0))
     raise_error(reply.error)

@@ -8,10 +8,11 @@ import queue
 from collections.abc import Iterator
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.bus import Request
 from mart.protocol.errors import Conflict, MartError
 from mart.protocol.messages import TrainerReply, TrainerRequest, error_message
-from mart.protocol.service import announced, connected
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus import Request
+from mart.runtime.service import announced, connected
 from mart.trainer.jobs.executors.executor import Ended, Executor, OnEnded
 from mart.trainer.jobs.executors.local import LocalExecutor
 from mart.trainer.jobs.executors.ray import RayExecutor
@@ -31,7 +32,7 @@ def serve_trainer(settings: TrainerSettings) -> None:
     """Until the process is asked to stop; jobs that run then are gone on with by the next trainer."""
     inbox: Inbox = queue.SimpleQueue()
     with contextlib.ExitStack() as stack:
-        service = stack.enter_context(connected(settings, "trainer", settings.trainer))
+        service = stack.enter_context(connected(settings, ServiceKind.TRAINER, settings.trainer))
         stack.enter_context(_claimed(settings))
         table = stack.enter_context(contextlib.closing(JobTable(settings.jobs_path)))
         executors = stack.enter_context(_executors(settings, inbox.put))

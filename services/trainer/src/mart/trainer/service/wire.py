@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from mart.protocol.episodes import labels
+from mart.episodes import labels
 from mart.protocol.messages import Evaluation as EvaluationMessage
 from mart.protocol.messages import (
     Job as JobMessage,

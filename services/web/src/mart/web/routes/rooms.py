@@ -8,6 +8,7 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from mart.protocol import clock
+from mart.protocol.control_rate import MAX_CONTROL_HZ
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import (
     OUTCOME_DISCARDED,
@@ -28,7 +29,7 @@ _OUTCOMES = {"success": OUTCOME_SUCCESS, "failure": OUTCOME_FAILURE, "discard": 
 class NewRoom(BaseModel):
     task: str = Field(max_length=64)
     room: str = Field("", max_length=64)  # empty: a free name
-    control_hz: float = Field(0.0, ge=0.0, le=250.0)  # 0: the usual rate
+    control_hz: float = Field(0.0, ge=0.0, le=MAX_CONTROL_HZ)  # 0: the usual rate
     episodes: int = Field(0, ge=0, le=10_000)  # good ones that are wanted; 0: no plan
 
 

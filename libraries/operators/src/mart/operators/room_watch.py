@@ -1,0 +1,70 @@
+"""What goes on in rooms, for a service that drives seats in them."""
+
+from __future__ import annotations
+
+import threading
+from collections import Counter
+from collections.abc import Mapping
+from typing import TypeVar
+
+from mart.protocol import codec, keys
+from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import RoomStatus, State
+from mart.runtime.bus import Bus, Sample
+
+_MAX_STATUS_BYTES = 64 * 1024
+_MAX_STATE_BYTES = 1024 * 1024
+
+M = TypeVar("M", RoomStatus, State)
+
+
+class RoomWatch:
+    """The newest status and the newest state of every room, or of `room` alone. Whoever is late misses older ones.
+
+    `unusable` counts what could not be decoded.
+    """
+
+    def __init__(self, bus: Bus, room: str | None = None) -> None:
+        self.unusable: Counter[str] = Counter()
+        self._states: dict[str, bytes] = {}
+        self._statuses: dict[str, bytes] = {}
+        self._arrived = threading.Condition()
+        self._subscriptions = (
+            bus.subscribe(keys.status(room).key if room else keys.EVERY_STATUS, self._on_status),
+            bus.subscribe(keys.state(room).key if room else keys.EVERY_STATE, self._on_state),
+        )
+
+    def take(self, timeout_s: float) -> tuple[Mapping[str, RoomStatus], Mapping[str, State]]:
+        """By room, what came since the last call; waits for something at most `timeout_s`."""
+        with self._arrived:
+            if not self._statuses and not self._states:
+                self._arrived.wait(timeout_s)
+            statuses, states = self._statuses, self._states
+            self._statuses, self._states = {}, {}
+        return (
+            self._decoded(RoomStatus, statuses, _MAX_STATUS_BYTES),
+            self._decoded(State, states, _MAX_STATE_BYTES),
+        )
+
+    def close(self) -> None:
+        for subscription in self._subscriptions:
+            subscription.close()
+
+    def _on_status(self, sample: Sample) -> None:
+        with self._arrived:
+            self._statuses[keys.room_of(sample.key)] = sample.payload
+            self._arrived.notify()
+
+    def _on_state(self, sample: Sample) -> None:
+        with self._arrived:
+            self._states[keys.room_of(sample.key)] = sample.payload
+            self._arrived.notify()
+
+    def _decoded(self, kind: type[M], payloads: Mapping[str, bytes], limit_bytes: int) -> dict[str, M]:
+        decoded: dict[str, M] = {}
+        for room, payload in payloads.items():
+            try:
+                decoded[room] = codec.decode(kind, payload, limit_bytes)
+            except InvalidInput as error:
+                self.unusable[f"{room}: {error}"] += 1
+        return decoded

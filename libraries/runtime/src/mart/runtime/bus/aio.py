@@ -1,0 +1,90 @@
+"""The bus for asyncio services: everything arrives on the event loop, nothing blocks it."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable, Coroutine
+from typing import Any
+
+from mart.protocol.keys import Topic
+from mart.runtime.bus.base import Bus, Closable, Handler, Publisher, Request, Sample
+
+_log = logging.getLogger(__name__)
+
+
+class AsyncBus:
+    """Wraps a Bus for one running event loop. Handlers are plain functions called on the loop."""
+
+    def __init__(self, bus: Bus, loop: asyncio.AbstractEventLoop) -> None:
+        self.bus = bus
+        self._loop = loop
+        self._tasks: set[asyncio.Task[Any]] = set()
+
+    def publisher(self, topic: Topic) -> Publisher:
+        return self.bus.publisher(topic)
+
+    def subscribe(self, key_expression: str, handler: Handler) -> Closable:
+        return self.bus.subscribe(key_expression, lambda sample: self._soon(handler, sample))
+
+    def subscribe_newest(self, key_expression: str) -> Newest:
+        """A mailbox that keeps only the newest sample: for states, where older ones are worthless."""
+        newest = Newest()
+        newest.subscription = self.subscribe(key_expression, newest.offer)
+        return newest
+
+    def serve(self, topic: Topic, answer: Callable[[bytes], Awaitable[bytes]]) -> Closable:
+        """`answer` turns a request's payload into the reply's; it must not raise (reply with an error instead)."""
+
+        async def respond(request: Request) -> None:
+            request.reply(await answer(request.payload))
+
+        return self.bus.serve(topic, lambda request: self._soon(lambda: self.spawn(respond(request))))
+
+    async def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
+        return await asyncio.to_thread(self.bus.query, topic, payload, timeout_s)
+
+    def announce(self, alive_key: str) -> Closable:
+        return self.bus.announce(alive_key)
+
+    def watch(self, alive_expression: str, handler: Callable[[str, bool], None]) -> Closable:
+        return self.bus.watch(alive_expression, lambda key, alive: self._soon(handler, key, alive))
+
+    def spawn(self, coroutine: Coroutine[Any, Any, Any]) -> asyncio.Task[Any]:
+        """Runs a coroutine in the background and logs its failure."""
+        task = self._loop.create_task(coroutine)
+        self._tasks.add(task)
+        task.add_done_callback(self._finished)
+        return task
+
+    def _finished(self, task: asyncio.Task[Any]) -> None:
+        self._tasks.discard(task)
+        if not task.cancelled() and task.exception() is not None:
+            _log.error("A background task failed", exc_info=task.exception())
+
+    def _soon(self, call: Callable[..., object], *arguments: object) -> None:
+        if not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(call, *arguments)
+
+
+class Newest:
+    """One slot, newest wins; `await get()` returns what has not been taken yet."""
+
+    subscription: Closable
+
+    def __init__(self) -> None:
+        self._sample: Sample | None = None
+        self._arrived = asyncio.Event()
+
+    def offer(self, sample: Sample) -> None:
+        self._sample = sample
+        self._arrived.set()
+
+    async def get(self) -> Sample:
+        await self._arrived.wait()
+        self._arrived.clear()
+        assert self._sample is not None
+        return self._sample
+
+    def close(self) -> None:
+        self.subscription.close()

@@ -1,0 +1,36 @@
+"""Pass on bus messages of one kind; garbage is counted, logged once a second at most, and otherwise ignored."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+from google.protobuf.message import Message
+
+from mart.protocol import clock, codec
+from mart.protocol.errors import InvalidInput
+from mart.runtime.bus.base import Sample
+from mart.runtime.rate_limit import RateLimit
+
+_log = logging.getLogger(__name__)
+
+M = TypeVar("M", bound=Message)
+
+
+class DecodingSubscriber(Generic[M]):
+    """Decode each sample and hand it to `take`, which may raise InvalidInput for one that makes no sense."""
+
+    def __init__(self, kind: type[M], take: Callable[[M], None]) -> None:
+        self.garbage = 0
+        self._kind = kind
+        self._take = take
+        self._log_limit = RateLimit(1)
+
+    def __call__(self, sample: Sample) -> None:
+        try:
+            self._take(codec.decode(self._kind, sample.payload))
+        except InvalidInput as error:
+            self.garbage += 1
+            if self._log_limit.allows(clock.monotonic_s()):
+                _log.warning("%s: %s (%d so far)", sample.key, error, self.garbage)

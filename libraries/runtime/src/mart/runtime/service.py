@@ -1,0 +1,113 @@
+"""How every service starts and stops: settings → log → bus → liveliness → run → orderly stop."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import signal
+import sys
+import threading
+from collections.abc import Awaitable, Callable, Iterator
+from dataclasses import dataclass
+from types import FrameType
+
+from mart.protocol import keys
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.bus.base import Bus
+from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.settings import Settings
+
+_log = logging.getLogger(__name__)
+_STOP_SIGNALS = (signal.SIGTERM, signal.SIGINT)
+
+
+@dataclass(frozen=True)
+class Service:
+    """A running service of one kind. `stop` is set when the process is asked to end."""
+
+    kind: ServiceKind
+    id: str
+    bus: Bus
+    stop: threading.Event
+
+
+@dataclass(frozen=True)
+class AsyncService:
+    """The same on an event loop; it is asked to end by cancelling its main task."""
+
+    kind: ServiceKind
+    id: str
+    bus: AsyncBus
+
+
+@contextlib.contextmanager
+def running(settings: Settings, kind: ServiceKind, id: str) -> Iterator[Service]:
+    """A service with a thread of its own (sim, recorder). Its liveliness token lives as long as the block."""
+    with connected(settings, kind, id) as service, announced(service):
+        yield service
+
+
+@contextlib.contextmanager
+def connected(settings: Settings, kind: ServiceKind, id: str) -> Iterator[Service]:
+    """A service that has something to set up before it is `announced`: the token says that it answers."""
+    configure_logging(settings.log_level, kind)
+    with stop_requested() as stop, ZenohBus.connect(settings.router) as bus:
+        yield Service(kind, id, bus, stop)
+
+
+@contextlib.contextmanager
+def stop_requested() -> Iterator[threading.Event]:
+    """An event that is set when the process is asked to end; for the main thread."""
+    stop = threading.Event()
+
+    def request_stop(_number: int, _frame: FrameType | None) -> None:
+        stop.set()
+
+    before = {number: signal.signal(number, request_stop) for number in _STOP_SIGNALS}
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextlib.contextmanager
+def announced(service: Service | AsyncService) -> Iterator[None]:
+    """The service's liveliness token lives as long as the block."""
+    with contextlib.closing(service.bus.announce(keys.alive(service.kind, service.id))):
+        _log.info("%s %s is up", service.kind, service.id)
+        yield
+    _log.info("%s %s stops", service.kind, service.id)
+
+
+def run_async(
+    settings: Settings, kind: ServiceKind, id: str, main: Callable[[AsyncService], Awaitable[None]]
+) -> None:
+    """An asyncio service (gateway, web): `main` is cancelled when the process is asked to end.
+
+    `main` says itself when the service is `announced`.
+    """
+
+    async def supervise() -> None:
+        loop = asyncio.get_running_loop()
+        with contextlib.closing(await asyncio.to_thread(ZenohBus.connect, settings.router)) as bus:
+            task = asyncio.ensure_future(main(AsyncService(kind, id, AsyncBus(bus, loop))))
+            for number in _STOP_SIGNALS:
+                loop.add_signal_handler(number, task.cancel)
+            with contextlib.suppress(asyncio.CancelledError):
+                await task
+
+    configure_logging(settings.log_level, kind)
+    asyncio.run(supervise())
+
+
+def configure_logging(level: str, name: str) -> None:
+    """Log one line an entry to standard error: time, level, the name of the service, text."""
+    logging.basicConfig(
+        level=level.upper(),
+        stream=sys.stderr,
+        format=f"%(asctime)s %(levelname)-7s {name:<9} %(message)s",
+        force=True,
+    )

@@ -1,5 +1,0 @@
-"""The seam between services and Zenoh: `Bus`, the real one, and an in-memory twin for unit tests."""
-
-from mart.protocol.bus.base import Bus, Closable, Handler, Publisher, Request, RequestHandler, Sample
-
-__all__ = ["Bus", "Closable", "Handler", "Publisher", "Request", "RequestHandler", "Sample"]

@@ -1,0 +1,53 @@
+"""Name the kinds of things that every part speaks of: services, operators, outcomes, verdicts.
+
+Each is the word that stands on the wire, in files, in JSON and on the command line.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class ServiceKind(StrEnum):
+    """Name the kind of a running process, as in its liveliness key `mart/@live/{kind}/{id}`."""
+
+    ROUTER = "router"
+    PLATFORM = "platform"
+    SIM = "sim"
+    REPLICA = "replica"
+    EXPERTS = "experts"
+    GATEWAY = "gateway"
+    SEAT = "seat"
+    RECORDER = "recorder"
+    CATALOGUE = "catalogue"
+    TRAINER = "trainer"
+    POLICIES = "policies"
+    OPERATE = "operate"  # one policy in one seat, by hand
+    PHONE = "phone"  # an emulated one
+    WEB = "web"
+
+
+class OperatorKind(StrEnum):
+    """Name who drives an arm; `hold` is nobody: the arm holds still and the barrier does not wait for it."""
+
+    HUMAN = "human"
+    POLICY = "policy"
+    SCRIPT = "script"
+    HOLD = "hold"
+
+
+class EpisodeOutcome(StrEnum):
+    """Name how an episode ended; `unspecified` where nothing says so, as in a file that a crash has cut."""
+
+    UNSPECIFIED = "unspecified"
+    SUCCESS = "success"
+    FAILURE = "failure"
+    DISCARDED = "discarded"
+
+
+class Verdict(StrEnum):
+    """Name what re-simulation said about an episode file."""
+
+    VERIFIED = "verified"  # every recorded tick follows from the one before, bit for bit
+    DIVERGED = "diverged"
+    UNVERIFIED = "unverified"  # nobody could say, or a part could not be checked

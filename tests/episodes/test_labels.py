@@ -1,0 +1,68 @@
+"""Labels are appended, never lost, and the newest of a kind holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mart.episodes import labels
+from mart.episodes.labels import Kind, Label, Labelled
+from mart.protocol.errors import InvalidInput
+
+_notes = st.text(st.characters(exclude_categories=["Cs"]), max_size=50)
+_paths = st.sampled_from(["2026-09-21/a.mcap", "2026-09-21/b.mcap"])
+_label = st.one_of(
+    st.builds(Label, _paths, st.just(Kind.NOTE), _notes, st.integers(0, 2**62)),
+    st.builds(Label, _paths, st.just(Kind.OUTCOME), st.sampled_from(["success", "failure"]), st.just(1)),
+    st.builds(Label, _paths, st.just(Kind.USE), st.sampled_from(["keep", "drop"]), st.just(1)),
+)
+
+
+@settings(max_examples=40)
+@given(st.lists(_label, max_size=8))
+def test_labels_read_back(tmp_path_factory: pytest.TempPathFactory, said: list[Label]) -> None:
+    root = tmp_path_factory.mktemp("labels")
+    for label in said:
+        labels.append(root, [label])
+    assert labels.read(root) == said
+
+
+def test_the_newest_of_a_kind_holds() -> None:
+    said = [
+        Label("a", Kind.OUTCOME, "failure", 1),
+        Label("a", Kind.NOTE, "slipped", 2),
+        Label("a", Kind.OUTCOME, "success", 3),
+        Label("a", Kind.USE, "drop", 4),
+        Label("a", Kind.USE, "keep", 5),
+        Label("b", Kind.USE, "drop", 6),
+    ]
+    assert labels.fold(said) == {
+        "a": Labelled(outcome="success", note="slipped"),
+        "b": Labelled(dropped=True),
+    }
+
+
+def test_a_torn_line_costs_itself_only(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    first, second = Label("a", Kind.NOTE, "one", 1), Label("a", Kind.NOTE, "two", 2)
+    labels.append(tmp_path, [first])
+    with (tmp_path / labels.FILE_NAME).open("ab") as file:
+        file.write(b'{"at_ns": 5, "path": "a", "ki')
+    labels.append(tmp_path, [second])
+    assert labels.read(tmp_path) == [first, second]
+    assert "line 2 is no label" in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("kind", "value"), [(Kind.OUTCOME, "great"), (Kind.USE, "maybe"), (Kind.NOTE, "x" * 3000)]
+)
+def test_a_value_that_the_kind_cannot_have_is_refused(kind: Kind, value: str) -> None:
+    with pytest.raises(InvalidInput, match="given"):
+        Label("a", kind, value, 1)
+
+
+def test_labels_lie_beside_the_days(tmp_path: Path) -> None:
+    assert labels.root_of(tmp_path / "2026-09-21" / "a.mcap") == tmp_path
+    assert labels.root_of(tmp_path / "elsewhere" / "a.mcap") == tmp_path / "elsewhere"
