@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from mart.protocol import codec
-from mart.protocol.batch_state import Worlds, join, pack, pack_actions, unpack
+from mart.protocol.batch_state import BatchState, join, pack, pack_actions, unpack
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.messages import WorldArrays
 from mart.protocol.tasks import get_task
@@ -20,14 +20,14 @@ TASK = get_task("two_arm_multi_cube_lifting")
 
 
 @st.composite
-def batches(draw: st.DrawFn) -> Worlds:
+def batches(draw: st.DrawFn) -> BatchState:
     count = draw(st.integers(1, 5))
 
     def some(shape: tuple[int, ...], dtype: Any = np.float64) -> Any:
         return draw(arrays(dtype, (count, *shape)))
 
     reasons = tuple(draw(st.sampled_from(["", "A cube fell off the table."])) for _ in range(count))
-    return Worlds(
+    return BatchState(
         observations={observation.name: some(observation.shape) for observation in TASK.observations},
         subtasks=some((len(TASK.subtasks),), np.bool_),
         success=some((), np.bool_),
@@ -39,7 +39,7 @@ def batches(draw: st.DrawFn) -> Worlds:
     )
 
 
-def arrays_of(worlds: Worlds) -> dict[str, Any]:
+def arrays_of(worlds: BatchState) -> dict[str, Any]:
     """As bytes: NaN is equal to itself."""
     packed = {name: np.asarray(value) for name, value in vars(worlds).items() if name != "observations"}
     packed |= worlds.observations
@@ -51,16 +51,16 @@ def arrays_of(worlds: Worlds) -> dict[str, Any]:
 
 @settings(max_examples=15)
 @given(batches())
-def test_a_batch_survives_the_wire(worlds: Worlds) -> None:
+def test_a_batch_survives_the_wire(worlds: BatchState) -> None:
     message = codec.decode(WorldArrays, codec.encode(pack(worlds)))
     assert arrays_of(unpack(TASK, message, len(worlds.reasons))) == arrays_of(worlds)
 
 
 @settings(max_examples=15)
 @given(batches())
-def test_halves_join_to_the_whole(worlds: Worlds) -> None:
+def test_halves_join_to_the_whole(worlds: BatchState) -> None:
     one_by_one = [
-        Worlds(
+        BatchState(
             observations={name: value[i : i + 1] for name, value in worlds.observations.items()},
             subtasks=worlds.subtasks[i : i + 1],
             success=worlds.success[i : i + 1],
@@ -79,7 +79,7 @@ def test_halves_join_to_the_whole(worlds: Worlds) -> None:
 
 @settings(max_examples=15)
 @given(batches(), st.sampled_from(["observations", "subtasks", "success_ticks", "success", "sim_time_s"]))
-def test_an_array_of_another_size_is_corrupt(worlds: Worlds, field: str) -> None:
+def test_an_array_of_another_size_is_corrupt(worlds: BatchState, field: str) -> None:
     message = pack(worlds)
     setattr(message, field, getattr(message, field) + b"\0")
     with pytest.raises(Corrupt, match=field):
@@ -88,7 +88,7 @@ def test_an_array_of_another_size_is_corrupt(worlds: Worlds, field: str) -> None
 
 @settings(max_examples=15)
 @given(batches())
-def test_another_number_of_worlds_is_corrupt(worlds: Worlds) -> None:
+def test_another_number_of_worlds_is_corrupt(worlds: BatchState) -> None:
     with pytest.raises(Corrupt, match="worlds were answered"):
         unpack(TASK, pack(worlds), len(worlds.reasons) + 1)
 

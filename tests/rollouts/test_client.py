@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from mart.protocol import codec, keys
-from mart.protocol.batch_state import Worlds, pack
+from mart.protocol.batch_state import BatchState, pack
 from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest, error_message
 from mart.protocol.tasks import get_task
@@ -83,7 +83,7 @@ class ToyReplica:
     def _standing(self, session: str) -> RolloutReply:
         times = self.sessions[session].copy()
         none = np.zeros(len(times), bool)
-        worlds = Worlds(
+        worlds = BatchState(
             observations={o.name: np.zeros((len(times), *o.shape)) for o in TASK.observations},
             subtasks=np.zeros((len(times), len(TASK.subtasks)), bool),
             success=none,

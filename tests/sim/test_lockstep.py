@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mart.protocol.batch_state import Worlds, unpack
+from mart.protocol.batch_state import BatchState, unpack
 from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest
 from mart.protocol.tasks import get_task
@@ -51,7 +51,7 @@ def some_actions(ticks: int, worlds: int = len(SEEDS)) -> NDArray[np.float64]:
     return np.random.default_rng(3).uniform(-1, 1, (ticks, worlds, 2, 7))
 
 
-def worlds_of(reply: RolloutReply) -> Worlds:
+def worlds_of(reply: RolloutReply) -> BatchState:
     return unpack(get_task(TASK), reply.worlds, len(reply.worlds.failed))
 
 
@@ -68,7 +68,7 @@ def test_a_batch_goes_as_its_worlds_would_alone(lockstep: Lockstep, world: World
             assert_same(worlds, number, world)
 
 
-def assert_same(worlds: Worlds, number: int, world: World) -> None:
+def assert_same(worlds: BatchState, number: int, world: World) -> None:
     assert worlds.integration_states is not None
     assert worlds.integration_states[number].tobytes() == world.integration_state()
     seen, progress = world.observations(), world.progress()
@@ -116,12 +116,14 @@ def test_a_step_that_comes_again_is_only_answered(lockstep: Lockstep) -> None:
     close(lockstep, session)
 
 
-def step_some(lockstep: Lockstep, session: str, actions: NDArray[np.float64], running: list[int]) -> Worlds:
+def step_some(
+    lockstep: Lockstep, session: str, actions: NDArray[np.float64], running: list[int]
+) -> BatchState:
     message = RolloutRequest.Step(session=session, actions=actions.tobytes(), running=bytes(running))
     return worlds_of(lockstep.answer(RolloutRequest(step=message), 0.0))
 
 
-def states(worlds: Worlds) -> list[bytes]:
+def states(worlds: BatchState) -> list[bytes]:
     assert worlds.integration_states is not None
     return [state.tobytes() for state in worlds.integration_states]
 

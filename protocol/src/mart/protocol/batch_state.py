@@ -21,7 +21,7 @@ Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
-class Worlds:
+class BatchState:
     """How the worlds of a batch stand, B of them, in the order of their seeds.
 
     observations: by the catalogue's names, each float64 of shape (B, *its own). subtasks: shape (B, S), in the
@@ -59,7 +59,7 @@ def check_actions(actions: Array) -> None:
         )
 
 
-def pack(worlds: Worlds) -> WorldArrays:
+def pack(worlds: BatchState) -> WorldArrays:
     count = len(worlds.reasons)
     side_by_side = [value.reshape(count, -1) for value in worlds.observations.values()]
     states = worlds.integration_states
@@ -74,13 +74,13 @@ def pack(worlds: Worlds) -> WorldArrays:
     )
 
 
-def unpack(task: Task, message: WorldArrays, count: int) -> Worlds:
+def unpack(task: Task, message: WorldArrays, count: int) -> BatchState:
     """Raises Corrupt where an array has not the size that the task and the number of worlds ask for."""
     reasons = tuple(message.failed)
     if len(reasons) != count:
         raise Corrupt(f"{len(reasons)} worlds were answered, but there are {count}.")
     size = len(message.integration_states) // (8 * count)
-    return Worlds(
+    return BatchState(
         observations=_observations(task, message.observations, count),
         subtasks=_flags("subtasks", message.subtasks, (count, len(task.subtasks))),
         success=_flags("success", message.success, (count,)),
@@ -118,10 +118,10 @@ def _sized(name: str, packed: bytes, size: int) -> bytes:
     return packed
 
 
-def join(parts: Sequence[Worlds]) -> Worlds:
+def join(parts: Sequence[BatchState]) -> BatchState:
     """One batch after the other."""
     states = [part.integration_states for part in parts if part.integration_states is not None]
-    return Worlds(
+    return BatchState(
         observations={
             name: np.concatenate([part.observations[name] for part in parts])
             for name in parts[0].observations

@@ -19,14 +19,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mart.protocol import codec, keys
-from mart.protocol.batch_state import ACTION_SIZE, Flags, Worlds, join, pack_actions, unpack
+from mart.protocol.batch_state import ACTION_SIZE, BatchState, Flags, join, pack_actions, unpack
 from mart.protocol.errors import Conflict, InvalidInput, MartError, Unavailable
 from mart.protocol.messages import Model, RolloutReply, RolloutRequest, raise_error
 from mart.protocol.tasks import Task, get_task
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Bus
 
-__all__ = ["ACTION_SIZE", "RolloutClient", "Worlds"]
+__all__ = ["ACTION_SIZE", "BatchState", "RolloutClient"]
 
 _START_TIMEOUT_S = 2.0
 _RESET_TIMEOUT_S, _RESET_TIMEOUT_PER_WORLD_S = 60.0, 0.1
@@ -74,7 +74,7 @@ class RolloutClient:
         arms: int | None = None,
         *,
         integration_states: bool = False,
-    ) -> Worlds:
+    ) -> BatchState:
         """Begins an episode in one world for each seed; earlier worlds of this client are closed.
 
         Raises NotFound for an unknown task, InvalidInput where seeds, rate or arms cannot be, Unavailable where a
@@ -100,7 +100,7 @@ class RolloutClient:
             self._shares.sort(key=operator.attrgetter("first"))
             return self._unpack(known, replies)
 
-    def step(self, actions: ArrayLike, running: ArrayLike | None = None) -> Worlds:
+    def step(self, actions: ArrayLike, running: ArrayLike | None = None) -> BatchState:
         """Advances every world by one control period, or those that are `running`, shape (B,); the others stay.
 
         actions: shape (B, arms, 7), each number in [-1, 1]. Raises InvalidInput for anything else, and nothing moves;
@@ -209,7 +209,7 @@ class RolloutClient:
             with contextlib.suppress(MartError):
                 self._query(share.replica, request, _CLOSE_TIMEOUT_S)
 
-    def _unpack(self, task: Task, replies: Sequence[RolloutReply]) -> Worlds:
+    def _unpack(self, task: Task, replies: Sequence[RolloutReply]) -> BatchState:
         parts = [
             unpack(task, reply.worlds, share.end - share.first)
             for share, reply in zip(self._shares, replies, strict=True)

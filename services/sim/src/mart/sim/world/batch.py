@@ -14,7 +14,7 @@ import numpy as np
 from mujoco.batch import Batch, SimulationError
 from numpy.typing import NDArray
 
-from mart.protocol.batch_state import Worlds
+from mart.protocol.batch_state import BatchState
 from mart.sim.tasks import scene_of
 from mart.sim.world.data import Array, Flags
 from mart.sim.world.last_states import KEPT, Diverged
@@ -99,14 +99,14 @@ class WorldBatch:
         self._surface.cast_shadows()
         return self._batch.state.copy()
 
-    def standing(self, *, integration_states: bool = False) -> Worlds:
+    def standing(self, *, integration_states: bool = False) -> BatchState:
         """How every world stands."""
         judgement = self._judgement
         reasons = first_reasons(judgement.failed, len(self))
         for world, reason in self._diverged.items():
             reasons[world] = reason
         ticks = self._surface.success_ticks
-        return Worlds(
+        return BatchState(
             observations=self._surface.observations(),
             subtasks=np.stack([judgement.subtasks[s.name] for s in self._world.task.subtasks], axis=-1),
             success=ticks >= self._world.task.success_hold_ticks,

@@ -10,7 +10,7 @@ import numpy as np
 
 from mart.protocol import clock
 from mart.protocol.tasks import Task
-from mart.rollouts.client import RolloutClient, Worlds
+from mart.rollouts.client import BatchState, RolloutClient
 from mart.trainer.evaluate.footage import Footage, write
 from mart.trainer.evaluate.rollouts import Course
 
@@ -33,7 +33,7 @@ class Camera:
         for world, (path, course) in enumerate(courses.items()):
             write(path, self._footage(course, looks, world), model, clock.wall_ns())
 
-    def _step_again(self, courses: Sequence[Course]) -> list[Worlds]:
+    def _step_again(self, courses: Sequence[Course]) -> list[BatchState]:
         """How the worlds stood after each tick; one whose course has ended stands still."""
         seeds = [course.played.seed for course in courses]
         ticks = np.array([len(course.actions) for course in courses])
@@ -44,7 +44,7 @@ class Camera:
             looks.append(self.client.step(np.array(actions), tick < ticks))
         return looks
 
-    def _footage(self, course: Course, looks: Sequence[Worlds], world: int) -> Footage:
+    def _footage(self, course: Course, looks: Sequence[BatchState], world: int) -> Footage:
         own, played = looks[: len(course.actions) + 1], course.played
         states = (look.integration_states for look in own)
         return Footage(

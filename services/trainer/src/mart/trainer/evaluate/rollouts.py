@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mart.protocol.errors import InvalidInput
 from mart.protocol.tasks import Task, get_task
-from mart.rollouts.client import ACTION_SIZE, RolloutClient, Worlds
+from mart.rollouts.client import ACTION_SIZE, BatchState, RolloutClient
 from mart.trainer.evaluate.result import Outcome, Played
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class _Batch:
                 actions[own] = policy.act({name: observations[name][own] for name in policy.needs})
         return actions
 
-    def _look(self, worlds: Worlds) -> None:
+    def _look(self, worlds: BatchState) -> None:
         """Worlds that have ended stand still, so looking again changes nothing."""
         self._done |= worlds.subtasks
         self._success |= worlds.success
