@@ -1,0 +1,68 @@
+"""Take seats of a room for as long as a program drives them, and leave them afterwards."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Mapping, Sequence
+
+from mart.protocol import codec, keys
+from mart.protocol.errors import MartError
+from mart.protocol.messages import OPERATOR_POLICY, RoomReply, RoomStatus, Seat, SeatRequest, raise_error
+from mart.runtime.bus import Bus
+
+_QUERY_TIMEOUT_S = 5.0
+
+
+@contextlib.contextmanager
+def claimed_seats(
+    bus: Bus, room: str, arms: Sequence[str], holder_id: str, name: str
+) -> Iterator[ClaimedSeats]:
+    """Hold these seats for the length of the block; all are left at its end, also one that a person has just now.
+
+    Raises Conflict where somebody else sits there, NotFound for an unknown arm, Unavailable where there is no such
+    room.
+    """
+    with contextlib.ExitStack() as stack:
+        seats = []
+        for arm in arms:
+            claim = SeatRequest.Claim(arm=arm, holder_id=holder_id, name=name, operator=OPERATOR_POLICY)
+            seats.append(_ask(bus, room, SeatRequest(claim=claim)).seat)
+            stack.callback(_leave, bus, room, arm, holder_id)
+        yield ClaimedSeats(holder_id, seats)
+
+
+class ClaimedSeats:
+    """Follow the seats of one holder: one of which a person has relieved it may come back, one given away will not."""
+
+    def __init__(self, holder_id: str, claimed: Sequence[Seat]) -> None:
+        self._holder_id = holder_id
+        self._claimed = {seat.arm: seat for seat in claimed}
+
+    def __bool__(self) -> bool:
+        """Whether any seat is held still, or may come back."""
+        return bool(self._claimed)
+
+    def held(self, status: RoomStatus) -> Mapping[str, int]:
+        """Return the seats to drive now, by arm with their epochs."""
+        epochs: dict[str, int] = {}
+        for seat in status.seats:
+            claimed = self._claimed.get(seat.arm)
+            if claimed is None:
+                continue
+            if seat.holder_id == self._holder_id:
+                epochs[seat.arm] = seat.epoch
+            elif seat.epoch > claimed.epoch and seat.relieved != claimed.name:
+                del self._claimed[seat.arm]
+        return epochs
+
+
+def _leave(bus: Bus, room: str, arm: str, holder_id: str) -> None:
+    release = SeatRequest.Release(arm=arm, holder_id=holder_id)
+    with contextlib.suppress(MartError):  # it is another's by now, or the room is gone
+        _ask(bus, room, SeatRequest(release=release))
+
+
+def _ask(bus: Bus, room: str, request: SeatRequest) -> RoomReply:
+    reply = codec.decode(RoomReply, bus.query(keys.seat(room), codec.encode(request), _QUERY_TIMEOUT_S))
+    raise_error(reply.error)
+    return reply

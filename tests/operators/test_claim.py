@@ -1,0 +1,27 @@
+"""Seats that a program holds: driven while they are its own, waited for while a person drives."""
+
+from __future__ import annotations
+
+from mart.operators.claim import ClaimedSeats
+from tests.operators.rooms import seat_of, status_of
+
+
+def test_ones_own_seat_may_come_back_from_a_person_and_from_nobody_else() -> None:
+    seats = ClaimedSeats("me", [seat_of("arm0", 2, "me"), seat_of("arm1", 2, "me")])
+    own = [seat_of("arm0", 2, "me"), seat_of("arm1", 2, "me")]
+    assert seats.held(status_of(own)) == {"arm0": 2, "arm1": 2}
+    taken = seat_of("arm0", 3, "ana")
+    taken.relieved = "mine"
+    assert seats.held(status_of([taken, own[1]])) == {"arm1": 2}
+    assert seats.held(status_of([seat_of("arm0", 4, "me"), own[1]])) == {"arm0": 4, "arm1": 2}
+    assert seats.held(status_of([seat_of("arm0", 5, "ben"), own[1]])) == {"arm1": 2}
+    assert seats.held(status_of([seat_of("arm0", 6, "me"), own[1]])) == {"arm1": 2}
+    assert seats
+    assert seats.held(status_of([seat_of("arm0", 6, ""), seat_of("arm1", 3, "")])) == {}
+    assert not seats
+
+
+def test_an_old_status_gives_nothing_away() -> None:
+    seats = ClaimedSeats("me", [seat_of("arm0", 5, "me")])
+    assert seats.held(status_of([seat_of("arm0", 4, "ana")])) == {}
+    assert seats

@@ -1,0 +1,153 @@
+"""An operator's commands: one for every state, of its own seats, from what its arms may see."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mart.operators import Operator, SeatView, ToolTarget
+from mart.operators.commander import SeatCommander
+from mart.protocol.errors import Corrupt, InvalidInput, Unavailable
+from mart.protocol.messages import OPERATOR_POLICY, pose_from_message
+from mart.protocol.pose import Pose
+from tests.operators.rooms import POSE, TASK, Riser, state_of
+
+
+def commander_of(operator: Operator, arms: tuple[str, ...] = ("arm0",)) -> SeatCommander:
+    commander = SeatCommander(operator, TASK, arms, OPERATOR_POLICY)
+    commander.seat(dict.fromkeys(arms, 4))
+    return commander
+
+
+def test_nothing_is_said_before_anything_was_seen_and_without_a_seat() -> None:
+    riser = Riser()
+    commander = commander_of(riser)
+    assert commander.commands(0) == []
+    commander.seat({})
+    assert not commander.observe(state_of(1))
+    assert riser.views == []
+
+
+def test_a_state_makes_a_command_of_its_seat() -> None:
+    commander = commander_of(Riser())
+    assert commander.observe(state_of(1))
+    (command,) = commander.commands(77)
+    assert (command.arm, command.seat_epoch, command.sequence) == ("arm0", 4, 1)
+    assert (command.source, command.seen_tick, command.stamps.sent_ns) == (OPERATOR_POLICY, 1, 77)
+    assert pose_from_message(command.target_tool_in_base).position == pytest.approx(
+        POSE.position + np.array([0.0, 0.0, 0.01])
+    )
+
+
+def test_the_same_state_again_is_no_news_and_a_repeat_counts_on() -> None:
+    commander = commander_of(Riser())
+    assert commander.observe(state_of(1))
+    assert not commander.observe(state_of(1))
+    (first,), (second,) = commander.commands(1), commander.commands(2)
+    assert second.sequence == first.sequence + 1
+    assert second.target_tool_in_base == first.target_tool_in_base
+
+
+def test_it_counts_on_from_whoever_drove_under_this_epoch_before() -> None:
+    commander = commander_of(Riser())
+    commander.observe(state_of(1, sequence=500))
+    assert commander.commands(0)[0].sequence == 501
+
+
+def test_it_shows_what_the_arms_operator_may_see_and_nothing_else() -> None:
+    riser = Riser()
+    commander_of(riser).observe(state_of(1))
+    (view,) = riser.views
+    assert view.observations.keys() == {one.name for one in TASK.observations_of("arm0")}
+    assert view.poses_tool_in_base.keys() == {"arm0"}
+    assert all(view.observations[one.name].shape == one.shape for one in TASK.observations_of("arm0"))
+
+
+def test_the_operator_begins_anew_with_the_world_and_with_a_seat_that_was_lost() -> None:
+    riser = Riser()
+    commander = commander_of(riser)
+    commander.observe(state_of(5, episode=1))
+    commander.observe(state_of(6, episode=1))
+    assert riser.begun == [1]
+    commander.observe(state_of(7, episode=2, after_reset=True))
+    assert riser.begun == [1, 2]
+    commander.observe(state_of(1, boot=2, episode=2))
+    assert riser.begun == [1, 2, 2]
+    commander.seat({})
+    commander.seat({"arm0": 6})
+    commander.observe(state_of(2, boot=2, episode=2))
+    assert riser.begun == [1, 2, 2, 2]
+    commander.seat({"arm0": 8})  # the status between was lost
+    commander.observe(state_of(3, boot=2, episode=2))
+    assert riser.begun == [1, 2, 2, 2, 2]
+
+
+def test_who_keeps_one_of_several_seats_remembers() -> None:
+    riser = Riser()
+    commander = commander_of(riser, ("arm0", "arm1"))
+    commander.observe(state_of(5))
+    commander.seat({"arm1": 4})
+    commander.observe(state_of(6))
+    assert [command.arm for command in commander.commands(0)] == ["arm1"]
+    commander.seat({"arm0": 6, "arm1": 4})
+    commander.observe(state_of(7))
+    assert [command.arm for command in commander.commands(0)] == ["arm0", "arm1"]
+    assert riser.begun == [1]
+
+
+@pytest.mark.parametrize("spoil", ["missing", "short", "no arm"])
+def test_a_state_that_does_not_show_enough_is_refused(spoil: str) -> None:
+    state = state_of(1)
+    mine = next(one for one in state.observations if one.name == "arm0/joint_positions")
+    if spoil == "missing":
+        state.observations.remove(mine)
+    elif spoil == "short":
+        del mine.value[0]
+    else:
+        del state.arms[:]
+    with pytest.raises(Corrupt):
+        commander_of(Riser()).observe(state)
+
+
+class Saying(Operator):
+    """Gives what it was made with, or raises it."""
+
+    def __init__(self, said: Any) -> None:
+        self.said = said
+
+    def act(self, view: SeatView) -> Any:
+        if isinstance(self.said, Exception):
+            raise self.said
+        return self.said
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        None,
+        {},
+        {"arm1": ToolTarget(POSE)},
+        {"arm0": POSE},
+        {"arm0": ToolTarget(POSE, gripper=7.0)},
+        {"arm0": ToolTarget(POSE, gripper=float("nan"))},
+        {"arm0": ToolTarget("up")},  # type: ignore[arg-type]  # that is the point
+        ZeroDivisionError("division by zero"),
+    ],
+)
+def test_rubbish_is_refused_and_nothing_is_said(said: object) -> None:
+    commander = commander_of(Saying(said))
+    with pytest.raises(InvalidInput):
+        commander.observe(state_of(1))
+    assert commander.commands(0) == []
+
+
+def test_a_pose_that_is_none_cannot_be_made() -> None:
+    with pytest.raises(InvalidInput):
+        ToolTarget(Pose(np.array([np.nan, 0.0, 0.0]), POSE.quaternion_wxyz))
+
+
+def test_an_error_in_words_stays_what_it_is() -> None:
+    with pytest.raises(Unavailable):
+        commander_of(Saying(Unavailable("The camera is away; plug it in."))).observe(state_of(1))
