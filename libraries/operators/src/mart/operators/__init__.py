@@ -4,10 +4,11 @@
 >>> class Riser(Operator):
 ...     def act(self, view):
 ...         return {arm: view.step(arm, (0, 0, 0.01)) for arm in view.poses_tool_in_base}
->>> drive_seats(Riser(), room="room-1", arms=["arm1"])  # doctest: +SKIP
+>>> drive_seats(Riser(), room="room-1", arms=["arm1"], episodes=1)  # doctest: +SKIP
 """
 
 from mart.operators.client import drive_seats
 from mart.operators.operator import Operator, SeatView, ToolTarget, target_from_action
+from mart.operators.room_client import RoomClient
 
-__all__ = ["Operator", "SeatView", "ToolTarget", "drive_seats", "target_from_action"]
+__all__ = ["Operator", "RoomClient", "SeatView", "ToolTarget", "drive_seats", "target_from_action"]

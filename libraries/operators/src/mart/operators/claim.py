@@ -5,18 +5,13 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 
-from mart.protocol import codec, keys
+from mart.operators.room_client import RoomClient
 from mart.protocol.errors import MartError
-from mart.protocol.messages import OPERATOR_POLICY, RoomReply, RoomStatus, Seat, SeatRequest, raise_error
-from mart.runtime.bus import Bus
-
-_QUERY_TIMEOUT_S = 5.0
+from mart.protocol.messages import RoomStatus, Seat
 
 
 @contextlib.contextmanager
-def claimed_seats(
-    bus: Bus, room: str, arms: Sequence[str], holder_id: str, name: str
-) -> Iterator[ClaimedSeats]:
+def claimed_seats(room: RoomClient, arms: Sequence[str], holder_id: str, name: str) -> Iterator[ClaimedSeats]:
     """Hold these seats for the length of the block; all are left at its end, also one that a person has just now.
 
     Raises Conflict where somebody else sits there, NotFound for an unknown arm, Unavailable where there is no such
@@ -25,9 +20,8 @@ def claimed_seats(
     with contextlib.ExitStack() as stack:
         seats = []
         for arm in arms:
-            claim = SeatRequest.Claim(arm=arm, holder_id=holder_id, name=name, operator=OPERATOR_POLICY)
-            seats.append(_ask(bus, room, SeatRequest(claim=claim)).seat)
-            stack.callback(_leave, bus, room, arm, holder_id)
+            seats.append(room.claim(arm, holder_id, name))
+            stack.callback(_leave, room, arm, holder_id)
         yield ClaimedSeats(holder_id, seats)
 
 
@@ -56,13 +50,6 @@ class ClaimedSeats:
         return epochs
 
 
-def _leave(bus: Bus, room: str, arm: str, holder_id: str) -> None:
-    release = SeatRequest.Release(arm=arm, holder_id=holder_id)
+def _leave(room: RoomClient, arm: str, holder_id: str) -> None:
     with contextlib.suppress(MartError):  # it is another's by now, or the room is gone
-        _ask(bus, room, SeatRequest(release=release))
-
-
-def _ask(bus: Bus, room: str, request: SeatRequest) -> RoomReply:
-    reply = codec.decode(RoomReply, bus.query(keys.seat(room), codec.encode(request), _QUERY_TIMEOUT_S))
-    raise_error(reply.error)
-    return reply
+        room.release(arm, holder_id)

@@ -1,4 +1,4 @@
-"""Drive a seat from a program of your own, beside people: the whole way from an operator to a moving arm."""
+"""Drive seats from a program of your own, beside people: the whole way from an operator to a moving arm."""
 
 from __future__ import annotations
 
@@ -10,18 +10,21 @@ from collections.abc import Callable, Mapping, Sequence
 from mart.operators.claim import ClaimedSeats, claimed_seats
 from mart.operators.commander import SeatCommander
 from mart.operators.driver import SeatAssignment, SeatDriver
+from mart.operators.episode_follower import EpisodeFollower
 from mart.operators.operator import Operator
+from mart.operators.room_client import RoomClient
 from mart.operators.time_limit import TimeLimitedOperator
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, Unavailable
-from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
+from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_POLICY, OPERATOR_SCRIPT, RoomStatus
 from mart.protocol.tasks import get_task
-from mart.protocol.vocabulary import ServiceKind
+from mart.protocol.vocabulary import EpisodeOutcome, ServiceKind
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.service import Service, announced, stop_requested
 from mart.runtime.settings import Settings
 
 ROOM_SILENCE_S = 60.0  # a room that is started anew takes a moment, and remembers who sat where
+_ASK_AGAIN_S = 1.0
 
 
 def drive_seats(
@@ -30,47 +33,60 @@ def drive_seats(
     arms: Sequence[str] = ("arm0",),
     *,
     name: str = "operator",
+    episodes: int | None = None,
+    fill_with_scripts: bool = False,
     time_limit_s: float = 2.0,
     router: str | None = None,
     stop: threading.Event | None = None,
-    seated: Callable[[], None] | None = None,
-) -> None:
-    """Take the seats of `arms` in `room` and let `operator` drive them until Ctrl-C, or until `stop` is set.
+) -> list[EpisodeOutcome]:
+    """Take the seats of `arms` in `room` and let `operator` drive them, beside people, scripts and policies.
 
-    `name` is what others see. People may take over and hand back. `router` is where the platform's router listens;
-    None: MART_ROUTER, or this machine. `seated` is called once the seats are held.
+    `name` is what others see. People may take over and hand back. With `episodes`, the operator says that it is ready
+    whenever the room practises, and the call returns the outcomes of that many; without, it drives until Ctrl-C, or
+    until `stop` is set, and returns the outcomes of what was recorded meanwhile. `fill_with_scripts` gives seats that nobody
+    holds to scripted experts. `router` is where the platform's router listens; None: MART_ROUTER, or this machine.
 
     Raises Conflict where somebody else sits there or the last seat was given to another; NotFound for an unknown arm;
     Unavailable where room or router cannot be reached, or where the operator takes longer than `time_limit_s` seconds
     for one tick; InvalidInput where it fails or says what is no target. The seats are left in every case.
 
-    >>> drive_seats(Riser(), arms=["arm1"])  # doctest: +SKIP
+    >>> drive_seats(Riser(), arms=["arm1"], episodes=1)  # doctest: +SKIP
+    [<EpisodeOutcome.SUCCESS: 'success'>]
     """
     holder_id = f"operate-{secrets.token_hex(8)}"
     with contextlib.ExitStack() as stack:
         stop = stop or stack.enter_context(stop_requested())
         bus = stack.enter_context(ZenohBus.connect(router or Settings().router))
         stack.enter_context(announced(Service(ServiceKind.OPERATE, holder_id, bus, stop)))
-        seats = stack.enter_context(claimed_seats(bus, room, arms, holder_id, name))
-        limited = TimeLimitedOperator(operator, time_limit_s)
-        assignment = ProgramAssignment(seats, name, lambda status: [_commander(limited, arms, status)])
-        if seated is not None:
-            seated()
-        drive_claimed(SeatDriver(bus, room, assignment), seats, room, stop)
+        client = RoomClient(bus, room)
+        seats = stack.enter_context(claimed_seats(client, arms, holder_id, name))
+        assignment = ProgramAssignment(seats, name, _maker(TimeLimitedOperator(operator, time_limit_s), arms))
+        session = _Session(client, arms[0], holder_id, episodes, fill_with_scripts)
+        drive_claimed(SeatDriver(bus, room, assignment), seats, room, stop, session.follow)
+        return session.outcomes
 
 
-def drive_claimed(driver: SeatDriver[str], seats: ClaimedSeats, room: str, stop: threading.Event) -> None:
-    """Drive until `stop` is set; raises what made the operator leave, and Conflict where all seats went to others.
+def drive_claimed(
+    driver: SeatDriver[str],
+    seats: ClaimedSeats,
+    room: str,
+    stop: threading.Event,
+    follow: Callable[[RoomStatus], bool] | None = None,
+) -> None:
+    """Drive until `stop` is set or `follow`, which is told each status, returns False.
 
-    While a person has taken over it waits for the seat.
+    Raises what made the operator leave, and Conflict where all seats went to others. While a person has taken over it
+    waits for the seat.
     """
     with contextlib.closing(driver):
         while not stop.is_set():
-            driver.work()
+            status = driver.work().get(room)
             if driver.failure is not None:
                 raise driver.failure
             if not seats:
                 raise Conflict(f"The seat in {room} was given away or left; take one again when it is free.")
+            if status is not None and follow is not None and not follow(status):
+                return
             if clock.monotonic_s() - driver.heard_s > ROOM_SILENCE_S:
                 raise Unavailable(f"{room} has said nothing for {ROOM_SILENCE_S:g} s; see `mart rooms`.")
 
@@ -99,5 +115,44 @@ class ProgramAssignment(SeatAssignment[str]):
         return key
 
 
-def _commander(operator: Operator, arms: Sequence[str], status: RoomStatus) -> SeatCommander:
-    return SeatCommander(operator, get_task(status.task, len(status.seats)), arms, OPERATOR_POLICY)
+class _Session:
+    """Fills seats and says ready, as often as it takes: what a room did not hear is said again."""
+
+    def __init__(
+        self, client: RoomClient, arm: str, holder_id: str, episodes: int | None, fill_with_scripts: bool
+    ) -> None:
+        self._client, self._arm, self._holder_id = client, arm, holder_id
+        self._episodes, self._fills = episodes, fill_with_scripts
+        self._follower = EpisodeFollower(arm)
+        self._ask_s = 0.0
+
+    @property
+    def outcomes(self) -> list[EpisodeOutcome]:
+        return self._follower.outcomes
+
+    def follow(self, status: RoomStatus) -> bool:
+        """Take note of a status; returns whether there is more to do."""
+        should_be_ready = self._follower.follow(status)
+        if self._episodes is not None and len(self.outcomes) >= self._episodes:
+            return False
+        now_s = clock.monotonic_s()
+        if now_s >= self._ask_s:
+            self._ask_s = now_s + _ASK_AGAIN_S
+            self._ask(status, should_be_ready)
+        return True
+
+    def _ask(self, status: RoomStatus, should_be_ready: bool) -> None:
+        empty = [seat.arm for seat in status.seats if seat.operator == OPERATOR_HOLD] if self._fills else []
+        with contextlib.suppress(Conflict, Unavailable):  # the room moved on; the next status tells
+            for arm in empty:
+                self._client.assign(arm, OPERATOR_SCRIPT)
+            if should_be_ready and self._episodes is not None and not empty:
+                self._client.ready(self._arm, self._holder_id)
+
+
+def _maker(operator: Operator, arms: Sequence[str]) -> Callable[[RoomStatus], Sequence[SeatCommander]]:
+    def make(status: RoomStatus) -> Sequence[SeatCommander]:
+        task = get_task(status.task, len(status.seats))
+        return [SeatCommander(operator, task, arms, OPERATOR_POLICY)]
+
+    return make

@@ -11,17 +11,17 @@ from functools import partial
 from typing import Generic, TypeVar
 
 from mart.operators.commander import SeatCommander
+from mart.operators.room_client import RoomClient
 from mart.operators.room_watch import RoomWatch
 from mart.protocol import clock, codec, keys
-from mart.protocol.errors import InvalidInput, MartError, Unavailable
-from mart.protocol.messages import OPERATOR_HOLD, Event, RoomStatus, SeatRequest, State
+from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.messages import OPERATOR_HOLD, Event, RoomStatus, State
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Bus, Publisher
 from mart.runtime.throttled_log import ThrottledLog
 
 REPEAT_S = 0.1  # while no new state comes: the barrier hears that the operator is still there
 
-_QUERY_TIMEOUT_S = 3.0
 _log = logging.getLogger(__name__)
 
 K = TypeVar("K", bound=Hashable)
@@ -85,8 +85,8 @@ class SeatDriver(Generic[K]):
         for driven in self._driven.values():
             driven.close()
 
-    def work(self) -> None:
-        """Do what has come, or what is due when nothing comes for a moment."""
+    def work(self) -> Mapping[str, RoomStatus]:
+        """Do what has come, or what is due when nothing comes for a moment; returns the newest status of each room."""
         statuses, states = self._watch.take(REPEAT_S / 2)
         if statuses:
             self.heard_s = clock.monotonic_s()
@@ -96,6 +96,7 @@ class SeatDriver(Generic[K]):
             self._show(room, state)
         self._speak(clock.monotonic_s())
         self._throttled_log.report(self._watch.unusable, clock.monotonic_s())
+        return statuses
 
     def _follow_seats(self, room: str, status: RoomStatus) -> None:
         wanted = self._assignment.assigned(room, status)
@@ -159,7 +160,8 @@ class SeatDriver(Generic[K]):
         _log.error("%s: %s", room, text)
         with contextlib.closing(self._bus.publisher(keys.event(room))) as publisher:
             publisher.put(codec.encode(Event(wall_ns=clock.wall_ns(), room=room, notice=notice)))
+        client = RoomClient(self._bus, room)
         for arm in epochs:
-            hold = SeatRequest(assign=SeatRequest.Assign(arm=arm, operator=OPERATOR_HOLD))
-            with contextlib.suppress(Unavailable):  # a room that is gone has no seats to leave
-                self._bus.query(keys.seat(room), codec.encode(hold), _QUERY_TIMEOUT_S)
+            # A room that is gone has no seats to leave; one that refuses has given the seat to somebody else.
+            with contextlib.suppress(MartError):
+                client.assign(arm, OPERATOR_HOLD)

@@ -1,0 +1,102 @@
+"""Programs of other people in a seat of a real room: a good one succeeds, a bad one is left, and the room goes on."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import pytest
+
+from mart.operators import Operator, SeatView, ToolTarget, drive_seats
+from mart.protocol.errors import Conflict, InvalidInput, NotFound, Unavailable
+from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, OPERATOR_SCRIPT
+from tests.support.processes import running_router, running_service
+from tests.system.room_client import RoomClient
+
+ROOM = "room-1"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "06_operator_of_your_own.py"
+
+
+@pytest.fixture(scope="module")
+def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A router, a room and its scripts."""
+    data_dir = tmp_path_factory.mktemp("data")
+    with (
+        running_router() as endpoint,
+        running_service(["sim", "--room", ROOM, "--seed", "1"], endpoint, data_dir, kind="sim", id=ROOM),
+        running_service(["experts"], endpoint, data_dir, kind="experts", id="experts"),
+    ):
+        yield endpoint
+
+
+@pytest.fixture
+def client(endpoint: str) -> Iterator[RoomClient]:
+    with RoomClient(endpoint, ROOM) as client:
+        yield client
+
+
+class Failing(Operator):
+    def act(self, view: SeatView) -> Mapping[str, ToolTarget]:
+        raise RuntimeError("the camera is gone")
+
+
+class Rubbish(Operator):
+    def act(self, view: SeatView) -> Mapping[str, ToolTarget]:
+        return {"arm1": "up"}  # type: ignore[dict-item]  # that is the point
+
+
+class Hanging(Operator):
+    def __init__(self) -> None:
+        self.freed = threading.Event()
+
+    def act(self, view: SeatView) -> Mapping[str, ToolTarget]:
+        self.freed.wait()
+        return {}
+
+
+def goes_on(client: RoomClient) -> bool:
+    """Whether the room ticks, with nobody at arm1 and a script at arm0."""
+    client.assign("arm0", OPERATOR_SCRIPT)
+    tick = client.states.wait_for(lambda _: True).tick
+    client.states.wait_for(lambda state: state.tick > tick + 10)
+    status = client.statuses.wait_for(lambda status: status.seats[1].operator == OPERATOR_HOLD)
+    return all(seat.arm != "arm1" or not seat.holder_id for seat in status.seats)
+
+
+def test_the_example_succeeds_beside_a_script(endpoint: str) -> None:
+    done = subprocess.run(
+        [sys.executable, EXAMPLE, ROOM],
+        env={"MART_ROUTER": endpoint},
+        capture_output=True,
+        text=True,
+        timeout=110,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "success" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("operator", "error"), [(Failing(), InvalidInput), (Rubbish(), InvalidInput), (Hanging(), Unavailable)]
+)
+def test_a_bad_program_is_left_in_a_sentence_and_the_room_goes_on(
+    endpoint: str, client: RoomClient, operator: Operator, error: type[Exception]
+) -> None:
+    with pytest.raises(error):
+        drive_seats(operator, ROOM, ["arm1"], name="stranger", time_limit_s=0.5, router=endpoint)
+    client.events.wait_for(
+        lambda event: event.notice.level == "error" and event.notice.text.startswith("stranger left its seat")
+    )
+    assert goes_on(client)
+
+
+def test_a_taken_seat_and_an_unknown_arm_are_refused(endpoint: str, client: RoomClient) -> None:
+    client.claim("arm1", "ana")
+    with pytest.raises(Conflict):
+        drive_seats(Failing(), ROOM, ["arm1"], router=endpoint)
+    with pytest.raises(NotFound):
+        drive_seats(Failing(), ROOM, ["arm7"], router=endpoint)
+    client.statuses.wait_for(lambda status: status.seats[1].operator == OPERATOR_HUMAN)
