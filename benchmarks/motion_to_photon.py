@@ -16,10 +16,13 @@ from pathlib import Path
 
 from report import Bar, report
 
-from mart.platform.browser import running_browser
-from mart.platform.crew import Crew
-from mart.platform.plan import Options
-from mart.platform.supervise import Platform, running_platform
+from mart.platform.collect.browser import running_browser
+from mart.platform.collect.emulated_users import EmulatedUsers
+from mart.platform.run.plan import PlatformOptions
+from mart.platform.run.running import (
+    Platform,
+    running_platform,
+)
 from mart.protocol import keys
 from mart.protocol.codec import decode
 from mart.protocol.messages import Event
@@ -55,7 +58,7 @@ CASES = (
 def measure(case: Case) -> list[Event.Latency]:
     """The newest report of each person, after `REPORTS` of them."""
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
-        options = Options(
+        options = PlatformOptions(
             data_dir=Path(folder),
             router=f"tcp/127.0.0.1:{free_port()}",
             port=free_port(),
@@ -64,7 +67,7 @@ def measure(case: Case) -> list[Event.Latency]:
         )
         platform = stack.enter_context(running_platform(options))
         browser = stack.enter_context(running_browser())
-        stack.enter_context(Crew(platform, "expert", 0, browser).seated(case.people))
+        stack.enter_context(EmulatedUsers(platform, "expert", 0, browser).seated(case.people))
         return _newest_reports(platform, case.people)
 
 

@@ -7,10 +7,13 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, expect
 
-from mart.platform.browser import running_browser
-from mart.platform.opening import opening_rooms
-from mart.platform.plan import Options
-from mart.platform.supervise import Platform, running_platform
+from mart.platform.collect.browser import running_browser
+from mart.platform.run.plan import PlatformOptions
+from mart.platform.run.room_manager import opening_rooms
+from mart.platform.run.running import (
+    Platform,
+    running_platform,
+)
 from mart.runtime.ports import free_port
 
 _WAIT_MS = 30_000  # the pages share two cores with the platform behind them, and with two renderers
@@ -18,7 +21,7 @@ _WAIT_MS = 30_000  # the pages share two cores with the platform behind them, an
 
 @pytest.fixture(scope="module")
 def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
-    options = Options(
+    options = PlatformOptions(
         data_dir=tmp_path_factory.mktemp("platform"),
         router=f"tcp/127.0.0.1:{free_port()}",
         port=free_port(),

@@ -10,7 +10,7 @@ from urllib.parse import urlsplit
 
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from mart.platform.supervise import Platform
+from mart.platform.run.running import Platform
 
 SCREENSHOTS = Path("test-output/browser")
 _XR_STAND_IN = Path(__file__).parent / "pages" / "xr_stand_in.js"

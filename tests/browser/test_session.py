@@ -12,7 +12,7 @@ import pytest
 from mcap.reader import make_reader
 from playwright.sync_api import Browser, expect
 
-from mart.platform.supervise import Platform
+from mart.platform.run.running import Platform
 from mart.protocol import keys
 from mart.protocol.codec import decode
 from mart.protocol.messages import OUTCOME_SUCCESS, ArmState, Event, State

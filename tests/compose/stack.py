@@ -21,7 +21,7 @@ _COMPOSE = (
 
 @dataclass(frozen=True)
 class Stack:
-    """`folder` gets copies of what a visitor has to know: the join code and the site's certificate."""
+    """`folder` gets copies of what a web_client has to know: the join code and the site's certificate."""
 
     project: str
     port: int

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from mart.platform.browser import running_browser
-from mart.platform.crew import Crew
-from mart.platform.plan import Options
-from mart.platform.session import Session
-from mart.platform.supervise import Platform
+from mart.platform.collect.browser import running_browser
+from mart.platform.collect.emulated_users import EmulatedUsers
+from mart.platform.collect.live_session import LiveSession
+from mart.platform.collect.saved_episodes import CollectedEpisode
+from mart.platform.run.plan import PlatformOptions
+from mart.platform.run.running import Platform
 from mart.protocol.tasks import get_task
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.ports import free_port
 from tests.compose.stack import Stack, join_code_in
@@ -37,7 +40,7 @@ def stack(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stack]:
 
 @contextlib.contextmanager
 def visited(stack: Stack) -> Iterator[Platform]:
-    options = Options(
+    options = PlatformOptions(
         data_dir=stack.folder, router=f"tcp/{stack.address('router')}:7447", port=stack.port, seed=1
     )
     with ZenohBus.connect(options.router, wait_for_router=False) as bus:
@@ -53,6 +56,24 @@ def episodes(stack: Stack) -> list[dict[str, object]]:
     return listed
 
 
+def saved_episode(stack: Stack, room: str, number: int) -> CollectedEpisode | None:
+    for row in episodes(stack):
+        if (row["room"], row["number"]) == (room, number):
+            return CollectedEpisode(
+                number=number,
+                seed=None,
+                skill="",
+                path=str(row["path"]),
+                outcome=EpisodeOutcome(str(row["outcome"])),
+                reason="",
+                ticks=0,
+                simulated_s=0.0,
+                real_time_factor=None,
+                verdict=Verdict.VERIFIED if row["verified"] else Verdict.UNVERIFIED,
+            )
+    return None
+
+
 def test_no_part_runs_as_root_or_can_write_to_its_own_code(stack: Stack) -> None:
     for service in stack.services():
         assert stack.inside(service, "id", "-u").strip() != "0"
@@ -65,8 +86,14 @@ def test_no_part_runs_as_root_or_can_write_to_its_own_code(stack: Stack) -> None
 def test_people_collect_a_verified_episode_and_the_next_start_finds_it(stack: Stack) -> None:
     arms = [arm.name for arm in get_task("two_arm_multi_cube_lifting").arms]
     with visited(stack) as platform, running_browser() as browser, contextlib.ExitStack() as session_ends:
-        people = session_ends.enter_context(Crew(platform, "expert", seed=1, browser=browser).seated(arms))
-        session = session_ends.enter_context(contextlib.closing(Session(platform.bus, platform.options.room)))
+        people = session_ends.enter_context(
+            EmulatedUsers(platform, "expert", seed=1, browser=browser).seated(arms)
+        )
+        session = session_ends.enter_context(
+            contextlib.closing(
+                LiveSession(platform.bus, platform.options.room, functools.partial(saved_episode, stack))
+            )
+        )
         episode = session.run_episode(people)
     assert (episode.outcome, episode.verified) == ("success", True), episode.verdict
     assert [latency.arm for latency in episode.latencies] == arms

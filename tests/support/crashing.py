@@ -9,7 +9,7 @@ import signal
 from collections.abc import Iterator
 from pathlib import Path
 
-from mart.platform.supervise import Platform
+from mart.platform.run.running import Platform
 
 
 def kill_service(platform: Platform, command: str) -> None:

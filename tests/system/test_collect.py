@@ -37,7 +37,8 @@ def mart(*command: str) -> dict[str, Any]:
         [str(_MART), *command], capture_output=True, text=True, timeout=_LIMIT_S, env=environment, check=False
     )
     assert ended.returncode == 0, ended.stderr
-    found: dict[str, Any] = json.loads(ended.stdout)
+    *lines, last = map(json.loads, ended.stdout.splitlines())
+    found: dict[str, Any] = {"episodes": lines, **last}
     return found
 
 

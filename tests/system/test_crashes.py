@@ -16,9 +16,15 @@ from mcap.exceptions import McapError
 from mcap.records import Channel, Message, Schema
 from mcap.stream_reader import StreamReader
 
-from mart.platform.crew import Crew, Person
-from mart.platform.plan import Options
-from mart.platform.supervise import Platform, running_platform
+from mart.platform.collect.emulated_users import (
+    EmulatedUser,
+    EmulatedUsers,
+)
+from mart.platform.run.plan import PlatformOptions
+from mart.platform.run.running import (
+    Platform,
+    running_platform,
+)
 from mart.protocol import clock, keys
 from mart.protocol.codec import decode
 from mart.protocol.messages import OPERATOR_HUMAN, Event, State
@@ -78,14 +84,14 @@ class Witness:
 @pytest.fixture(scope="module")
 def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
     data_dir = tmp_path_factory.mktemp("platform")
-    options = Options(data_dir, router=f"tcp/127.0.0.1:{free_port()}", port=free_port(), seed=3)
+    options = PlatformOptions(data_dir, router=f"tcp/127.0.0.1:{free_port()}", port=free_port(), seed=3)
     with running_platform(options) as running:
         yield running
 
 
 @pytest.fixture(scope="module")
-def people(platform: Platform) -> Iterator[list[Person]]:
-    with Crew(platform, skill="novice", seed=0).seated(ARMS) as crew:
+def people(platform: Platform) -> Iterator[list[EmulatedUser]]:
+    with EmulatedUsers(platform, skill="novice", seed=0).seated(ARMS) as crew:
         yield crew
 
 
@@ -99,10 +105,10 @@ def driven_by_both(state: State) -> bool:
     return all(arm.fresh and arm.source == OPERATOR_HUMAN for arm in state.arms)
 
 
-def two_seconds_into_an_episode(platform: Platform, people: list[Person], witness: Witness) -> State:
+def two_seconds_into_an_episode(platform: Platform, people: list[EmulatedUser], witness: Witness) -> State:
     witness.await_state(lambda state: state.episode == 0 and driven_by_both(state), BACK_WITHIN_S)
     for person in people:
-        person.visitor.act(platform.options.room, person.arm, "ready")
+        person.web_client.act(platform.options.room, person.arm, "ready")
     state = witness.await_state(lambda state: state.episode_tick == 2 * TICKS_PER_S, BACK_WITHIN_S)
     witness.forget()
     return state
@@ -131,7 +137,7 @@ def newest_file(platform: Platform) -> Path:
 
 
 @pytest.mark.timeout(180)
-def test_kill_9_of_the_recorder(platform: Platform, people: list[Person], witness: Witness) -> None:
+def test_kill_9_of_the_recorder(platform: Platform, people: list[EmulatedUser], witness: Witness) -> None:
     before = two_seconds_into_an_episode(platform, people, witness)
     gone = threading.Event()
     with contextlib.closing(
@@ -149,7 +155,7 @@ def test_kill_9_of_the_recorder(platform: Platform, people: list[Person], witnes
 
 @pytest.mark.timeout(180)
 def test_a_frozen_recorder_does_not_hold_up_the_world(
-    platform: Platform, people: list[Person], witness: Witness
+    platform: Platform, people: list[EmulatedUser], witness: Witness
 ) -> None:
     # In practice: where an episode ends, the world stands still on purpose.
     before = witness.await_state(lambda state: state.episode == 0 and driven_by_both(state), BACK_WITHIN_S)
@@ -159,7 +165,9 @@ def test_a_frozen_recorder_does_not_hold_up_the_world(
 
 
 @pytest.mark.timeout(180)
-def test_kill_9_of_a_gateway_process(platform: Platform, people: list[Person], witness: Witness) -> None:
+def test_kill_9_of_a_gateway_process(
+    platform: Platform, people: list[EmulatedUser], witness: Witness
+) -> None:
     before = two_seconds_into_an_episode(platform, people, witness)
     kill_seat_process(platform, "arm0")
     assert "arm0" in witness.await_notice(TOLD_WITHIN_S).notice.text
@@ -169,11 +177,11 @@ def test_kill_9_of_a_gateway_process(platform: Platform, people: list[Person], w
 
 
 @pytest.mark.timeout(180)
-def test_kill_9_of_the_sim(platform: Platform, people: list[Person], witness: Witness) -> None:
+def test_kill_9_of_the_sim(platform: Platform, people: list[EmulatedUser], witness: Witness) -> None:
     before = two_seconds_into_an_episode(platform, people, witness)
     killed_s = clock.monotonic_s()
     kill_service(platform, "sim")
-    while people[0].visitor.is_room_answering(platform.options.room):
+    while people[0].web_client.is_room_answering(platform.options.room):
         assert clock.monotonic_s() - killed_s < TOLD_WITHIN_S
     saved = event_of(witness, "episode_saved").episode_saved
     ticks = recorded_ticks(platform.options.data_dir / saved.path)

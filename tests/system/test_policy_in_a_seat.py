@@ -12,10 +12,17 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from mart.platform.crew import Crew
-from mart.platform.plan import Options, Process, processes
-from mart.platform.supervise import Platform, running_platform
-from mart.platform.visitor import Visitor
+from mart.platform.collect.emulated_users import EmulatedUsers
+from mart.platform.collect.web_client import WebClient
+from mart.platform.run.plan import (
+    PlatformOptions,
+    Process,
+    processes,
+)
+from mart.platform.run.running import (
+    Platform,
+    running_platform,
+)
 from mart.protocol import clock, keys
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import (
@@ -65,7 +72,7 @@ def checkpoint(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def platform(checkpoint: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
     data_dir = tmp_path_factory.mktemp("platform")
     promote(data_dir / "policies", "lifter", checkpoint, Origin(job="", evaluation=None), clock.wall_ns())
-    options = Options(data_dir, router=f"tcp/127.0.0.1:{free_port()}", port=free_port(), seed=3)
+    options = PlatformOptions(data_dir, router=f"tcp/127.0.0.1:{free_port()}", port=free_port(), seed=3)
     policies = Process(("policies",), ServiceKind.POLICIES, "policies")
     with running_platform(options, (*processes(options), policies)) as running:
         yield running
@@ -101,23 +108,23 @@ def await_ticks(states: Mailbox[State], arm: str, source: Operator, ticks: int, 
 def test_a_person_takes_over_from_a_policy_in_mid_episode_and_hands_back(
     platform: Platform, states: Mailbox[State], events: Mailbox[Event]
 ) -> None:
-    crew = Crew(platform, skill="expert", seed=0)
+    crew = EmulatedUsers(platform, skill="expert", seed=0)
     with crew.seated((MINE,)) as (ana,):
-        ana.visitor.assign(ROOM, OTHER, "policy", "lifter")
+        ana.web_client.assign(ROOM, OTHER, "policy", "lifter")
         await_ticks(states, OTHER, OPERATOR_POLICY, 3, episode=False)
-        ana.visitor.act(ROOM, MINE, "ready")
+        ana.web_client.act(ROOM, MINE, "ready")
         await_ticks(states, OTHER, OPERATOR_POLICY, 15)
         with crew.seated((OTHER,)) as (ben,):  # taking the seat is the takeover
             await_ticks(states, OTHER, OPERATOR_HUMAN, 15)
-            ben.visitor.hand_back(ROOM, OTHER)
+            ben.web_client.hand_back(ROOM, OTHER)
             await_ticks(states, OTHER, OPERATOR_POLICY, 10)
-            ben.visitor.take(ROOM, OTHER)  # the phone that was paired before drives again
+            ben.web_client.take(ROOM, OTHER)  # the phone that was paired before drives again
             await_ticks(states, OTHER, OPERATOR_HUMAN, 10)
-            ben.visitor.hand_back(ROOM, OTHER)
+            ben.web_client.hand_back(ROOM, OTHER)
         await_ticks(states, OTHER, OPERATOR_POLICY, 5)
-        ana.visitor.act(ROOM, MINE, "failure")
+        ana.web_client.act(ROOM, MINE, "failure")
         saved = events.wait_for(lambda event: event.HasField("episode_saved"), WAIT_S).episode_saved
-        ana.visitor.assign(ROOM, OTHER, "hold")
+        ana.web_client.assign(ROOM, OTHER, "hold")
     assert saved.verified, saved.verdict
     assert_file_tells_who_drove(platform.options.data_dir / saved.path)
 
@@ -126,7 +133,7 @@ def test_a_person_takes_over_from_a_policy_in_mid_episode_and_hands_back(
 def test_a_checkpoint_is_seated_beside_a_crew_and_leaves_with_it(
     platform: Platform, checkpoint: Path, states: Mailbox[State]
 ) -> None:
-    with Crew(platform, skill="expert", seed=0).beside({checkpoint: (OTHER,)}):
+    with EmulatedUsers(platform, skill="expert", seed=0).beside({checkpoint: (OTHER,)}):
         await_ticks(states, OTHER, OPERATOR_POLICY, 3, episode=False)
     states.wait_for(lambda state: not driven_by(state, OTHER, OPERATOR_POLICY), WAIT_S, since=len(states))
 
@@ -134,7 +141,7 @@ def test_a_checkpoint_is_seated_beside_a_crew_and_leaves_with_it(
 @pytest.mark.timeout(150)
 def test_a_checkpoint_that_cannot_be_seated_says_why(platform: Platform, tmp_path: Path) -> None:
     (tmp_path / "checkpoint.json").write_text("{}")
-    crew = Crew(platform, skill="expert", seed=0)
+    crew = EmulatedUsers(platform, skill="expert", seed=0)
     with pytest.raises(Unavailable, match=r"does not drive arm1: mart: "), crew.beside({tmp_path: (OTHER,)}):
         pass
 
@@ -183,9 +190,9 @@ def test_a_policy_of_ones_own_waits_while_a_person_drives_and_leaves_when_it_is_
     with contextlib.ExitStack() as stack:
         operate = stack.enter_context(started(command, router, platform.options.data_dir))
         await_ticks(states, OTHER, OPERATOR_POLICY, 5, episode=False)
-        with Crew(platform, skill="expert", seed=0).seated((OTHER,)) as (ben,):
+        with EmulatedUsers(platform, skill="expert", seed=0).seated((OTHER,)) as (ben,):
             await_ticks(states, OTHER, OPERATOR_HUMAN, 3, episode=False)
-            ben.visitor.hand_back(ROOM, OTHER)
+            ben.web_client.hand_back(ROOM, OTHER)
         await_ticks(states, OTHER, OPERATOR_POLICY, 5, episode=False)
         since = len(events)
         assert operate.terminate() == 0
@@ -196,7 +203,7 @@ def test_a_policy_of_ones_own_waits_while_a_person_drives_and_leaves_when_it_is_
 def test_a_policy_that_does_not_fit_is_told_and_its_seat_is_left(
     platform: Platform, events: Mailbox[Event]
 ) -> None:
-    with contextlib.closing(Visitor(platform.url, platform.certificate)) as ana:
+    with contextlib.closing(WebClient(platform.url, platform.certificate)) as ana:
         ana.join(platform.join_code, "Ana")
         ana.assign(ROOM, OTHER, "policy", "nobody-knows")
         notice = events.wait_for(lambda event: event.HasField("notice"), WAIT_S).notice

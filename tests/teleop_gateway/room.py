@@ -27,9 +27,7 @@ from mart.protocol.messages import (
     pose_message,
     raise_error,
 )
-from mart.protocol.messages import (
-    Seat as SeatMessage,
-)
+from mart.protocol.messages import Seat as SeatMessage
 from mart.protocol.tokens import Role, SeatToken, sign
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.zenoh_bus import ZenohBus

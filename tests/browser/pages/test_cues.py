@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mart.episodes.reader import EpisodeFile
-from mart.platform.supervise import Platform
+from mart.platform.run.running import Platform
 from mart.protocol import codec
 from mart.protocol.messages import CUE_GO, CUE_WAIT, Event
 from tests.browser.pages.visits import Visit, driving, visit

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from mart.platform.supervise import Platform
+from mart.platform.run.running import Platform
 from tests.browser.pages.visits import HERE, INSPECT, SCREENSHOTS, driving, listen, visit
 
 

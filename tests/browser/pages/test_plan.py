@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Browser, expect
 
-from mart.platform.supervise import Platform
+from mart.platform.run.running import Platform
 from tests.browser.pages.visits import visit
 
 

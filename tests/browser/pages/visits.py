@@ -9,7 +9,7 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
-from mart.platform.supervise import Platform
+from mart.platform.run.running import Platform
 
 HERE = Path(__file__).parent
 INSPECT = (HERE / "inspect_page.js").read_text()

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import json
 import logging
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from mart.platform.plan import DEFAULT_TASK
+from mart.platform.run.plan import DEFAULT_TASK
 from mart.protocol import clock
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
 from mart.runtime.cli import cli, json_option, print_result
 
 if TYPE_CHECKING:
-    from mart.platform.collection import Order
-    from mart.platform.session import Episode
+    from mart.platform.collect.collection import CollectionSpec
+    from mart.platform.collect.saved_episodes import CollectedEpisode
 
 _SKILLS = click.Choice(["expert", "average", "novice"])
 _TIME_LIMIT = click.FloatRange(0.0, 3600.0, min_open=True)
@@ -59,16 +60,20 @@ def run(
     as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
-    from mart.platform.opening import opening_rooms
-    from mart.platform.plan import Options, processes, training_processes
-    from mart.platform.supervise import running_platform
+    from mart.platform.run.plan import (
+        PlatformOptions,
+        processes,
+        training_processes,
+    )
+    from mart.platform.run.room_manager import opening_rooms
+    from mart.platform.run.running import running_platform
     from mart.protocol.tasks import get_task
     from mart.runtime.service import stop_requested
     from mart.runtime.settings import Settings
 
     get_task(task)
     settings = Settings()
-    options = Options(
+    options = PlatformOptions(
         settings.data_dir, settings.router, host, port, public_host, room, task, control_hz, episodes=episodes
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
@@ -94,12 +99,15 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
 
     Prints one JSON line per episode, with or without --json.
     """
-    from mart.platform.collection import Order, collect_episodes
-    from mart.platform.operators import parse_operators
+    from mart.platform.collect.collection import (
+        CollectionSpec,
+        collect_episodes,
+    )
+    from mart.platform.collect.operators import parse_operators
 
     seated = parse_operators(task, None)
-    order = Order(task, episodes, "expert", seed, control_hz, out, seated, browsers=True)
-    _print_collected(order, collect_episodes(order), as_json=False)
+    spec = CollectionSpec(task, episodes, "expert", seed, control_hz, out, seated, browsers=True)
+    _print_collected(spec, collect_episodes(spec), as_json=False)
 
 
 @click.command()
@@ -136,21 +144,26 @@ def collect(
 
     Trained policies may sit beside them.
 
-    Prints one JSON line per episode as it is saved and a summary on standard error; with --json one object with both.
+    Prints one JSON line per episode as it is saved and a summary on standard error; with --json the summary is the last
+    line.
     """
-    from mart.platform.collection import Order, collect_episodes, collect_in_lockstep
-    from mart.platform.operators import parse_operators
+    from mart.platform.collect.collection import (
+        CollectionSpec,
+        collect_episodes,
+        collect_in_lockstep,
+    )
+    from mart.platform.collect.operators import parse_operators
 
     seated = parse_operators(task, operators)
-    order = Order(task, episodes, skill, seed, control_hz, out, seated, time_limit)
-    _print_collected(order, (collect_in_lockstep if lockstep else collect_episodes)(order), as_json)
+    spec = CollectionSpec(task, episodes, skill, seed, control_hz, out, seated, time_limit)
+    _print_collected(spec, (collect_in_lockstep if lockstep else collect_episodes)(spec), as_json)
 
 
 @click.command()
 @json_option
 def rooms(as_json: bool) -> None:
     """Show what is open, who sits where, the real-time factor, and who is being waited for."""
-    from mart.platform import rooms as view
+    from mart.platform.inspect import rooms as view
     from mart.runtime.bus.zenoh_bus import ZenohBus
     from mart.runtime.settings import Settings
 
@@ -164,7 +177,7 @@ def rooms(as_json: bool) -> None:
 @json_option
 def doctor(as_json: bool) -> None:
     """Name what is missing or unreachable, layer by layer, and the mend."""
-    from mart.platform.doctor import examine
+    from mart.platform.inspect.doctor import examine
     from mart.runtime.settings import Settings
 
     findings = list(examine(Settings()))
@@ -177,20 +190,19 @@ def doctor(as_json: bool) -> None:
     click.get_current_context().exit(0 if ok else 1)
 
 
-def _print_collected(order: Order, episodes: Iterator[Episode], as_json: bool) -> None:
-    """Each episode as it is saved and, for people, the summary on standard error; or one object with both."""
-    from mart.platform.summary import Summary
+def _print_collected(spec: CollectionSpec, episodes: Iterator[CollectedEpisode], as_json: bool) -> None:
+    """Each episode as it is saved, then the summary: for people on standard error, with --json as the last line."""
+    from mart.platform.collect.summary import CollectionSummary
 
     logging.getLogger("httpx").setLevel(logging.WARNING)
-    summary, lines = Summary(clock.monotonic_s()), []
+    summary = CollectionSummary(clock.monotonic_s())
     for episode in episodes:
         summary.add(episode)
         line = episode.as_json()
-        lines.append({**line, "path": str(order.out / line["path"])})
-        if not as_json:
-            click.echo(json.dumps(lines[-1]))
+        click.echo(json.dumps({**line, "path": str(spec.out / line["path"])}))
+        sys.stdout.flush()  # whoever reads a pipe hears of it now
     told = summary.as_json(clock.monotonic_s())
     if as_json:
-        click.echo(json.dumps({"episodes": lines, **told}))
+        click.echo(json.dumps(told))
     else:
-        click.echo(f"{summary.in_words(told)} They are in {order.out / 'episodes'}.", err=True)
+        click.echo(f"{summary.in_words(told)} They are in {spec.out / 'episodes'}.", err=True)

@@ -43,8 +43,9 @@ def drive_seats(
 
     `name` is what others see. People may take over and hand back. With `episodes`, the operator says that it is ready
     whenever the room practises, and the call returns the outcomes of that many; without, it drives until Ctrl-C, or
-    until `stop` is set, and returns the outcomes of what was recorded meanwhile. `fill_with_scripts` gives seats that nobody
-    holds to scripted experts. `router` is where the platform's router listens; None: MART_ROUTER, or this machine.
+    until `stop` is set, and returns the outcomes of what was recorded meanwhile. `fill_with_scripts` gives seats that
+    nobody holds to scripted experts. `router` is where the platform's router listens; None: MART_ROUTER, or this
+    machine.
 
     Raises Conflict where somebody else sits there or the last seat was given to another; NotFound for an unknown arm;
     Unavailable where room or router cannot be reached, or where the operator takes longer than `time_limit_s` seconds

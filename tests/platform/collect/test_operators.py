@@ -7,7 +7,10 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from mart.platform.operators import Operators, parse_operators
+from mart.platform.collect.operators import (
+    SeatOperators,
+    parse_operators,
+)
 from mart.protocol.errors import InvalidInput
 from mart.runtime.cli import cli
 
@@ -21,12 +24,12 @@ def checkpoint(tmp_path: Path) -> Path:
 
 
 def test_a_script_drives_every_arm_unless_told_otherwise() -> None:
-    assert parse_operators(TASK, None) == Operators(("arm0", "arm1", "arm2"))
+    assert parse_operators(TASK, None) == SeatOperators(("arm0", "arm1", "arm2"))
 
 
 def test_a_policy_takes_all_the_arms_that_name_it(checkpoint: Path) -> None:
     policy = f"policy:{checkpoint}"
-    assert parse_operators(TASK, f"{policy},script,{policy}") == Operators(
+    assert parse_operators(TASK, f"{policy},script,{policy}") == SeatOperators(
         ("arm1",), {checkpoint: ("arm0", "arm2")}
     )
 

@@ -15,14 +15,14 @@ _FILE = "checkpoint.json"
 
 
 @dataclass(frozen=True)
-class Operators:
+class SeatOperators:
     """`scripts`: arms that emulated people drive. `policies`: arms by the checkpoint that drives them."""
 
     scripts: tuple[str, ...]
     policies: Mapping[Path, tuple[str, ...]] = field(default_factory=dict)
 
 
-def parse_operators(task: str, given: str | None) -> Operators:
+def parse_operators(task: str, given: str | None) -> SeatOperators:
     """One operator an arm, separated by commas; None: a script for each.
 
     Raises NotFound for an unknown operator or a checkpoint that does not exist, InvalidInput where the number is not
@@ -30,7 +30,7 @@ def parse_operators(task: str, given: str | None) -> Operators:
     """
     arms = tuple(arm.name for arm in get_task(task).arms)
     if given is None:
-        return Operators(arms)
+        return SeatOperators(arms)
     names = given.split(",")
     if len(names) != len(arms):
         raise InvalidInput(
@@ -49,7 +49,7 @@ def parse_operators(task: str, given: str | None) -> Operators:
             "Only policies were given; somebody has to begin each episode: name a script for at least one arm. "
             "`mart eval` judges policies that drive every arm."
         )
-    return Operators(tuple(scripts), policies)
+    return SeatOperators(tuple(scripts), policies)
 
 
 def _checkpoint(operator: str) -> Path:

@@ -14,7 +14,7 @@ _TIMEOUT_S = 15.0
 _IDLE_S = 2.0  # the server ends idle connections after 5 s; a request must not meet that end
 
 
-class Visitor:
+class WebClient:
     """A session at the lobby. `url` ends with '/'; `certificate` is the site's own, the only one trusted."""
 
     def __init__(self, url: str, certificate: Path) -> None:

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mart.platform.doctor import examine
+from mart.platform.inspect.doctor import examine
 from mart.runtime.ports import free_port
 from mart.runtime.settings import Settings
 from tests.support.processes import running_router, running_service

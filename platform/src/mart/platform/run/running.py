@@ -14,8 +14,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from mart.platform.plan import Options, Process, environment, processes
-from mart.platform.staff import BIN, Staff, logs_dir
+from mart.platform.run.plan import (
+    PlatformOptions,
+    Process,
+    environment,
+    processes,
+)
+from mart.platform.run.supervisor import (
+    BIN,
+    Supervisor,
+    logs_dir,
+)
 from mart.protocol import clock, keys
 from mart.protocol.errors import Conflict, Unavailable
 from mart.runtime.bus.base import Bus
@@ -24,15 +33,16 @@ from mart.runtime.bus.zenoh_bus import ZenohBus
 _log = logging.getLogger(__name__)
 
 _START_TIMEOUT_S = 90.0
+_ASK_EVERY_S = 2.0
 
 
 @dataclass(frozen=True)
 class Platform:
     """All services are up, whoever runs them. `bus` is a session of our own on their router."""
 
-    options: Options
+    options: PlatformOptions
     bus: Bus
-    staff: Staff | None = None  # None: somebody else keeps the services running
+    supervisor: Supervisor | None = None  # None: somebody else keeps the services running
 
     @property
     def url(self) -> str:
@@ -53,7 +63,7 @@ class Platform:
 
 
 @contextlib.contextmanager
-def running_platform(options: Options, plan: tuple[Process, ...] | None = None) -> Iterator[Platform]:
+def running_platform(options: PlatformOptions, plan: tuple[Process, ...] | None = None) -> Iterator[Platform]:
     """Starts all services, or those of `plan`, and waits for every one's liveliness token; stops them when the block
     ends.
 
@@ -66,16 +76,16 @@ def running_platform(options: Options, plan: tuple[Process, ...] | None = None) 
     with tempfile.TemporaryDirectory(
         prefix="mart-"
     ) as private:  # whatever the data folder is called: a socket's path is short
-        staff = Staff(options, plan, Path(private) / "supervisor")
-        with _supervised(options, staff) as supervisor, _connected(options.router, supervisor) as bus:
+        supervisor = Supervisor(options, plan, Path(private) / "supervisor")
+        with _supervised(options, supervisor) as supervisord, _connected(options.router, supervisord) as bus:
             _await_alive(bus, options, plan)
-            yield Platform(options, bus, staff)
+            yield Platform(options, bus, supervisor)
 
 
 @contextlib.contextmanager
-def _supervised(options: Options, staff: Staff) -> Iterator[subprocess.Popen[bytes]]:
-    supervisor = subprocess.Popen(  # noqa: S603 - our own command, from our own environment
-        [str(BIN / "supervisord"), "--nodaemon", "--silent", "--configuration", str(staff.config)],
+def _supervised(options: PlatformOptions, supervisor: Supervisor) -> Iterator[subprocess.Popen[bytes]]:
+    supervisord = subprocess.Popen(  # noqa: S603 - our own command, from our own environment
+        [str(BIN / "supervisord"), "--nodaemon", "--silent", "--configuration", str(supervisor.config)],
         env={**os.environ, **environment(options)},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
@@ -83,10 +93,10 @@ def _supervised(options: Options, staff: Staff) -> Iterator[subprocess.Popen[byt
         start_new_session=True,  # a Ctrl-C is for us: we stop the others in order
     )
     try:
-        yield supervisor
+        yield supervisord
     finally:
-        supervisor.send_signal(signal.SIGTERM)
-        supervisor.wait()
+        supervisord.send_signal(signal.SIGTERM)
+        supervisord.wait()
 
 
 def _require_free(host: str, port: int, what: str, setting: str) -> None:
@@ -102,20 +112,20 @@ def _require_free(host: str, port: int, what: str, setting: str) -> None:
 
 
 @contextlib.contextmanager
-def _connected(endpoint: str, supervisor: subprocess.Popen[bytes]) -> Iterator[Bus]:
+def _connected(endpoint: str, supervisord: subprocess.Popen[bytes]) -> Iterator[Bus]:
     deadline_s = clock.monotonic_s() + _START_TIMEOUT_S
     bus: Bus | None = None
     while bus is None:
         try:
             bus = ZenohBus.connect(endpoint, wait_for_router=False)
         except Unavailable:
-            if supervisor.poll() is not None or clock.monotonic_s() > deadline_s:
+            if supervisord.poll() is not None or clock.monotonic_s() > deadline_s:
                 raise
     with bus:
         yield bus
 
 
-def _await_alive(bus: Bus, options: Options, plan: tuple[Process, ...]) -> None:
+def _await_alive(bus: Bus, options: PlatformOptions, plan: tuple[Process, ...]) -> None:
     awaited = {keys.alive(process.kind, process.id) for process in plan if process.awaited}
     present: set[str] = set()
     complete = threading.Event()
@@ -126,9 +136,13 @@ def _await_alive(bus: Bus, options: Options, plan: tuple[Process, ...]) -> None:
             complete.set()
 
     with contextlib.closing(bus.watch(keys.EVERY_ALIVE, on_token)):
-        if not complete.wait(_START_TIMEOUT_S):
-            missing = ", ".join(sorted(awaited - present))
-            raise Unavailable(
-                f"Not up after {_START_TIMEOUT_S:g} s: {missing}. Their logs are in {logs_dir(options)}."
-            )
+        deadline_s = clock.monotonic_s() + _START_TIMEOUT_S
+        while not complete.wait(_ASK_EVERY_S):
+            for key in bus.alive(keys.EVERY_ALIVE):  # news of a token may be lost
+                on_token(key, True)
+            if clock.monotonic_s() > deadline_s and not complete.is_set():
+                missing = ", ".join(sorted(awaited - present))
+                raise Unavailable(
+                    f"Not up after {_START_TIMEOUT_S:g} s: {missing}. Their logs are in {logs_dir(options)}."
+                )
     _log.info("All services are up")

@@ -7,7 +7,7 @@ import shutil
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mart.platform.visitor import Visitor
+from mart.platform.collect.web_client import WebClient
 from mart.protocol.errors import Unavailable
 
 if TYPE_CHECKING:
@@ -48,10 +48,10 @@ def running_browser() -> Iterator[Browser]:
             yield browser
 
 
-def open_operator_page(browser: Browser, visitor: Visitor, url: str, room: str, arm: str) -> Page:
-    """The operator's page of a seat that `visitor` holds, once its picture runs."""
+def open_operator_page(browser: Browser, web_client: WebClient, url: str, room: str, arm: str) -> Page:
+    """The operator's page of a seat that `web_client` holds, once its picture runs."""
     context = browser.new_context(viewport={"width": 960, "height": 720}, ignore_https_errors=True)
-    context.add_cookies(visitor.cookies())  # type: ignore[arg-type]
+    context.add_cookies(web_client.cookies())  # type: ignore[arg-type]
     page = context.new_page()
     page.goto(f"{url}rooms/{room}/arms/{arm}")
     page.wait_for_function(

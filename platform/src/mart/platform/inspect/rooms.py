@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+from collections.abc import Iterable
 from typing import Any
 
 from mart.protocol import keys
@@ -16,8 +17,14 @@ _STATUS_TIMEOUT_S = 2.0  # five times a second is promised
 
 
 def open_rooms(bus: Bus) -> list[RoomStatus]:
-    """The newest status of every room whose sim is alive, sorted by room; a silent one is left out."""
-    awaited = {keys.last_of(key) for key in bus.alive(keys.alive_of(ServiceKind.SIM))}
+    """Return the newest status of every room whose sim is alive, sorted by room; a silent one is left out."""
+    alive = {keys.last_of(key) for key in bus.alive(keys.alive_of(ServiceKind.SIM))}
+    return statuses_of(bus, alive, _STATUS_TIMEOUT_S)
+
+
+def statuses_of(bus: Bus, rooms: Iterable[str], timeout_s: float) -> list[RoomStatus]:
+    """Return the newest status of every room that speaks, sorted by room, as soon as all of `rooms` have spoken."""
+    awaited = set(rooms)
     heard: dict[str, RoomStatus] = {}
     complete = threading.Event()
 
@@ -29,7 +36,7 @@ def open_rooms(bus: Bus) -> list[RoomStatus]:
 
     with contextlib.closing(bus.subscribe(keys.EVERY_STATUS, on_status)):
         if awaited:
-            complete.wait(_STATUS_TIMEOUT_S)
+            complete.wait(timeout_s)
     return [heard[room] for room in sorted(heard)]
 
 

@@ -7,7 +7,10 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from mart.platform.plan import Options, Process
+from mart.platform.run.plan import (
+    PlatformOptions,
+    Process,
+)
 from mart.protocol.errors import Unavailable
 
 # A recorder that is verifying an episode gets time to close its file.
@@ -15,10 +18,10 @@ _STOP_TIMEOUT_S = 30
 BIN = Path(sys.executable).parent
 
 
-class Staff:
+class Supervisor:
     """The processes that supervisord keeps running, and its file of them; others may come and go meanwhile."""
 
-    def __init__(self, options: Options, plan: tuple[Process, ...], socket: Path) -> None:
+    def __init__(self, options: PlatformOptions, plan: tuple[Process, ...], socket: Path) -> None:
         self._options, self._socket = options, socket
         self._programs = {process.name: (order, process) for order, process in enumerate(plan)}
         self._last = len(plan)
@@ -32,12 +35,12 @@ class Staff:
     def processes(self) -> tuple[Process, ...]:
         return tuple(process for _, process in self._programs.values())
 
-    def hire(self, process: Process) -> None:
+    def add(self, process: Process) -> None:
         """Starts it, and again whenever it dies."""
         self._programs[process.name] = self._last, process
         self._update()
 
-    def dismiss(self, name: str) -> None:
+    def remove(self, name: str) -> None:
         """Stops it for good. The others keep their order: what supervisord finds changed it would start anew."""
         del self._programs[name]
         self._update()
@@ -55,7 +58,7 @@ class Staff:
         self.config.write_text(configuration(self._options, self._programs.values(), self._socket))
 
 
-def configuration(options: Options, programs: Iterable[tuple[int, Process]], socket: Path) -> str:
+def configuration(options: PlatformOptions, programs: Iterable[tuple[int, Process]], socket: Path) -> str:
     """The text of supervisord.conf: each process with its place in the order of starting; supervisorctl's socket."""
     run_dir = (options.data_dir / "run").resolve()
     head = f"""[supervisord]
@@ -75,7 +78,7 @@ serverurl=unix://{socket}
     return head + "\n".join(_program(options, process, order) for order, process in programs)
 
 
-def _program(options: Options, process: Process, order: int) -> str:
+def _program(options: PlatformOptions, process: Process, order: int) -> str:
     command = " ".join(f'"{_escaped(word)}"' for word in (str(BIN / "mart"), *process.command))
     return f"""
 [program:{process.name}]
@@ -97,5 +100,5 @@ def _escaped(value: Path | str) -> str:
     return str(value).replace("%", "%%").replace('"', r"\"")
 
 
-def logs_dir(options: Options) -> Path:
+def logs_dir(options: PlatformOptions) -> Path:
     return options.data_dir / "logs"

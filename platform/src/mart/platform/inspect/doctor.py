@@ -10,8 +10,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from mart.platform.browser import chromium_path
-from mart.platform.rooms import open_rooms
+from mart.platform.collect.browser import chromium_path
+from mart.platform.inspect.rooms import open_rooms
 from mart.protocol import keys
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import barrier_word
@@ -23,7 +23,7 @@ _LEAST_FREE_BYTES = 2 * 1024**3
 
 
 @dataclass(frozen=True)
-class Finding:
+class Diagnosis:
     """One layer. `mend` is empty where nothing is amiss."""
 
     layer: str
@@ -35,7 +35,7 @@ class Finding:
         return asdict(self)
 
 
-def examine(settings: Settings) -> Iterator[Finding]:
+def examine(settings: Settings) -> Iterator[Diagnosis]:
     """From the machine upwards; what stands on a missing layer is not looked at."""
     yield _graphics()
     yield _chromium()
@@ -48,44 +48,44 @@ def examine(settings: Settings) -> Iterator[Finding]:
             for kind in _NEEDED_KINDS:
                 yield _service(kind, alive)
             for status in open_rooms(bus):
-                yield Finding(f"room {status.room}", True, f"{status.task}, {barrier_word(status.barrier)}")
+                yield Diagnosis(f"room {status.room}", True, f"{status.task}, {barrier_word(status.barrier)}")
 
 
-def _graphics() -> Finding:
+def _graphics() -> Diagnosis:
     if ctypes.util.find_library("EGL"):
-        return Finding("graphics", True, "EGL is there")
-    return Finding("graphics", False, "no EGL library", "apt-get install libegl1 libgles2 libgl1-mesa-dri")
+        return Diagnosis("graphics", True, "EGL is there")
+    return Diagnosis("graphics", False, "no EGL library", "apt-get install libegl1 libgles2 libgl1-mesa-dri")
 
 
-def _chromium() -> Finding:
+def _chromium() -> Diagnosis:
     try:
-        return Finding("chromium", True, chromium_path())
+        return Diagnosis("chromium", True, chromium_path())
     except Unavailable:
-        return Finding("chromium", True, "not installed; only `make demo` and the tests need it")
+        return Diagnosis("chromium", True, "not installed; only `make demo` and the tests need it")
 
 
-def _disk(data_dir: Path) -> Finding:
+def _disk(data_dir: Path) -> Diagnosis:
     folder = data_dir.resolve()
     existing = next(parent for parent in (folder, *folder.parents) if parent.exists())
     free_bytes = shutil.disk_usage(existing).free
     found = f"{free_bytes / 1024**3:.1f} GiB free at {folder}"
     if free_bytes >= _LEAST_FREE_BYTES:
-        return Finding("disk", True, found)
-    return Finding("disk", False, found, "free some space, or set MART_DATA_DIR to a larger disk")
+        return Diagnosis("disk", True, found)
+    return Diagnosis("disk", False, found, "free some space, or set MART_DATA_DIR to a larger disk")
 
 
-def _router(endpoint: str) -> Finding:
+def _router(endpoint: str) -> Diagnosis:
     host, _, port = endpoint.rpartition("/")[2].rpartition(":")
     try:
         with socket.create_connection((host, int(port)), timeout=1.0):
-            return Finding("router", True, f"answers at {endpoint}")
+            return Diagnosis("router", True, f"answers at {endpoint}")
     except OSError as error:
         mend = "start MART with `make run`, or set MART_ROUTER to where it runs"
-        return Finding("router", False, f"{endpoint}: {error}", mend)
+        return Diagnosis("router", False, f"{endpoint}: {error}", mend)
 
 
-def _service(kind: str, alive: list[str]) -> Finding:
+def _service(kind: str, alive: list[str]) -> Diagnosis:
     ids = [keys.last_of(key) for key in alive if key.split("/")[2] == kind]
     if ids:
-        return Finding(kind, True, ", ".join(ids))
-    return Finding(kind, False, "none is running", f"start it with `mart {kind}` and read its log")
+        return Diagnosis(kind, True, ", ".join(ids))
+    return Diagnosis(kind, False, "none is running", f"start it with `mart {kind}` and read its log")

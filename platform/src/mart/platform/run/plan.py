@@ -30,7 +30,7 @@ class Process:
 
 
 @dataclass(frozen=True)
-class Options:
+class PlatformOptions:
     """One platform. `host` is where the pages listen: 127.0.0.1 keeps them on this computer."""
 
     data_dir: Path
@@ -48,7 +48,7 @@ class Options:
     environment: Mapping[str, str] = field(default_factory=dict)
 
 
-def processes(options: Options) -> tuple[Process, ...]:
+def processes(options: PlatformOptions) -> tuple[Process, ...]:
     """The router first, the pages last: who can see a page can use it."""
     web = ["web", "--host", options.host, "--port", str(options.port)]
     if options.public_host:
@@ -65,13 +65,13 @@ def processes(options: Options) -> tuple[Process, ...]:
     )
 
 
-def training_processes(options: Options) -> tuple[Process, ...]:
+def training_processes(options: PlatformOptions) -> tuple[Process, ...]:
     """The same with a trainer and with policies in seats, for which nobody waits: a session can begin without them."""
     *others, pages = processes(options)
     return (*others, _POLICIES, _TRAINER, pages)
 
 
-def lockstep_processes(options: Options, rooms: int) -> tuple[Process, ...]:
+def lockstep_processes(options: PlatformOptions, rooms: int) -> tuple[Process, ...]:
     """What episodes need that nobody watches: rooms that drive themselves, and who records and verifies."""
     names = [f"room-{number + 1}" for number in range(rooms)]
     return (_ROUTER, _REPLICA, _RECORDER, *(_sim(options, name, "--lockstep") for name in names))
@@ -85,7 +85,7 @@ _POLICIES = Process(("policies",), ServiceKind.POLICIES, "policies", awaited=Fal
 _TRAINER = Process(("trainer", "--name", "trainer-1"), ServiceKind.TRAINER, "trainer-1", awaited=False)
 
 
-def _sim(options: Options, room: str, *more: str) -> Process:
+def _sim(options: PlatformOptions, room: str, *more: str) -> Process:
     command = ["sim", "--room", room, "--task", options.task, "--control-hz", f"{options.control_hz:g}"]
     chosen = {
         "--seed": options.seed,
@@ -98,7 +98,7 @@ def _sim(options: Options, room: str, *more: str) -> Process:
     return Process((*command, *more), ServiceKind.SIM, room)
 
 
-def room(options: Options, wanted: RoomsRequest.Open) -> Process:
+def room(options: PlatformOptions, wanted: RoomsRequest.Open) -> Process:
     """One room more."""
     chosen = replace(
         options, task=wanted.task, control_hz=wanted.control_hz, episodes=wanted.episodes or None
@@ -106,7 +106,7 @@ def room(options: Options, wanted: RoomsRequest.Open) -> Process:
     return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None), wanted.room)
 
 
-def environment(options: Options) -> dict[str, str]:
+def environment(options: PlatformOptions) -> dict[str, str]:
     """What every process is started with, on top of this process's own environment."""
     return {
         "MART_ROUTER": options.router,

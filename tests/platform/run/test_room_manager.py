@@ -1,4 +1,4 @@
-"""Rooms opened and closed meanwhile: what is allowed, and what becomes of it. Nothing is started here."""
+"""RoomManager opened and closed meanwhile: what is allowed, and what becomes of it. Nothing is started here."""
 
 from __future__ import annotations
 
@@ -8,10 +8,18 @@ from typing import Any
 
 import pytest
 
-from mart.platform import kept_rooms
-from mart.platform.opening import MAX_ROOMS, Rooms
-from mart.platform.plan import DEFAULT_TASK, Options, Process, processes
-from mart.platform.staff import Staff
+from mart.platform.run import saved_rooms as kept_rooms
+from mart.platform.run.plan import (
+    DEFAULT_TASK,
+    PlatformOptions,
+    Process,
+    processes,
+)
+from mart.platform.run.room_manager import (
+    MAX_ROOMS,
+    RoomManager,
+)
+from mart.platform.run.supervisor import Supervisor
 from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound
 from mart.protocol.messages import (
     EPISODE_PHASE_RECORDING,
@@ -26,7 +34,7 @@ Open, Close = RoomsRequest.Open, RoomsRequest.Close
 KEPT = {"old": "a_task_that_was", "lab": DEFAULT_TASK}
 
 
-class Noted(Staff):
+class Noted(Supervisor):
     """Keeps the file's processes, and tells no supervisor."""
 
     def _update(self) -> None:
@@ -34,12 +42,12 @@ class Noted(Staff):
 
 
 @pytest.fixture
-def options(tmp_path: Path) -> Options:
-    return Options(tmp_path, seed=7)
+def options(tmp_path: Path) -> PlatformOptions:
+    return PlatformOptions(tmp_path, seed=7)
 
 
 @pytest.fixture
-def staff(options: Options, tmp_path: Path) -> Staff:
+def supervisor(options: PlatformOptions, tmp_path: Path) -> Supervisor:
     return Noted(options, processes(options), tmp_path / "socket")
 
 
@@ -49,37 +57,37 @@ def statuses() -> dict[str, RoomStatus]:
 
 
 @pytest.fixture
-def rooms(options: Options, staff: Staff, statuses: dict[str, RoomStatus]) -> Rooms:
-    return Rooms(options, staff, statuses)
+def rooms(options: PlatformOptions, supervisor: Supervisor, statuses: dict[str, RoomStatus]) -> RoomManager:
+    return RoomManager(options, supervisor, statuses)
 
 
-def opened(rooms: Rooms, task: str = DEFAULT_TASK, **asked: Any) -> str:
+def opened(rooms: RoomManager, task: str = DEFAULT_TASK, **asked: Any) -> str:
     return rooms.answer(RoomsRequest(open=Open(task=task, **asked))).status.room
 
 
-def close(rooms: Rooms, name: str) -> None:
+def close(rooms: RoomManager, name: str) -> None:
     rooms.answer(RoomsRequest(close=Close(room=name)))
 
 
-def sim(staff: Staff, name: str) -> Process:
-    return next(process for process in staff.processes if process.name == f"sim-{name}")
+def sim(supervisor: Supervisor, name: str) -> Process:
+    return next(process for process in supervisor.processes if process.name == f"sim-{name}")
 
 
-def test_a_new_room_is_a_sim_that_is_kept_running(rooms: Rooms, staff: Staff) -> None:
+def test_a_new_room_is_a_sim_that_is_kept_running(rooms: RoomManager, supervisor: Supervisor) -> None:
     assert opened(rooms, task="three_arm_lift_wiping", control_hz=60.0) == "room-2"
-    command = " ".join(sim(staff, "room-2").command)
+    command = " ".join(sim(supervisor, "room-2").command)
     assert command == "sim --room room-2 --task three_arm_lift_wiping --control-hz 60"  # a seed of its own
-    assert "[program:sim-room-2]" in staff.config.read_text()
+    assert "[program:sim-room-2]" in supervisor.config.read_text()
     assert opened(rooms, room="lab") == "lab"
     assert rooms.names == ["lab", "room-1", "room-2"]
 
 
-def test_a_plan_travels_to_the_sim(rooms: Rooms, staff: Staff) -> None:
+def test_a_plan_travels_to_the_sim(rooms: RoomManager, supervisor: Supervisor) -> None:
     opened(rooms, episodes=50)
-    assert sim(staff, "room-2").command[-2:] == ("--episodes", "50")
+    assert sim(supervisor, "room-2").command[-2:] == ("--episodes", "50")
 
 
-def test_a_free_name_is_that_of_no_room_that_ever_was(rooms: Rooms, options: Options) -> None:
+def test_a_free_name_is_that_of_no_room_that_ever_was(rooms: RoomManager, options: PlatformOptions) -> None:
     """Or it would go on counting the episodes of somebody else's session."""
     (options.data_dir / "rooms").mkdir()
     (options.data_dir / "rooms" / "room-2.json").touch()
@@ -87,9 +95,9 @@ def test_a_free_name_is_that_of_no_room_that_ever_was(rooms: Rooms, options: Opt
     assert opened(rooms, room="room-2") == "room-2"
 
 
-def test_others_are_not_started_anew_when_one_closes(rooms: Rooms, staff: Staff) -> None:
+def test_others_are_not_started_anew_when_one_closes(rooms: RoomManager, supervisor: Supervisor) -> None:
     def sections() -> set[str]:
-        return set(staff.config.read_text().split("\n[program:"))
+        return set(supervisor.config.read_text().split("\n[program:"))
 
     opened(rooms)
     before = sections()
@@ -110,36 +118,38 @@ def test_others_are_not_started_anew_when_one_closes(rooms: Rooms, staff: Staff)
     ],
 )
 def test_what_cannot_be_opened(
-    rooms: Rooms, asked: dict[str, Any], error: type[MartError], complaint: str
+    rooms: RoomManager, asked: dict[str, Any], error: type[MartError], complaint: str
 ) -> None:
     with pytest.raises(error, match=complaint):
         opened(rooms, **asked)
     assert rooms.names == ["room-1"]
 
 
-def test_what_people_opened_comes_back(rooms: Rooms, options: Options, staff: Staff) -> None:
+def test_what_people_opened_comes_back(
+    rooms: RoomManager, options: PlatformOptions, supervisor: Supervisor
+) -> None:
     opened(rooms, room="lab", episodes=50, control_hz=30.0)
     opened(rooms)
     close(rooms, opened(rooms))
-    before = {process.name for process in staff.processes}
+    before = {process.name for process in supervisor.processes}
     again = Noted(options, processes(options), options.data_dir / "socket")
-    Rooms(options, again, {}).reopen()
+    RoomManager(options, again, {}).reopen()
     assert {process.name for process in again.processes} == before
-    assert sim(again, "lab").command == sim(staff, "lab").command
+    assert sim(again, "lab").command == sim(supervisor, "lab").command
 
 
-def test_the_first_room_is_what_the_command_says(rooms: Rooms, options: Options) -> None:
+def test_the_first_room_is_what_the_command_says(rooms: RoomManager, options: PlatformOptions) -> None:
     """Though one of its name was opened before."""
     opened(rooms, room="lab")
     first = replace(options, room="lab", task="three_arm_lift_wiping")
-    staff = Noted(first, processes(first), options.data_dir / "socket")
-    Rooms(first, staff, {}).reopen()
-    assert [process.id for process in staff.processes if process.kind == "sim"] == ["lab"]
-    assert "three_arm_lift_wiping" in sim(staff, "lab").command
+    supervisor = Noted(first, processes(first), options.data_dir / "socket")
+    RoomManager(first, supervisor, {}).reopen()
+    assert [process.id for process in supervisor.processes if process.kind == "sim"] == ["lab"]
+    assert "three_arm_lift_wiping" in sim(supervisor, "lab").command
 
 
 def test_a_room_that_cannot_come_back_is_named_and_the_others_come(
-    rooms: Rooms, options: Options, caplog: pytest.LogCaptureFixture
+    rooms: RoomManager, options: PlatformOptions, caplog: pytest.LogCaptureFixture
 ) -> None:
     path = options.data_dir / "rooms.jsonl"
     kept_rooms.save(path, [Open(room=name, task=task, control_hz=20.0) for name, task in KEPT.items()])
@@ -152,7 +162,7 @@ def test_a_room_that_cannot_come_back_is_named_and_the_others_come(
 
 @pytest.mark.parametrize("damage", [b"{", b"\xff", b'{"room": 7}\n', b'{"colour": "red"}\n'])
 def test_a_damaged_list_is_put_aside_and_said(
-    rooms: Rooms, options: Options, caplog: pytest.LogCaptureFixture, damage: bytes
+    rooms: RoomManager, options: PlatformOptions, caplog: pytest.LogCaptureFixture, damage: bytes
 ) -> None:
     path = options.data_dir / "rooms.jsonl"
     path.write_bytes(damage)
@@ -165,7 +175,7 @@ def test_a_damaged_list_is_put_aside_and_said(
 
 
 def test_a_full_disk_takes_no_room_from_people(
-    rooms: Rooms, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+    rooms: RoomManager, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
@@ -175,14 +185,14 @@ def test_a_full_disk_takes_no_room_from_people(
     assert "No space left" in caplog.text
 
 
-def test_rooms_are_bounded(rooms: Rooms) -> None:
+def test_rooms_are_bounded(rooms: RoomManager) -> None:
     for _ in range(MAX_ROOMS - 1):
         opened(rooms)
     with pytest.raises(Conflict, match=f"{MAX_ROOMS} rooms are open"):
         opened(rooms)
 
 
-def test_a_room_with_people_or_a_recording_stays(rooms: Rooms, statuses: dict[str, RoomStatus]) -> None:
+def test_a_room_with_people_or_a_recording_stays(rooms: RoomManager, statuses: dict[str, RoomStatus]) -> None:
     statuses["room-1"].seats.add(arm="arm1", operator=OPERATOR_HUMAN, name="Ana")
     with pytest.raises(Conflict, match="Ana can still drive"):
         close(rooms, "room-1")

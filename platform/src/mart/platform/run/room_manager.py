@@ -1,4 +1,4 @@
-"""Rooms that people open and close while the platform runs: each is a sim, kept running by the supervisor."""
+"""RoomManager that people open and close while the platform runs: each is a sim, kept running by the supervisor."""
 
 from __future__ import annotations
 
@@ -9,10 +9,13 @@ import threading
 from collections.abc import Iterator
 from itertools import count
 
-from mart.platform import kept_rooms
-from mart.platform.plan import Options, room
-from mart.platform.staff import Staff
-from mart.platform.supervise import Platform
+from mart.platform.run import saved_rooms as kept_rooms
+from mart.platform.run.plan import (
+    PlatformOptions,
+    room,
+)
+from mart.platform.run.running import Platform
+from mart.platform.run.supervisor import Supervisor
 from mart.protocol import codec, keys
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, require_control_hz
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput, MartError, NotFound
@@ -39,17 +42,19 @@ _MAX_STATUS_BYTES = 64 * 1024
 _MAX_WAITING = 16
 
 
-class Rooms:
+class RoomManager:
     """Which rooms run here. `statuses`: the newest of each room, by name. Raises MartError for what cannot be."""
 
-    def __init__(self, options: Options, staff: Staff, statuses: dict[str, RoomStatus]) -> None:
-        self._options, self._staff, self._statuses = options, staff, statuses
+    def __init__(
+        self, options: PlatformOptions, supervisor: Supervisor, statuses: dict[str, RoomStatus]
+    ) -> None:
+        self._options, self._supervisor, self._statuses = options, supervisor, statuses
         self._path = options.data_dir / "rooms.jsonl"
         self._kept: dict[str, RoomsRequest.Open] = {}
 
     @property
     def names(self) -> list[str]:
-        return sorted(process.id for process in self._staff.processes if process.kind == ServiceKind.SIM)
+        return sorted(process.id for process in self._supervisor.processes if process.kind == ServiceKind.SIM)
 
     def answer(self, request: RoomsRequest) -> RoomReply:
         match request.WhichOneof("what"):
@@ -99,7 +104,7 @@ class Rooms:
             raise Conflict(f"{wanted.room!r} is open already; give the new room another name.")
         if len(self.names) >= MAX_ROOMS:
             raise Conflict(f"{len(self.names)} rooms are open, which is the most; close one first.")
-        self._staff.hire(room(self._options, wanted))
+        self._supervisor.add(room(self._options, wanted))
         _log.info("%s is opened for %s", wanted.room, wanted.task)
 
     def _keep(self) -> None:
@@ -125,8 +130,8 @@ class Rooms:
             )
         if status.episode.phase in (EPISODE_PHASE_COUNTDOWN, EPISODE_PHASE_RECORDING):
             raise Conflict(f"{name} was to be closed, but an episode is being recorded; end it first.")
-        self._staff.dismiss(
-            next(one.name for one in self._staff.processes if one.id == name and one.kind == "sim")
+        self._supervisor.remove(
+            next(one.name for one in self._supervisor.processes if one.id == name and one.kind == "sim")
         )
         self._statuses.pop(name, None)
         self._kept.pop(name, None)
@@ -140,10 +145,10 @@ def opening_rooms(platform: Platform) -> Iterator[None]:
 
     For a platform that runs its services itself.
     """
-    assert platform.staff is not None
+    assert platform.supervisor is not None
     inbox: queue.Queue[Request | None] = queue.Queue(_MAX_WAITING)
     statuses: dict[str, RoomStatus] = {}
-    rooms = Rooms(platform.options, platform.staff, statuses)
+    rooms = RoomManager(platform.options, platform.supervisor, statuses)
     rooms.reopen()
 
     def on_status(sample: Sample) -> None:
@@ -174,7 +179,7 @@ def opening_rooms(platform: Platform) -> Iterator[None]:
         yield
 
 
-def _answer(rooms: Rooms, payload: bytes) -> RoomReply:
+def _answer(rooms: RoomManager, payload: bytes) -> RoomReply:
     try:
         return rooms.answer(codec.decode(RoomsRequest, payload, _MAX_REQUEST_BYTES))
     except MartError as error:

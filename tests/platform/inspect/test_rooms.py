@@ -2,7 +2,11 @@ from __future__ import annotations
 
 import pytest
 
-from mart.platform.rooms import as_json, in_words, open_rooms
+from mart.platform.inspect.rooms import (
+    as_json,
+    in_words,
+    open_rooms,
+)
 from mart.protocol import keys
 from mart.protocol import messages as m
 from mart.protocol.codec import encode

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
-from mart.platform.session import Episode
+from mart.platform.collect.saved_episodes import CollectedEpisode
 
 
-class Summary:
+class CollectionSummary:
     """`now_s`: monotonic; wall time counts from the start, that of the services included."""
 
     def __init__(self, now_s: float) -> None:
@@ -18,7 +18,7 @@ class Summary:
         self._verified = self._ticks = 0
         self._simulated_s = 0.0
 
-    def add(self, episode: Episode) -> None:
+    def add(self, episode: CollectedEpisode) -> None:
         self._outcomes[episode.outcome] += 1
         if episode.outcome != "success":
             self._reasons[episode.reason] += 1

@@ -3,13 +3,19 @@ from __future__ import annotations
 import configparser
 from pathlib import Path
 
-from mart.platform.plan import Options, environment, lockstep_processes, processes, training_processes
-from mart.platform.staff import configuration
+from mart.platform.run.plan import (
+    PlatformOptions,
+    environment,
+    lockstep_processes,
+    processes,
+    training_processes,
+)
+from mart.platform.run.supervisor import configuration
 from mart.protocol.vocabulary import ServiceKind
 
 
 def test_the_router_comes_first_and_the_pages_last() -> None:
-    kinds = [process.kind for process in processes(Options(Path("data")))]
+    kinds = [process.kind for process in processes(PlatformOptions(Path("data")))]
     assert kinds[0] == "router"
     assert kinds[-1] == "web"
     assert len(set(kinds)) == len(kinds)
@@ -17,7 +23,7 @@ def test_the_router_comes_first_and_the_pages_last() -> None:
 
 def test_options_reach_the_commands() -> None:
     plan = processes(
-        Options(Path("data"), room="lab", task="t", control_hz=30.0, seed=7, public_host="lab.local")
+        PlatformOptions(Path("data"), room="lab", task="t", control_hz=30.0, seed=7, public_host="lab.local")
     )
     words = {process.kind: " ".join(process.command) for process in plan}
     assert words[ServiceKind.SIM] == "sim --room lab --task t --control-hz 30 --seed 7"
@@ -25,7 +31,7 @@ def test_options_reach_the_commands() -> None:
 
 
 def test_in_lockstep_there_are_rooms_and_who_saves_and_nobody_who_looks() -> None:
-    options = Options(Path("data"), task="t", seed=7, skill="novice", time_limit_s=12.5)
+    options = PlatformOptions(Path("data"), task="t", seed=7, skill="novice", time_limit_s=12.5)
     plan = lockstep_processes(options, rooms=2)
     assert sorted(process.kind for process in plan) == ["recorder", "replica", "router", "sim", "sim"]
     sims = [" ".join(process.command) for process in plan if process.kind == "sim"]
@@ -36,13 +42,13 @@ def test_in_lockstep_there_are_rooms_and_who_saves_and_nobody_who_looks() -> Non
 
 
 def test_nothing_listens_beyond_the_loopback_unless_asked() -> None:
-    options = Options(Path("data"))
+    options = PlatformOptions(Path("data"))
     assert options.host == "127.0.0.1"
     assert environment(options)["MART_ROUTER"] == "tcp/127.0.0.1:7447"
 
 
 def test_the_supervisor_reads_back_what_was_planned_also_from_odd_folders(tmp_path: Path) -> None:
-    options = Options(tmp_path / 'a 100% "odd" folder')
+    options = PlatformOptions(tmp_path / 'a 100% "odd" folder')
     parser = configparser.ConfigParser(inline_comment_prefixes=(";",))
     parser.read_string(configuration(options, enumerate(processes(options)), tmp_path / "socket"))
     programs = [section for section in parser.sections() if section.startswith("program:")]
@@ -56,7 +62,7 @@ def test_the_supervisor_reads_back_what_was_planned_also_from_odd_folders(tmp_pa
 
 
 def test_nobody_waits_for_what_learns_and_a_plain_session_goes_without() -> None:
-    options = Options(Path("data"))
+    options = PlatformOptions(Path("data"))
     assert all(process.awaited for process in processes(options))
     plan = training_processes(options)
     assert {process.kind for process in plan if not process.awaited} == {"trainer", "policies"}

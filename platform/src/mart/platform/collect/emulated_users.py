@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mart.operators.room_watch import RoomWatch
-from mart.platform.browser import open_operator_page
-from mart.platform.plan import environment
-from mart.platform.supervise import Platform
-from mart.platform.visitor import Visitor
+from mart.platform.collect.browser import open_operator_page
+from mart.platform.collect.web_client import WebClient
+from mart.platform.run.plan import environment
+from mart.platform.run.running import Platform
 from mart.protocol import clock
 from mart.protocol.errors import Forbidden, Unavailable
 from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
@@ -35,14 +35,14 @@ _LOOK_EVERY_S = 0.2
 
 
 @dataclass(frozen=True)
-class Person:
+class EmulatedUser:
     arm: str
     name: str
-    visitor: Visitor
+    web_client: WebClient
 
 
 @dataclass(frozen=True)
-class Crew:
+class EmulatedUsers:
     """`skill` and `seed` are the scripts'; each person's seed is the crew's plus the number of the seat."""
 
     platform: Platform
@@ -51,7 +51,7 @@ class Crew:
     browser: Browser | None = None
 
     @contextlib.contextmanager
-    def seated(self, arms: Sequence[str]) -> Iterator[list[Person]]:
+    def seated(self, arms: Sequence[str]) -> Iterator[list[EmulatedUser]]:
         """One person per arm: phone paired and moving, page open where there is a browser."""
         with contextlib.ExitStack() as stack:
             yield [stack.enter_context(self._person(number, arm)) for number, arm in enumerate(arms)]
@@ -81,16 +81,18 @@ class Crew:
             yield
 
     @contextlib.contextmanager
-    def _person(self, number: int, arm: str) -> Iterator[Person]:
+    def _person(self, number: int, arm: str) -> Iterator[EmulatedUser]:
         platform, room = self.platform, self.platform.options.room
         name = _NAMES[number % len(_NAMES)]
         with contextlib.ExitStack() as stack:
-            visitor = stack.enter_context(contextlib.closing(Visitor(platform.url, platform.certificate)))
-            visitor.join(platform.join_code, name)
-            visitor.take(room, arm)
-            stack.callback(_leave, visitor, room, arm)
+            web_client = stack.enter_context(
+                contextlib.closing(WebClient(platform.url, platform.certificate))
+            )
+            web_client.join(platform.join_code, name)
+            web_client.take(room, arm)
+            stack.callback(_leave, web_client, room, arm)
             if self.browser is not None:
-                page = open_operator_page(self.browser, visitor, platform.url, room, arm)
+                page = open_operator_page(self.browser, web_client, platform.url, room, arm)
                 stack.enter_context(contextlib.closing(page.context))
             seed = str(self.seed + number)
             brain = [
@@ -106,14 +108,14 @@ class Crew:
                 seed,
             ]
             stack.enter_context(_running(platform, brain, f"brain-{arm}"))
-            hand = ["phone", "--url", platform.url, "--code", visitor.pair(room, arm), "--insecure"]
+            hand = ["phone", "--url", platform.url, "--code", web_client.pair(room, arm), "--insecure"]
             stack.enter_context(_running(platform, hand, f"phone-{arm}"))
-            yield Person(arm, name, visitor)
+            yield EmulatedUser(arm, name, web_client)
 
 
-def _leave(visitor: Visitor, room: str, arm: str) -> None:
+def _leave(web_client: WebClient, room: str, arm: str) -> None:
     with contextlib.suppress(Forbidden):  # handed back meanwhile
-        visitor.leave(room, arm)
+        web_client.leave(room, arm)
 
 
 def _policies_drive(arms: Sequence[str], status: RoomStatus | None) -> bool:

@@ -1,0 +1,116 @@
+"""Find the episodes of a collection by their files: what is on the disk counts, whatever was said on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from mart.episodes.reader import EpisodeFile
+from mart.protocol.messages import Event
+from mart.protocol.recording import SUFFIX
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
+
+
+@dataclass(frozen=True)
+class CollectedEpisode:
+    """Hold what one recorded episode came to. `path` is relative to the data folder.
+
+    `latencies`: motion to photon by seat, none where no page was watching. `real_time_factor` is None for an episode
+    of a single tick.
+    """
+
+    number: int
+    seed: int | None
+    skill: str
+    path: str
+    outcome: EpisodeOutcome
+    reason: str
+    ticks: int
+    simulated_s: float
+    real_time_factor: float | None
+    verdict: Verdict
+    latencies: tuple[Event.Latency, ...] = ()
+
+    @property
+    def verified(self) -> bool:
+        """Whether re-simulation gave the recorded states bit for bit."""
+        return self.verdict is Verdict.VERIFIED
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what `mart collect` and `mart demo` print of it."""
+        worst = max(self.latencies, key=lambda latency: latency.p95_ms, default=None)
+        factor = self.real_time_factor
+        return {
+            "path": self.path,
+            "outcome": self.outcome,
+            "reason": self.reason,
+            "skill": self.skill or None,
+            "seed": self.seed,
+            "ticks": self.ticks,
+            "simulated_s": round(self.simulated_s, 3),
+            "real_time_factor": None if factor is None else round(factor, 4),
+            "motion_to_photon_p50_ms": round(worst.p50_ms, 1) if worst else None,
+            "motion_to_photon_p95_ms": round(worst.p95_ms, 1) if worst else None,
+            "motion_to_photon": {latency.arm: _latency_json(latency) for latency in self.latencies},
+            "verified": self.verified,
+            "verdict": self.verdict,
+        }
+
+
+# Of a room and the number of an episode: the episode, once it is saved.
+FindEpisode = Callable[[str, int], CollectedEpisode | None]
+
+
+class SavedEpisodes:
+    """Look for episodes below `data_dir/episodes` that were not there when this object was made."""
+
+    def __init__(self, data_dir: Path) -> None:
+        self._data_dir = data_dir
+        self._before = frozenset(self._paths("*"))
+
+    def find(self, room: str, number: int) -> CollectedEpisode | None:
+        """Return episode `number` of `room`; None while it has no file.
+
+        An episode that a restart of the recorder cut has several files; the one that knows the outcome counts.
+        Raises Corrupt where a file is no episode.
+        """
+        paths = set(self._paths(f"{room}-{number:04}-*")) - self._before
+        episodes = [read_collected(path, self._data_dir) for path in sorted(paths)]
+        ended = [episode for episode in episodes if episode.outcome is not EpisodeOutcome.UNSPECIFIED]
+        return next(iter(ended or episodes), None)
+
+    def _paths(self, stem: str) -> Iterator[Path]:
+        return (self._data_dir / "episodes").glob(f"*/{stem}{SUFFIX}")
+
+
+def read_collected(path: Path, data_dir: Path) -> CollectedEpisode:
+    """Return what an episode's file says of itself; raises Corrupt where it is no episode."""
+    file = EpisodeFile.open(path)
+    episode, cadence = file.episode, file.cadence
+    return CollectedEpisode(
+        number=episode.number,
+        seed=episode.seed,
+        skill=episode.skill or "",
+        path=path.relative_to(data_dir).as_posix(),
+        outcome=EpisodeOutcome(episode.outcome),
+        reason=episode.reason,
+        ticks=episode.ticks,
+        simulated_s=cadence.sim_s,
+        real_time_factor=cadence.real_time_factor,
+        verdict=file.verification.verdict,
+        latencies=tuple(
+            Event.Latency(arm=arm, p50_ms=p50_ms, p95_ms=cadence.motion_to_photon_p95_ms.get(arm, p50_ms))
+            for arm, p50_ms in sorted(cadence.motion_to_photon_p50_ms.items())
+        ),
+    )
+
+
+def _latency_json(latency: Event.Latency) -> dict[str, Any]:
+    return {
+        "p50_ms": round(latency.p50_ms, 1),
+        "p95_ms": round(latency.p95_ms, 1),
+        "frames": latency.frames,
+        "stages_p50_ms": {stage.name: round(stage.p50_ms, 2) for stage in latency.stages},
+    }
