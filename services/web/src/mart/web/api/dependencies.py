@@ -1,0 +1,52 @@
+"""What routes are given: the app, and the person who asks."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import Depends
+from starlette.requests import HTTPConnection
+
+from mart.protocol import clock
+from mart.web.access.user_sessions import User
+from mart.web.api.app_state import AppState
+from mart.web.errors import NotJoined
+
+COOKIE = "__Host-mart-session"
+
+
+def now_unix_s() -> float:
+    return clock.wall_ns() / 1e9
+
+
+async def app_state_of(connection: HTTPConnection) -> AppState:
+    app = connection.app.state.app_state
+    assert isinstance(app, AppState)
+    return app
+
+
+App = Annotated[AppState, Depends(app_state_of)]
+
+
+async def maybe_user(connection: HTTPConnection, app: App) -> User | None:
+    """Who asks, where they have joined."""
+    session_id = connection.cookies.get(COOKIE)
+    return app.user_sessions.find(session_id, now_unix_s()) if session_id else None
+
+
+MaybeUser = Annotated[User | None, Depends(maybe_user)]
+
+
+async def joined_user(visitor: MaybeUser) -> User:
+    """Who asks; raises NotJoined."""
+    if visitor is None:
+        raise NotJoined
+    return visitor
+
+
+async def address_of(connection: HTTPConnection) -> str:
+    return connection.client.host if connection.client else "unknown"
+
+
+JoinedUser = Annotated[User, Depends(joined_user)]
+Address = Annotated[str, Depends(address_of)]

@@ -1,0 +1,37 @@
+"""How everything does: for machines in one word, for people with what to do."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import asdict
+
+from fastapi import APIRouter
+
+from mart.protocol import clock
+from mart.web.api.dependencies import App, JoinedUser, now_unix_s
+from mart.web.app.certificate import days_left
+from mart.web.lobby.health_findings import delays, machine, rooms, services
+from mart.web.lobby.lobby import Json
+
+router = APIRouter(prefix="/api/health")
+
+_EXPECTED = ("sim", "gateway", "recorder")
+
+
+@router.get("")
+async def health(app: App) -> Json:
+    """`ok`: everything that a collection session needs is there."""
+    running = app.rooms.services()
+    return {"ok": all(kind in running for kind in _EXPECTED), "services": running}
+
+
+@router.get("/findings")
+async def findings(app: App, _user: JoinedUser) -> Json:
+    """Everything that is known, each problem with its mend."""
+    known = (
+        *services(app.rooms.services()),
+        *rooms(app.rooms.lobby.rooms_json("", clock.monotonic_s())),
+        *delays(app.rooms.delays(clock.monotonic_s())),
+        *machine(shutil.disk_usage(app.data_dir).free, days_left(app.certificate, now_unix_s())),
+    )
+    return {"findings": [asdict(finding) for finding in known]}
