@@ -13,11 +13,12 @@ import pytest
 
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
+from mart.web.access.certificate import ensure_certificate
 from mart.web.access.user_sessions import UserSessions
 from mart.web.api.app_state import AppState
 from mart.web.app.application import create_app
-from mart.web.app.certificate import ensure_certificate
-from mart.web.lobby.rooms import Rooms
+from mart.web.lobby.bus_feed import LobbyFeed
+from mart.web.lobby.lobby import Lobby
 from tests.web.room import Room
 
 JOIN_CODE = "ABCD-2345"
@@ -40,13 +41,14 @@ def bus() -> MemoryBus:
 @pytest.fixture
 async def app_state(bus: MemoryBus, tmp_path: Path) -> AsyncIterator[AppState]:
     aio = AsyncBus(bus, asyncio.get_running_loop())
+    lobby = Lobby()
     with (
-        contextlib.closing(Rooms(aio)) as rooms,
+        contextlib.closing(LobbyFeed(aio, lobby)),
         contextlib.closing(UserSessions(":memory:")) as user_sessions,
     ):
         yield AppState(
             bus=aio,
-            rooms=rooms,
+            lobby=lobby,
             user_sessions=user_sessions,
             join_code=JOIN_CODE,
             secret=b"0123456789abcdef0123456789abcdef",

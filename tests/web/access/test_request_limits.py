@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mart.web.access.request_limits import RateLimit
+from mart.web.access.request_limits import RequestLimit
 from mart.web.errors import TooMany
 
 
@@ -14,7 +14,7 @@ from mart.web.errors import TooMany
     gaps_s=st.lists(st.floats(0.0, 30.0), min_size=1, max_size=60),
 )
 def test_no_window_ever_holds_more_than_the_limit(count: int, window_s: float, gaps_s: list[float]) -> None:
-    limit = RateLimit("tries", count, window_s)
+    limit = RequestLimit("tries", count, window_s)
     now_s = 0.0
     granted: list[float] = []
     for gap_s in gaps_s:
@@ -30,7 +30,7 @@ def test_no_window_ever_holds_more_than_the_limit(count: int, window_s: float, g
 
 
 def test_everybody_has_a_share_of_their_own() -> None:
-    limit = RateLimit("tries", 1, 10.0)
+    limit = RequestLimit("tries", 1, 10.0)
     limit.spend("ana", 0.0)
     limit.spend("ben", 0.0)
     with pytest.raises(TooMany, match="try again in 9 s"):
@@ -38,14 +38,14 @@ def test_everybody_has_a_share_of_their_own() -> None:
 
 
 def test_who_is_forgiven_starts_anew() -> None:
-    limit = RateLimit("tries", 1, 10.0)
+    limit = RequestLimit("tries", 1, 10.0)
     limit.spend("ana", 0.0)
     limit.forgive("ana")
     limit.spend("ana", 0.0)
 
 
 def test_memory_is_bounded() -> None:
-    limit = RateLimit("tries", 1, 10.0)
+    limit = RequestLimit("tries", 1, 10.0)
     for number in range(10_000):
         limit.spend(str(number), 0.0)
-    assert len(limit._times) <= 4096
+    assert len(limit._limit._limits) <= 4096

@@ -67,7 +67,14 @@ async def test_only_who_has_joined_and_only_from_our_pages(enter: Enter, asked: 
     foreign = {"Origin": "https://evil.example"}
     assert (await ana.post("/api/rooms", json=body, headers=foreign)).status_code == 403
     assert (await ana.delete("/api/rooms/room-1", headers=foreign)).status_code == 403
-    for bad in ({"task": "x" * 65}, {"control_hz": -1}, {"room": "y" * 65}, {"episodes": 10_001}):
+    for bad in (
+        {"task": "x" * 65},
+        {"control_hz": -1},
+        {"control_hz": 2},
+        {"control_hz": 101},
+        {"room": "y" * 65},
+        {"episodes": 10_001},
+    ):
         assert (await ana.post("/api/rooms", json={**body, **bad})).status_code == 400
     assert (await ana.post("/api/rooms", json={})).status_code == 400
     assert asked == []

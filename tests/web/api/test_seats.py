@@ -1,11 +1,12 @@
 from __future__ import annotations
 
 import asyncio
+from typing import Any, cast
 
 import pytest
 
-from mart.protocol import keys
-from mart.protocol.messages import EPISODE_PHASE_COUNTDOWN, OPERATOR_SCRIPT
+from mart.protocol import codec, keys
+from mart.protocol.messages import EPISODE_PHASE_COUNTDOWN, OPERATOR_SCRIPT, Cue, Event, RoomStatus, Seat
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.memory import MemoryBus
 from mart.web.api.app_state import AppState
@@ -180,6 +181,19 @@ async def test_garbage_on_the_bus_disturbs_nobody(enter: Enter, room: Room, bus:
     await asyncio.sleep(0)
     (seen,) = (await (await enter("Ana")).get("/api/rooms")).json()["rooms"]
     assert seen["room"] == "room-1"
+
+
+@pytest.mark.parametrize("odd", [{"barrier": 99}, {"barrier": 1, "seats": [Seat(arm="arm0")]}])
+async def test_a_room_in_words_that_nobody_knows_disturbs_nobody(
+    enter: Enter, room: Room, bus: MemoryBus, odd: dict[str, Any]
+) -> None:
+    bus.publisher(keys.status("room-2")).put(codec.encode(RoomStatus(room="room-2", **odd)))
+    bus.publisher(keys.event("room-1")).put(
+        codec.encode(Event(cue_given=Event.CueGiven(arm="arm0", cue=cast("Cue", 99))))
+    )
+    await asyncio.sleep(0)
+    answer = await (await enter("Ana")).get("/api/rooms")
+    assert [seen["room"] for seen in answer.json()["rooms"]] == ["room-1"]
 
 
 async def test_health_names_who_is_alive(enter: Enter, room: Room, bus: MemoryBus) -> None:

@@ -47,10 +47,10 @@ class Web:
             assert client.post("/api/join", json={"code": self.join_code, "name": name}).status_code == 200
             yield client
 
-    def live(self, client: httpx.Client, origin: str | None = None) -> ClientConnection:
+    def live(self, client: httpx.Client, origin: str | None = None, after: object = None) -> ClientConnection:
         cookie = "; ".join(f"{cookie.name}={cookie.value}" for cookie in client.cookies.jar)
         return connect(
-            f"wss://localhost:{self.port}/api/live",
+            f"wss://localhost:{self.port}/api/live" + ("" if after is None else f"?after={after}"),
             ssl=self.trust,
             origin=None if origin == "" else origin or self.origin,  # type: ignore[arg-type]
             additional_headers={"Cookie": cookie},
@@ -105,6 +105,29 @@ def test_the_live_socket_tells_rooms_and_events(web: Web, room: Room) -> None:
         assert receive(live, "event")["text"] == "The disk is nearly full."
         live.send("whatever a page may say")
         assert receive(live, "rooms")
+
+
+def test_a_page_that_comes_back_is_told_what_it_missed(web: Web, room: Room) -> None:
+    def notice(text: str) -> Event:
+        return Event(notice=Event.Notice(level="warning", text=text))
+
+    with web.joined("Ana") as ana:
+        with web.live(ana) as live:
+            assert receive(live, "rooms")
+            room.tell(notice("The disk is nearly full."))
+            heard = receive(live, "event")
+        with web.live(ana) as other:
+            assert receive(other, "rooms")
+            room.tell(notice("The disk is full."))
+            missed = receive(other, "event")
+        with web.live(ana, after=heard["id"]) as live:
+            assert receive(live, "event") == missed
+
+
+@pytest.mark.parametrize("after", ["x", "-1", str(2**63)])
+def test_an_event_that_cannot_be_is_no_place_to_go_on_from(web: Web, after: str) -> None:
+    with web.joined("Ana") as ana, pytest.raises(InvalidStatus, match="403"), web.live(ana, after=after):
+        pass
 
 
 @pytest.mark.parametrize("origin", ["https://evil.example", "https://localhost:1", ""])

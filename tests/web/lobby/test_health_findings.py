@@ -9,7 +9,7 @@ import pytest
 from mart.protocol.messages import Event
 from mart.web.api.app_state import AppState
 from mart.web.lobby.health_findings import delays, machine, rooms, services
-from mart.web.lobby.lobby import Json
+from mart.web.lobby.room_json import Json
 from tests.web.conftest import Enter
 from tests.web.room import Room
 

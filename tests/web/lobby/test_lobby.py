@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+from mart.protocol import keys
 from mart.protocol.errors import NotFound
 from mart.protocol.messages import (
     BARRIER_PHASE_STALLED,
@@ -14,7 +15,10 @@ from mart.protocol.messages import (
     RoomStatus,
     Seat,
 )
-from mart.web.lobby.lobby import GONE_AFTER_S, STALE_AFTER_S, Lobby, event_json
+from mart.protocol.vocabulary import ServiceKind
+from mart.web.lobby.lobby import Lobby
+from mart.web.lobby.room_json import event_json
+from mart.web.lobby.room_table import GONE_AFTER_S, STALE_AFTER_S
 
 
 def status(room: str = "room-1", task: str = "two_arm_multi_cube_lifting") -> RoomStatus:
@@ -31,8 +35,8 @@ def status(room: str = "room-1", task: str = "two_arm_multi_cube_lifting") -> Ro
 def lobby_with(*rooms: str, now_s: float = 0.0) -> Lobby:
     lobby = Lobby()
     for room in rooms:
-        lobby.set_alive(room, True)
-        lobby.see(status(room), now_s)
+        lobby.see_alive(keys.alive(ServiceKind.SIM, room), True)
+        lobby.see_status(status(room), now_s)
     return lobby
 
 
@@ -65,7 +69,7 @@ def test_a_plan_is_told() -> None:
     told = status()
     told.plan.episodes = 50
     lobby = Lobby()
-    lobby.see(told, 0.0)
+    lobby.see_status(told, 0.0)
     assert lobby.room_json("room-1", "", 0.0)["plan"] == {"episodes": 50, "good": 0}
 
 
@@ -78,32 +82,32 @@ def test_a_silent_room_is_stale() -> None:
 
 def test_a_room_whose_sim_has_gone_is_stale_at_once_and_disappears() -> None:
     lobby = lobby_with("room-1")
-    lobby.set_alive("room-1", False)
+    lobby.see_alive(keys.alive(ServiceKind.SIM, "room-1"), False)
     assert lobby.room_json("room-1", "", 0.1)["stale"]
     assert lobby.rooms_json("", GONE_AFTER_S) != []
     assert lobby.rooms_json("", GONE_AFTER_S + 0.1) == []
     with pytest.raises(NotFound, match="Known: none"):
-        lobby.status("room-1", GONE_AFTER_S + 0.1)
+        lobby.rooms.status("room-1", GONE_AFTER_S + 0.1)
 
 
 def test_a_room_that_comes_back_is_whole_again() -> None:
     lobby = lobby_with("room-1")
-    lobby.set_alive("room-1", False)
-    lobby.set_alive("room-1", True)
-    lobby.see(status(), 2.0)
+    lobby.see_alive(keys.alive(ServiceKind.SIM, "room-1"), False)
+    lobby.see_alive(keys.alive(ServiceKind.SIM, "room-1"), True)
+    lobby.see_status(status(), 2.0)
     assert not lobby.room_json("room-1", "", 2.1)["stale"]
 
 
 def test_a_task_that_this_service_does_not_know_is_shown_under_its_name() -> None:
     lobby = Lobby()
-    lobby.see(status(task="three_arm_juggling"), 0.0)
+    lobby.see_status(status(task="three_arm_juggling"), 0.0)
     (room,) = lobby.rooms_json("", 0.0)
     assert (room["title"], room["instruction"], room["time_limit_s"]) == ("three_arm_juggling", "", None)
 
 
 def test_an_unknown_arm_is_not_found() -> None:
     with pytest.raises(NotFound, match=r"'arm2'.*Known: arm0, arm1"):
-        lobby_with("room-1").seat("room-1", "arm2", 0.0)
+        lobby_with("room-1").rooms.seat("room-1", "arm2", 0.0)
 
 
 def test_a_saved_episode_is_told() -> None:

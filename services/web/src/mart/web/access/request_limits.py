@@ -1,40 +1,38 @@
-"""How often someone may do something: pure, the time is an argument."""
+"""How often someone may ask for something: a limit whose end is told in words."""
 
 from __future__ import annotations
 
 import math
-from collections import OrderedDict, deque
 
+from mart.runtime.rate_limit import KeyedRateLimit
 from mart.web.errors import TooMany
 
-_MAX_REMEMBERED = 4096
 
+class RequestLimit:
+    """At most `count` times in any `window_s` seconds, for each key (an address, a user). Times are monotonic seconds.
 
-class RateLimit:
-    """At most `count` times in any `window_s` seconds, for each key (an address, a person). Bounded memory."""
+    `what` names it in words ("wrong codes").
+    """
 
     def __init__(self, what: str, count: int, window_s: float) -> None:
         self._what = what
-        self._count = count
-        self._window_s = window_s
-        self._times: OrderedDict[str, deque[float]] = OrderedDict()
+        self._limit = KeyedRateLimit(count, window_s)
 
     def check(self, key: str, now_s: float) -> None:
-        """Raises TooMany where `key` has used up its share; counts nothing."""
-        times = self._times.get(key)
-        if times is not None and len(times) == self._count and now_s - times[0] < self._window_s:
-            raise TooMany(self._what, math.ceil(self._window_s - (now_s - times[0])))
+        """Count nothing; raises TooMany where `key` has used up its share."""
+        wait_s = self._limit.wait_s(key, now_s)
+        if wait_s > 0.0:
+            raise TooMany(self._what, math.ceil(wait_s))
 
     def count(self, key: str, now_s: float) -> None:
-        self._times.setdefault(key, deque(maxlen=self._count)).append(now_s)
-        self._times.move_to_end(key)
-        if len(self._times) > _MAX_REMEMBERED:
-            self._times.popitem(last=False)
+        """Note one of `key`."""
+        self._limit.count(key, now_s)
 
     def forgive(self, key: str) -> None:
-        self._times.pop(key, None)
+        """Allow `key` its full share again."""
+        self._limit.forget(key)
 
     def spend(self, key: str, now_s: float) -> None:
-        """Checks, then counts."""
+        """Note one of `key`; raises TooMany, without noting it, where its share is used up."""
         self.check(key, now_s)
         self.count(key, now_s)

@@ -5,30 +5,35 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
 from mart.web.access.pairing_codes import PairingCodes
-from mart.web.access.request_limits import RateLimit
+from mart.web.access.request_limits import RequestLimit
 from mart.web.access.user_sessions import UserSessions
 from mart.web.clients.catalogue_client import CatalogueClient
+from mart.web.clients.gateway_client import GatewayClient
+from mart.web.clients.platform_client import PlatformClient
+from mart.web.clients.room_client import RoomClient
 from mart.web.clients.trainer_client import TrainerClient
-from mart.web.lobby.rooms import Rooms
+from mart.web.lobby.lobby import Lobby
 
 
-def _wrong_codes() -> RateLimit:
-    return RateLimit("wrong codes", count=5, window_s=60.0)
+def _wrong_codes() -> RequestLimit:
+    return RequestLimit("wrong codes", count=5, window_s=60.0)
 
 
-def _offers() -> RateLimit:
-    return RateLimit("connection attempts", count=30, window_s=60.0)
+def _offers() -> RequestLimit:
+    return RequestLimit("connection attempts", count=30, window_s=60.0)
 
 
 @dataclass(frozen=True)
 class AppState:
-    """`names`: what this site is called. `lan_host`: what a phone may call it; empty where it cannot reach it."""
+    """What all routes share; its maker closes what can be closed.
+
+    `names`: what this site is called. `lan_host`: what a phone may call it; empty where it cannot reach it.
+    """
 
     bus: AsyncBus
-    rooms: Rooms
+    lobby: Lobby
     user_sessions: UserSessions
     join_code: str
     secret: bytes
@@ -37,13 +42,30 @@ class AppState:
     data_dir: Path
     certificate: Path
     pairing_codes: PairingCodes = field(default_factory=PairingCodes)
-    wrong_codes: RateLimit = field(default_factory=_wrong_codes)
-    offers: RateLimit = field(default_factory=_offers)
+    wrong_codes: RequestLimit = field(default_factory=_wrong_codes)
+    offers: RequestLimit = field(default_factory=_offers)
+
+    @property
+    def rooms(self) -> RoomClient:
+        """Where seats are taken and episodes begun and ended."""
+        return RoomClient(self.bus, self.lobby)
+
+    @property
+    def platform(self) -> PlatformClient:
+        """Where rooms are opened and closed."""
+        return PlatformClient(self.bus, self.lobby.services)
+
+    @property
+    def gateways(self) -> GatewayClient:
+        """Where peers' offers are answered."""
+        return GatewayClient(self.bus, self.lobby.services)
 
     @property
     def catalogue(self) -> CatalogueClient:
-        return CatalogueClient(self.bus, lambda: self.rooms.services().get(ServiceKind.CATALOGUE, []))
+        """Where recorded episodes are told of."""
+        return CatalogueClient(self.bus, self.lobby.services)
 
     @property
     def trainer(self) -> TrainerClient:
-        return TrainerClient(self.bus, lambda: self.rooms.services().get(ServiceKind.TRAINER, []))
+        """Where policies are trained and promoted."""
+        return TrainerClient(self.bus, self.lobby.services)

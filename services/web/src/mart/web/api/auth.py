@@ -20,7 +20,7 @@ class JoinRequest(BaseModel):
 
 
 @router.post("/join")
-async def join(body: JoinRequest, response: Response, app: App, visitor: MaybeUser, address: Address) -> User:
+async def join(body: JoinRequest, response: Response, app: App, known: MaybeUser, address: Address) -> User:
     now_s = clock.monotonic_s()
     app.wrong_codes.check(address, now_s)
     try:
@@ -29,7 +29,7 @@ async def join(body: JoinRequest, response: Response, app: App, visitor: MaybeUs
         app.wrong_codes.count(address, now_s)
         raise
     app.wrong_codes.forgive(address)
-    session_id, user = app.user_sessions.join(body.name, now_unix_s(), visitor)
+    session_id, user = app.user_sessions.join(body.name, now_unix_s(), known)
     response.set_cookie(
         COOKIE, session_id, max_age=int(SESSION_S), path="/", secure=True, httponly=True, samesite="strict"
     )

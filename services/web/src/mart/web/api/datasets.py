@@ -10,8 +10,8 @@ from pydantic import BaseModel, Field
 from mart.protocol.messages import CatalogueRequest
 from mart.web.api.dependencies import App, JoinedUser
 from mart.web.api.episodes import CatalogueFilter
-from mart.web.clients.trainer_client import as_json
-from mart.web.lobby.lobby import Json
+from mart.web.clients.message_json import as_json
+from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api/datasets")
 

@@ -1,4 +1,4 @@
-"""What routes are given: the app, and the person who asks."""
+"""What routes are given: what they share, and the user who asks."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ async def maybe_user(connection: HTTPConnection, app: App) -> User | None:
 MaybeUser = Annotated[User | None, Depends(maybe_user)]
 
 
-async def joined_user(visitor: MaybeUser) -> User:
+async def joined_user(user: MaybeUser) -> User:
     """Who asks; raises NotJoined."""
-    if visitor is None:
+    if user is None:
         raise NotJoined
-    return visitor
+    return user
 
 
 async def address_of(connection: HTTPConnection) -> str:

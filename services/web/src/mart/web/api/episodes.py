@@ -13,11 +13,12 @@ from starlette.responses import Response, StreamingResponse
 from mart.protocol.errors import Corrupt, MartError, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, RecordedEpisode
 from mart.protocol.tasks import get_task
+from mart.protocol.vocabulary import EpisodeOutcome
 from mart.web.api.app_state import AppState
 from mart.web.api.dependencies import App, JoinedUser
-from mart.web.clients.file_pieces import pieces_of
-from mart.web.clients.trainer_client import as_json
-from mart.web.lobby.lobby import Json
+from mart.web.clients.message_json import as_json
+from mart.web.clients.pieces import pieces_of
+from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api")
 
@@ -47,7 +48,7 @@ class EpisodeListQuery(CatalogueFilter):
 class LabelRequest(BaseModel):
     """What is absent stays as it is."""
 
-    outcome: Literal["success", "failure", "discarded"] | None = None
+    outcome: Literal[EpisodeOutcome.SUCCESS, EpisodeOutcome.FAILURE, EpisodeOutcome.DISCARDED] | None = None
     note: str | None = Field(None, max_length=2000)
     dropped: bool | None = None
 

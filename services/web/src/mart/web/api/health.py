@@ -8,20 +8,21 @@ from dataclasses import asdict
 from fastapi import APIRouter
 
 from mart.protocol import clock
+from mart.protocol.vocabulary import ServiceKind
+from mart.web.access.certificate import days_left
 from mart.web.api.dependencies import App, JoinedUser, now_unix_s
-from mart.web.app.certificate import days_left
 from mart.web.lobby.health_findings import delays, machine, rooms, services
-from mart.web.lobby.lobby import Json
+from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api/health")
 
-_EXPECTED = ("sim", "gateway", "recorder")
+_EXPECTED = (ServiceKind.SIM, ServiceKind.GATEWAY, ServiceKind.RECORDER)
 
 
 @router.get("")
 async def health(app: App) -> Json:
     """`ok`: everything that a collection session needs is there."""
-    running = app.rooms.services()
+    running = app.lobby.services.by_kind()
     return {"ok": all(kind in running for kind in _EXPECTED), "services": running}
 
 
@@ -29,9 +30,9 @@ async def health(app: App) -> Json:
 async def findings(app: App, _user: JoinedUser) -> Json:
     """Everything that is known, each problem with its mend."""
     known = (
-        *services(app.rooms.services()),
-        *rooms(app.rooms.lobby.rooms_json("", clock.monotonic_s())),
-        *delays(app.rooms.delays(clock.monotonic_s())),
+        *services(app.lobby.services.by_kind()),
+        *rooms(app.lobby.rooms_json("", clock.monotonic_s())),
+        *delays(app.lobby.latencies.fresh(clock.monotonic_s())),
         *machine(shutil.disk_usage(app.data_dir).free, days_left(app.certificate, now_unix_s())),
     )
     return {"findings": [asdict(finding) for finding in known]}

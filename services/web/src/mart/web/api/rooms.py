@@ -8,7 +8,7 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from mart.protocol import clock
-from mart.protocol.control_rate import MAX_CONTROL_HZ
+from mart.protocol.control_rate import require_control_hz
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import (
     OUTCOME_DISCARDED,
@@ -18,8 +18,9 @@ from mart.protocol.messages import (
     operator_from_word,
 )
 from mart.protocol.tasks import get_task, task_names
+from mart.protocol.vocabulary import OperatorKind
 from mart.web.api.dependencies import App, JoinedUser
-from mart.web.lobby.lobby import Json, seat_json
+from mart.web.lobby.room_json import Json, seat_json
 
 router = APIRouter(prefix="/api")
 
@@ -29,12 +30,12 @@ _OUTCOMES = {"success": OUTCOME_SUCCESS, "failure": OUTCOME_FAILURE, "discard": 
 class NewRoom(BaseModel):
     task: str = Field(max_length=64)
     room: str = Field("", max_length=64)  # empty: a free name
-    control_hz: float = Field(0.0, ge=0.0, le=MAX_CONTROL_HZ)  # 0: the usual rate
+    control_hz: float = 0.0  # 0: the usual rate
     episodes: int = Field(0, ge=0, le=10_000)  # good ones that are wanted; 0: no plan
 
 
 class TakeSeatRequest(BaseModel):
-    operator: Literal["human", "policy", "script", "hold"]
+    operator: OperatorKind
     policy: str = ""  # a promoted one, where the operator is policy
 
 
@@ -45,49 +46,51 @@ class EpisodeActionRequest(BaseModel):
 
 @router.get("/rooms")
 async def rooms(app: App, user: JoinedUser) -> Json:
-    return {"rooms": app.rooms.lobby.rooms_json(user.holder_id, clock.monotonic_s())}
+    return {"rooms": app.lobby.rooms_json(user.holder_id, clock.monotonic_s())}
 
 
 @router.get("/tasks")
 async def tasks(app: App, _user: JoinedUser) -> Json:
-    return {"tasks": [_task_json(name) for name in task_names()], "opens_rooms": app.rooms.opens_rooms}
+    return {"tasks": [_task_json(name) for name in task_names()], "opens_rooms": app.platform.is_running}
 
 
 @router.post("/rooms")
 async def open_room(body: NewRoom, app: App, _user: JoinedUser) -> Json:
-    return {"room": await app.rooms.open(RoomsRequest.Open(**body.model_dump()))}
+    if body.control_hz:
+        require_control_hz(body.control_hz)
+    return {"room": await app.platform.open_room(RoomsRequest.Open(**body.model_dump()))}
 
 
 @router.get("/rooms/{room}/still")
 async def still(room: str, app: App, _user: JoinedUser) -> Response:
     """The room's newest small picture. Whoever asks for another one gives another query: this one may be kept."""
-    jpeg = app.rooms.lobby.thumbnails.jpeg(room, clock.monotonic_s())
+    jpeg = app.lobby.thumbnails.jpeg(room, clock.monotonic_s())
     return Response(jpeg, media_type="image/jpeg", headers={"Cache-Control": "private, max-age=60"})
 
 
 @router.delete("/rooms/{room}")
 async def close_room(room: str, app: App, _user: JoinedUser) -> Json:
-    return {"room": await app.rooms.shut(room)}
+    return {"room": await app.platform.close_room(room)}
 
 
 @router.post("/rooms/{room}/seats/{arm}")
 async def take_seat(room: str, arm: str, body: TakeSeatRequest, app: App, user: JoinedUser) -> Json:
-    if body.operator == "human":
-        seat = await app.rooms.claim(room, arm, user)
+    if body.operator is OperatorKind.HUMAN:
+        seat = await app.rooms.take_seat(room, arm, user)
     else:
-        seat = await app.rooms.assign(room, arm, operator_from_word(body.operator), body.policy)
+        seat = await app.rooms.assign_seat(room, arm, operator_from_word(body.operator), body.policy)
     return {"seat": seat_json(seat, user.holder_id)}
 
 
 @router.delete("/rooms/{room}/seats/{arm}")
 async def leave_seat(room: str, arm: str, app: App, user: JoinedUser) -> Json:
-    return {"seat": seat_json(await app.rooms.release(room, arm, user), user.holder_id)}
+    return {"seat": seat_json(await app.rooms.leave_seat(room, arm, user), user.holder_id)}
 
 
 @router.post("/rooms/{room}/seats/{arm}/hand-back")
 async def hand_back(room: str, arm: str, app: App, user: JoinedUser) -> Json:
     """To the machine from which this person took over."""
-    return {"seat": seat_json(await app.rooms.hand_back(room, arm, user), user.holder_id)}
+    return {"seat": seat_json(await app.rooms.hand_back_seat(room, arm, user), user.holder_id)}
 
 
 @router.post("/rooms/{room}/episode")
@@ -100,10 +103,10 @@ async def act(room: str, body: EpisodeActionRequest, app: App, user: JoinedUser)
                 )
             await app.rooms.set_ready(room, body.arm, user, body.action == "ready")
         case "reset":
-            await app.rooms.reset(room, user)
+            await app.rooms.reset_world(room, user)
         case _:
-            await app.rooms.finish(room, user, _OUTCOMES[body.action])
-    return {"room": app.rooms.lobby.room_json(room, user.holder_id, clock.monotonic_s())}
+            await app.rooms.finish_episode(room, user, _OUTCOMES[body.action])
+    return {"room": app.lobby.room_json(room, user.holder_id, clock.monotonic_s())}
 
 
 def _task_json(name: str) -> Json:

@@ -18,8 +18,7 @@ from mart.web.access.site_names import host_name, in_url, is_loopback
 from mart.web.access.user_sessions import User
 from mart.web.api.app_state import AppState
 from mart.web.api.dependencies import Address, App, JoinedUser, now_unix_s
-from mart.web.clients.gateway_client import answer_offer
-from mart.web.lobby.lobby import Json
+from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api")
 
@@ -113,8 +112,7 @@ async def offer(room: str, arm: str, body: SdpOffer, app: App, authorization: Au
             "This seat has changed hands since you got your token; take a seat in the lobby again."
         )
     app.offers.spend(f"{seat_token.holder_id} {seat_token.role}", clock.monotonic_s())
-    gateways = app.rooms.services().get("gateway", [])
-    return {"sdp": await answer_offer(app.bus, gateways, seat_token, _bearer(authorization), body.sdp)}
+    return {"sdp": await app.gateways.answer_offer(seat_token, _bearer(authorization), body.sdp)}
 
 
 def _bearer(authorization: str) -> str:
@@ -130,7 +128,7 @@ def _claims(app: AppState, room: str, arm: str, authorization: str) -> SeatToken
 
 
 def _seat(app: AppState, room: str, arm: str) -> Seat:
-    return app.rooms.lobby.seat(room, arm, clock.monotonic_s())
+    return app.lobby.rooms.seat(room, arm, clock.monotonic_s())
 
 
 def _own_seat(app: AppState, room: str, arm: str, user: User) -> Seat:

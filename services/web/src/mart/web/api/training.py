@@ -10,9 +10,9 @@ from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from mart.protocol.messages import Order, TrainerReply, TrainerRequest
 from mart.web.api.dependencies import App, JoinedUser
-from mart.web.clients.file_pieces import pieces_of
-from mart.web.clients.trainer_client import as_json
-from mart.web.lobby.lobby import Json
+from mart.web.clients.message_json import as_json
+from mart.web.clients.pieces import pieces_of
+from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api/training")
 

@@ -4,31 +4,28 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import datetime as dt
-import logging
 import socket
-import ssl
-from collections.abc import Callable
+from collections.abc import Coroutine
+from typing import Any
 
 import uvicorn
 
-from mart.protocol import clock
 from mart.protocol.errors import Unavailable
 from mart.runtime.secret_file import load_or_create_secret
 from mart.runtime.service import AsyncService, announced
+from mart.web.access.certificate import Certificate, ensure_certificate
 from mart.web.access.site_names import is_loopback, lan_addresses, site_names
 from mart.web.access.user_sessions import UserSessions
 from mart.web.api.app_state import AppState
 from mart.web.app.application import create_app
-from mart.web.app.certificate import Certificate, ensure_certificate
+from mart.web.app.certificate_renewal import keep_renewed, now
 from mart.web.app.security_middleware import MAX_BODY_BYTES
 from mart.web.app.settings import WebSettings
-from mart.web.lobby.rooms import Rooms
-
-_log = logging.getLogger(__name__)
+from mart.web.clients.missed_saves import MissedSaves
+from mart.web.lobby.bus_feed import LobbyFeed
+from mart.web.lobby.lobby import Lobby
 
 _STOP_S = 2
-_RENEWAL_RETRY_S = 3600.0
 _EVERY_ADDRESS = ("0.0.0.0", "::")  # noqa: S104  (only when asked for)
 
 
@@ -46,35 +43,45 @@ def listen(host: str, port: int) -> socket.socket:
 async def serve(
     settings: WebSettings, service: AsyncService, listener: socket.socket, join_code: str
 ) -> None:
-    """Until cancelled, or stopped by a signal."""
-    names = site_names(settings.public_names, settings.web_host)
+    """Serve the pages and the API at `listener` until cancelled, or stopped by a signal."""
+    lobby = Lobby()
     with contextlib.ExitStack() as stack:
         user_sessions = stack.enter_context(contextlib.closing(UserSessions(settings.sessions_path)))
-        rooms = stack.enter_context(contextlib.closing(Rooms(service.bus)))
+        feed = stack.enter_context(contextlib.closing(LobbyFeed(service.bus, lobby)))
         state = AppState(
             bus=service.bus,
-            rooms=rooms,
+            lobby=lobby,
             user_sessions=user_sessions,
             join_code=join_code,
             secret=load_or_create_secret(settings.secret_path),
-            names=names,
+            names=site_names(settings.public_names, settings.web_host),
             lan_host=_lan_host(settings),
             data_dir=settings.data_dir,
             certificate=settings.certificate or settings.certificates_dir / "site.pem",
         )
-        await _serve(settings, service, state, listener)
+        config, background = _configured(settings, state)
+        tasks = [service.bus.spawn(work) for work in (*background, feed.keep_asking(), _missed(state))]
+        try:
+            await feed.settled()
+            # Whoever comes before the server is quite up waits in the listener's queue.
+            with announced(service):
+                await _run(uvicorn.Server(config), listener)
+        finally:
+            for task in tasks:
+                task.cancel()
 
 
-async def _serve(
-    settings: WebSettings, service: AsyncService, state: AppState, listener: socket.socket
-) -> None:
+def _configured(
+    settings: WebSettings, state: AppState
+) -> tuple[uvicorn.Config, list[Coroutine[Any, Any, None]]]:
+    """Return how to serve, and what renews the certificate meanwhile where it is one of this site's own."""
+
     def ensure() -> Certificate:
-        return ensure_certificate(settings.certificates_dir, state.names, _now())
+        return ensure_certificate(settings.certificates_dir, state.names, now())
 
-    path = settings.certificate or ensure().path
     config = uvicorn.Config(
         create_app(state),
-        ssl_certfile=path,
+        ssl_certfile=settings.certificate or ensure().path,
         ssl_keyfile=settings.certificate_key,
         lifespan="off",
         log_config=None,
@@ -87,15 +94,11 @@ async def _serve(
     )
     config.load()
     assert config.ssl is not None
-    renewal = None if settings.certificate else asyncio.ensure_future(_renew(ensure, config.ssl))
-    try:
-        await state.rooms.settled()
-        # Whoever comes before the server is quite up waits in the listener's queue.
-        with announced(service):
-            await _run(uvicorn.Server(config), listener)
-    finally:
-        if renewal is not None:
-            renewal.cancel()
+    return config, [] if settings.certificate else [keep_renewed(ensure, config.ssl)]
+
+
+def _missed(state: AppState) -> Coroutine[Any, Any, None]:
+    return MissedSaves(state.lobby, state.catalogue).keep_asking()
 
 
 async def _run(server: uvicorn.Server, listener: socket.socket) -> None:
@@ -109,15 +112,6 @@ async def _run(server: uvicorn.Server, listener: socket.socket) -> None:
         raise
 
 
-async def _renew(ensure: Callable[[], Certificate], context: ssl.SSLContext) -> None:
-    """New connections get the new certificate; those that are open keep theirs."""
-    while True:
-        certificate = ensure()
-        context.load_cert_chain(certificate.path)
-        wait_s = (certificate.renew_at - _now()).total_seconds()
-        await asyncio.sleep(max(wait_s, _RENEWAL_RETRY_S))
-
-
 def _lan_host(settings: WebSettings) -> str:
     """What a phone should call this site; empty where it cannot reach it."""
     if settings.public_names:
@@ -125,7 +119,3 @@ def _lan_host(settings: WebSettings) -> str:
     if settings.web_host in _EVERY_ADDRESS:
         return next(iter(lan_addresses()), "")
     return "" if is_loopback(settings.web_host) else settings.web_host
-
-
-def _now() -> dt.datetime:
-    return dt.datetime.fromtimestamp(clock.wall_ns() / 1e9, tz=dt.UTC)

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from mart.protocol.messages import Event
-from mart.web.lobby.lobby import Json
+from mart.protocol.vocabulary import ServiceKind
+from mart.web.lobby.room_json import Json
 
 SLOW = 0.95  # of real time: below it, people feel it
 LATE_MS = 200.0  # from hand to picture: above it, people lose speed
@@ -26,21 +27,25 @@ class HealthFinding:
 
 @dataclass(frozen=True)
 class _Part:
-    kind: str
+    kind: ServiceKind
     name: str
     mend: str
     needed: bool = True
 
 
 _PARTS = (
-    _Part("sim", "Rooms", "Open one in the lobby, or start `mart sim`."),
-    _Part("gateway", "Pictures and hands", "Start `mart gateway`; nobody sees or drives anything without."),
-    _Part("recorder", "Recording", "Start `mart recorder`; nothing is saved without."),
-    _Part("replica", "Verification", "Start `mart replica`; episodes stay unverified without."),
-    _Part("experts", "Scripts", "Start `mart experts`; a seat on script stands still without."),
-    _Part("catalogue", "Episodes page", "Start `mart catalogue`."),
-    _Part("trainer", "Training", "", needed=False),
-    _Part("policies", "Policies in seats", "", needed=False),
+    _Part(ServiceKind.SIM, "Rooms", "Open one in the lobby, or start `mart sim`."),
+    _Part(
+        ServiceKind.GATEWAY,
+        "Pictures and hands",
+        "Start `mart gateway`; nobody sees or drives anything without.",
+    ),
+    _Part(ServiceKind.RECORDER, "Recording", "Start `mart recorder`; nothing is saved without."),
+    _Part(ServiceKind.REPLICA, "Verification", "Start `mart replica`; episodes stay unverified without."),
+    _Part(ServiceKind.EXPERTS, "Scripts", "Start `mart experts`; a seat on script stands still without."),
+    _Part(ServiceKind.CATALOGUE, "Episodes page", "Start `mart catalogue`."),
+    _Part(ServiceKind.TRAINER, "Training", "", needed=False),
+    _Part(ServiceKind.POLICIES, "Policies in seats", "", needed=False),
 )
 
 

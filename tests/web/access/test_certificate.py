@@ -5,7 +5,7 @@ from pathlib import Path
 
 from cryptography import x509
 
-from mart.web.app.certificate import LIFETIME, RENEWED_BEFORE, ensure_certificate
+from mart.web.access.certificate import LIFETIME, RENEWED_BEFORE, ensure_certificate
 
 NOW = dt.datetime(2026, 11, 22, tzinfo=dt.UTC)
 NAMES = ("localhost", "127.0.0.1", "::1", "lab.example")
