@@ -1,4 +1,4 @@
-"""`mart web`."""
+"""The command `mart web`."""
 
 from __future__ import annotations
 

@@ -28,18 +28,19 @@ _CLOCK_SKEW = dt.timedelta(hours=1)
 
 @dataclass(frozen=True)
 class Certificate:
-    """`path` holds the private key and the certificate, so that both are replaced in one step."""
+    """The site's certificate: one file at `path` with the private key too, so that both are replaced in one step."""
 
     path: Path
     expires: dt.datetime
 
     @property
     def renew_at(self) -> dt.datetime:
+        """The time from which a new one is to be made."""
         return self.expires - RENEWED_BEFORE
 
 
 def ensure_certificate(folder: Path, names: Iterable[str], now: dt.datetime) -> Certificate:
-    """The certificate in `folder`; made anew where there is none, it ends soon, or it lacks one of `names`."""
+    """Return the certificate in `folder`; made anew where there is none, it ends soon, or it lacks one of `names`."""
     path = folder / "site.pem"
     wanted = {_general_name(name) for name in names}
     kept = _load(path)
@@ -51,7 +52,7 @@ def ensure_certificate(folder: Path, names: Iterable[str], now: dt.datetime) -> 
 
 
 def days_left(path: Path, now_s: float) -> float | None:
-    """Until the certificate at `path` ends; None where there is none. `now_s`: Unix time."""
+    """Return the days until the certificate at `path` ends, at Unix time `now_s`; None where there is none."""
     kept = _load(path)
     return None if kept is None else (kept.not_valid_after_utc.timestamp() - now_s) / 86_400.0
 

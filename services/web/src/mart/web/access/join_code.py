@@ -15,7 +15,10 @@ _MIN_CHARACTERS = 6
 
 
 def load_or_make_join_code(path: Path, fixed: str = "") -> str:
-    """The code kept at `path`, or `fixed` where one is given; made at first use. Raises InvalidInput if too short."""
+    """Return the code kept at `path`, or `fixed` where one is given; made at first use.
+
+    Raises InvalidInput where it is too short.
+    """
     kept = path.read_text().strip() if path.exists() else ""
     code = fixed.strip() or kept or _make()
     if len(_plain(code)) < _MIN_CHARACTERS:
@@ -28,7 +31,10 @@ def load_or_make_join_code(path: Path, fixed: str = "") -> str:
 
 
 def check_join_code(given: str, expected: str) -> None:
-    """Case, spaces and dashes do not matter. Takes equally long wherever the difference is."""
+    """Compare what was given with the join code; case, spaces and dashes do not matter.
+
+    Raises Forbidden where they differ, after equally long wherever the difference is.
+    """
     if not hmac.compare_digest(_plain(given).encode(), _plain(expected).encode()):
         raise Forbidden(
             "This join code is not right; ask the host for it, or look where `mart run` was started."

@@ -1,4 +1,4 @@
-"""Codes that hand a seat to a phone: single use, short-lived, too long to guess. Pure; the time is an argument."""
+"""Codes that hand a seat to a phone: single use, short-lived, too long to guess. Pure; times are monotonic seconds."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ _CODE_BYTES = 16
 
 @dataclass(frozen=True)
 class PairingGrant:
+    """What a code stands for: the seat, its epoch, and the user who holds it."""
+
     room: str
     arm: str
     epoch: int
@@ -22,12 +24,13 @@ class PairingGrant:
 
 
 class PairingCodes:
-    """A new code for a seat replaces its older one."""
+    """The codes that are open; a new code for a seat replaces its older one. Only hashes of them are kept."""
 
     def __init__(self) -> None:
         self._open: dict[bytes, tuple[PairingGrant, float]] = {}
 
     def issue(self, pairing: PairingGrant, now_s: float) -> str:
+        """Return a new code for `pairing`, good for 2 minutes."""
         self._open = {
             key: (other, expires_s)
             for key, (other, expires_s) in self._open.items()
@@ -38,7 +41,10 @@ class PairingCodes:
         return code
 
     def redeem(self, code: str, now_s: float) -> PairingGrant:
-        """Raises Forbidden where the code is unknown, was used, was replaced or is too old."""
+        """Use up `code` and return what it stands for.
+
+        Raises Forbidden where the code is unknown, was used, was replaced or is too old.
+        """
         pairing, expires_s = self._open.pop(_hash(code), (None, 0.0))
         if pairing is None or expires_s <= now_s:
             raise Forbidden(

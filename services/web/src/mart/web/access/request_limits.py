@@ -9,7 +9,7 @@ from mart.web.errors import TooMany
 
 
 class RequestLimit:
-    """At most `count` times in any `window_s` seconds, for each key (an address, a user). Times are monotonic seconds.
+    """A limit of `count` times in any `window_s` seconds, for each key (an address, a user). Times are monotonic.
 
     `what` names it in words ("wrong codes").
     """

@@ -13,7 +13,7 @@ LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
 
 def site_names(public_names: Sequence[str], listening_at: str) -> tuple[str, ...]:
-    """The public names and the loopback's; where no public ones are given, all that this machine is called.
+    """Return the public names and the loopback's; where no public ones are given, all that this machine is called.
 
     Told names do not change with the network, so neither does a certificate made for them.
     """
@@ -27,7 +27,7 @@ def _host_names() -> tuple[str, ...]:
 
 
 def lan_addresses() -> tuple[str, ...]:
-    """IPv4 addresses of this machine on its networks, the private ones first."""
+    """Return the IPv4 addresses of this machine on its networks, the private ones first."""
     found = [
         ipaddress.IPv4Address(address.ip)
         for adapter in ifaddr.get_adapters()
@@ -41,15 +41,17 @@ def lan_addresses() -> tuple[str, ...]:
 
 
 def host_name(host_header: str) -> str:
-    """The name in a Host header or an Origin's authority, without the port and without an IPv6 address's brackets."""
+    """Return the name in a Host header or an Origin's authority, without its port and an IPv6 address's brackets."""
     if host_header.startswith("["):
         return host_header[1:].partition("]")[0].lower()
     return host_header.partition(":")[0].lower()
 
 
 def is_loopback(name: str) -> bool:
+    """Whether `name` means the computer that uses it."""
     return name in LOOPBACK
 
 
 def in_url(name: str) -> str:
+    """Return `name` as it is written in a URL: an IPv6 address in brackets."""
     return f"[{name}]" if ":" in name else name

@@ -24,14 +24,14 @@ CREATE TABLE IF NOT EXISTS session (
 
 @dataclass(frozen=True)
 class User:
-    """`holder_id` is what the sim knows a seat's holder by; others never see it."""
+    """Somebody who has joined: `holder_id` is what the sim knows a seat's holder by, and others never see it."""
 
     holder_id: str
     name: str
 
 
 class UserSessions:
-    """Times are Unix seconds. Only a hash of a session's id is stored: the file lets nobody in."""
+    """The sessions of all users; times are Unix seconds. Only hashes of their ids are stored: the file lets nobody in."""
 
     def __init__(self, path: Path | str) -> None:
         if isinstance(path, Path):
@@ -42,7 +42,10 @@ class UserSessions:
         self._database.execute(_SCHEMA)
 
     def join(self, name: str, now_s: float, known: User | None = None) -> tuple[str, User]:
-        """A new session id and who it stands for; someone already `known` keeps the seats and may change the name."""
+        """Return a new session's id and its user; one already `known` keeps the seats and may change the name.
+
+        Raises InvalidInput where the name cannot be used.
+        """
         user = User(known.holder_id if known else secrets.token_hex(16), clean_name(name))
         session_id = secrets.token_urlsafe(32)
         self._database.execute("DELETE FROM session WHERE expires_s < ?", (now_s,))
@@ -53,6 +56,7 @@ class UserSessions:
         return session_id, user
 
     def find(self, session_id: str, now_s: float) -> User | None:
+        """Return the user of a session; None where there is no such session, or it has ended."""
         row = self._database.execute(
             "SELECT holder_id, name FROM session WHERE id_sha256 = ? AND expires_s >= ?",
             (_hash(session_id), now_s),
@@ -60,11 +64,15 @@ class UserSessions:
         return User(*row) if row else None
 
     def close(self) -> None:
+        """Close the database."""
         self._database.close()
 
 
 def clean_name(given: str) -> str:
-    """One line without control characters; raises InvalidInput where nothing is left or it is too long."""
+    """Return `given` as one line without control characters.
+
+    Raises InvalidInput where nothing is left or it is too long.
+    """
     name = " ".join("".join(c if c.isprintable() else " " for c in given).split())
     if not 1 <= len(name) <= MAX_NAME_CHARACTERS:
         raise InvalidInput(f"A name of {len(name)} characters was given; use 1 to {MAX_NAME_CHARACTERS}.")

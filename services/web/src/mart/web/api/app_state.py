@@ -47,25 +47,25 @@ class AppState:
 
     @property
     def rooms(self) -> RoomClient:
-        """Where seats are taken and episodes begun and ended."""
+        """The client through which seats are taken and episodes begun and ended."""
         return RoomClient(self.bus, self.lobby)
 
     @property
     def platform(self) -> PlatformClient:
-        """Where rooms are opened and closed."""
+        """The client through which rooms are opened and closed."""
         return PlatformClient(self.bus, self.lobby.services)
 
     @property
     def gateways(self) -> GatewayClient:
-        """Where peers' offers are answered."""
+        """The client that has peers' offers answered."""
         return GatewayClient(self.bus, self.lobby.services)
 
     @property
     def catalogue(self) -> CatalogueClient:
-        """Where recorded episodes are told of."""
+        """The client that tells of recorded episodes."""
         return CatalogueClient(self.bus, self.lobby.services)
 
     @property
     def trainer(self) -> TrainerClient:
-        """Where policies are trained and promoted."""
+        """The client through which policies are trained and promoted."""
         return TrainerClient(self.bus, self.lobby.services)

@@ -15,12 +15,15 @@ router = APIRouter(prefix="/api")
 
 
 class JoinRequest(BaseModel):
+    """A join code and the name under which others shall see one."""
+
     code: str
     name: str
 
 
 @router.post("/join")
 async def join(body: JoinRequest, response: Response, app: App, known: MaybeUser, address: Address) -> User:
+    """Let in whoever gives the join code, and set the session's cookie; five wrong codes a minute from one address."""
     now_s = clock.monotonic_s()
     app.wrong_codes.check(address, now_s)
     try:
@@ -38,4 +41,5 @@ async def join(body: JoinRequest, response: Response, app: App, known: MaybeUser
 
 @router.get("/me")
 async def me(user: JoinedUser) -> User:
+    """Tell who one is."""
     return user

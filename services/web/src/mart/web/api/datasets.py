@@ -17,13 +17,14 @@ router = APIRouter(prefix="/api/datasets")
 
 
 class DatasetEditRequest(BaseModel):
-    """Which episodes: those of `paths`, or `all` that a filter lets through."""
+    """Which episodes join or leave a data set: those of `paths`, or `all` that a filter lets through."""
 
     action: Literal["add", "remove"]
     paths: list[Annotated[str, Field(max_length=1024)]] = Field(default_factory=list, max_length=200)
     all: CatalogueFilter | None = None
 
     def request(self, dataset: str) -> CatalogueRequest:
+        """Return the catalogue's request for the data set `dataset`."""
         curate = CatalogueRequest.Curate(dataset=dataset, take_out=self.action == "remove", paths=self.paths)
         if self.all is not None:
             curate.all.CopyFrom(CatalogueRequest.List(**self.all.model_dump()))
@@ -31,15 +32,19 @@ class DatasetEditRequest(BaseModel):
 
 
 class UndoRequest(BaseModel):
+    """The act that is undone, by its stamp."""
+
     act_ns: int = Field(ge=0, lt=2**64)
 
 
 @router.post("/{dataset}")
 async def curate(dataset: str, body: DatasetEditRequest, app: App, _user: JoinedUser) -> Json:
+    """Put episodes into a data set, or take them out."""
     return {"curated": as_json((await app.catalogue.ask(body.request(dataset))).curated)}
 
 
 @router.post("/{dataset}/undo")
 async def undo(dataset: str, body: UndoRequest, app: App, _user: JoinedUser) -> Json:
+    """Undo an act of `curate`."""
     request = CatalogueRequest(undo=CatalogueRequest.Undo(dataset=dataset, act_ns=body.act_ns))
     return {"curated": as_json((await app.catalogue.ask(request)).curated)}

@@ -16,10 +16,12 @@ COOKIE = "__Host-mart-session"
 
 
 def now_unix_s() -> float:
+    """Return the Unix time, seconds."""
     return clock.wall_ns() / 1e9
 
 
 async def app_state_of(connection: HTTPConnection) -> AppState:
+    """Return what all routes share."""
     app = connection.app.state.app_state
     assert isinstance(app, AppState)
     return app
@@ -29,7 +31,7 @@ App = Annotated[AppState, Depends(app_state_of)]
 
 
 async def maybe_user(connection: HTTPConnection, app: App) -> User | None:
-    """Who asks, where they have joined."""
+    """Return who asks; None where they have not joined."""
     session_id = connection.cookies.get(COOKIE)
     return app.user_sessions.find(session_id, now_unix_s()) if session_id else None
 
@@ -38,13 +40,14 @@ MaybeUser = Annotated[User | None, Depends(maybe_user)]
 
 
 async def joined_user(user: MaybeUser) -> User:
-    """Who asks; raises NotJoined."""
+    """Return who asks; raises NotJoined."""
     if user is None:
         raise NotJoined
     return user
 
 
 async def address_of(connection: HTTPConnection) -> str:
+    """Return the network address that a request comes from."""
     return connection.client.host if connection.client else "unknown"
 
 

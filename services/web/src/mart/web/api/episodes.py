@@ -27,7 +27,7 @@ Camera = Annotated[str, Query(max_length=128)]
 
 
 class CatalogueFilter(BaseModel):
-    """Each empty where all will do."""
+    """Which episodes are wanted; each field is empty where all will do."""
 
     task: str = Field("", max_length=128)
     outcome: str = Field("", max_length=128)
@@ -39,14 +39,14 @@ class CatalogueFilter(BaseModel):
 
 
 class EpisodeListQuery(CatalogueFilter):
-    """A page of what a filter lets through."""
+    """One page of the episodes that a filter lets through."""
 
     offset: int = Field(0, ge=0, lt=2**31)
     count: int = Field(50, ge=1, le=200)
 
 
 class LabelRequest(BaseModel):
-    """What is absent stays as it is."""
+    """What somebody says of an episode; what is absent stays as it is."""
 
     outcome: Literal[EpisodeOutcome.SUCCESS, EpisodeOutcome.FAILURE, EpisodeOutcome.DISCARDED] | None = None
     note: str | None = Field(None, max_length=2000)
@@ -55,7 +55,10 @@ class LabelRequest(BaseModel):
 
 @router.get("/episodes")
 async def episodes(asked: Annotated[EpisodeListQuery, Query()], app: App, _user: JoinedUser) -> Json:
-    """None where no catalogue runs: that is no fault of a page that waits for one."""
+    """Send a page of the list of episodes.
+
+    It is null where no catalogue runs: that is no fault of a page that waits for one.
+    """
     if not app.catalogue.is_running:
         return {"listing": None}
     request = CatalogueRequest(list=CatalogueRequest.List(**asked.model_dump()))
@@ -67,6 +70,7 @@ async def episodes(asked: Annotated[EpisodeListQuery, Query()], app: App, _user:
 
 @router.get("/episode")
 async def episode(path: Path, app: App, _user: JoinedUser) -> Json:
+    """Send one episode in detail."""
     request = CatalogueRequest(show=CatalogueRequest.Show(path=path))
     details = (await app.catalogue.ask(request)).details
     titles = _subtask_titles(details.episode)
@@ -78,6 +82,7 @@ async def episode(path: Path, app: App, _user: JoinedUser) -> Json:
 
 @router.post("/episode")
 async def label(path: Path, body: LabelRequest, app: App, _user: JoinedUser) -> Json:
+    """Write down what somebody says of an episode."""
     said = body.model_dump(exclude_none=True)
     request = CatalogueRequest(label=CatalogueRequest.Label(path=path, **said))
     return {"episode": _episode_json((await app.catalogue.ask(request)).episode)}
@@ -85,6 +90,7 @@ async def label(path: Path, body: LabelRequest, app: App, _user: JoinedUser) -> 
 
 @router.get("/episode/file")
 async def file(path: Path, app: App, _user: JoinedUser) -> Response:
+    """Send the episode file itself."""
     name = PurePosixPath(path).name.replace('"', "")
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}
     return await _whole(
@@ -97,7 +103,7 @@ async def file(path: Path, app: App, _user: JoinedUser) -> Response:
 
 @router.get("/episode/video")
 async def video(path: Path, camera: Camera, app: App, _user: JoinedUser) -> Response:
-    """What this camera saw, as it was recorded."""
+    """Send what one camera saw, as it was recorded: MP4."""
 
     def request(offset: int) -> CatalogueRequest:
         return CatalogueRequest(video=CatalogueRequest.Video(path=path, camera=camera, offset=offset))
@@ -107,7 +113,7 @@ async def video(path: Path, camera: Camera, app: App, _user: JoinedUser) -> Resp
 
 @router.get("/episode/picture")
 async def picture(path: Path, app: App, _user: JoinedUser) -> Response:
-    """The last recorded picture, small; an empty answer where there is none that can be shown."""
+    """Send the last recorded picture, small; an empty answer where there is none that can be shown."""
     try:
         reply = await app.catalogue.ask(CatalogueRequest(picture=CatalogueRequest.Picture(path=path)))
     except (NotFound, Corrupt):

@@ -21,14 +21,14 @@ _EXPECTED = (ServiceKind.SIM, ServiceKind.GATEWAY, ServiceKind.RECORDER)
 
 @router.get("")
 async def health(app: App) -> Json:
-    """`ok`: everything that a collection session needs is there."""
+    """Send who is alive, and as `ok` whether everything that a collection session needs is there."""
     running = app.lobby.services.by_kind()
     return {"ok": all(kind in running for kind in _EXPECTED), "services": running}
 
 
 @router.get("/findings")
 async def findings(app: App, _user: JoinedUser) -> Json:
-    """Everything that is known, each problem with its mend."""
+    """Send everything that is known of the platform's health, each problem with its mend."""
     known = (
         *services(app.lobby.services.by_kind()),
         *rooms(app.lobby.rooms_json("", clock.monotonic_s())),

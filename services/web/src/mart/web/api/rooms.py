@@ -1,4 +1,4 @@
-"""Rooms, their seats and their episodes."""
+"""The API's rooms, their seats and their episodes."""
 
 from __future__ import annotations
 
@@ -28,6 +28,8 @@ _OUTCOMES = {"success": OUTCOME_SUCCESS, "failure": OUTCOME_FAILURE, "discard": 
 
 
 class NewRoom(BaseModel):
+    """What room is wanted."""
+
     task: str = Field(max_length=64)
     room: str = Field("", max_length=64)  # empty: a free name
     control_hz: float = 0.0  # 0: the usual rate
@@ -35,27 +37,34 @@ class NewRoom(BaseModel):
 
 
 class TakeSeatRequest(BaseModel):
+    """Who shall drive an arm."""
+
     operator: OperatorKind
     policy: str = ""  # a promoted one, where the operator is policy
 
 
 class EpisodeActionRequest(BaseModel):
+    """What shall happen with the episode of a room."""
+
     action: Literal["ready", "unready", "success", "failure", "discard", "reset"]
     arm: str = ""
 
 
 @router.get("/rooms")
 async def rooms(app: App, user: JoinedUser) -> Json:
+    """Send all rooms as the user sees them."""
     return {"rooms": app.lobby.rooms_json(user.holder_id, clock.monotonic_s())}
 
 
 @router.get("/tasks")
 async def tasks(app: App, _user: JoinedUser) -> Json:
+    """Send what a new room may be for, and whether anything here opens rooms."""
     return {"tasks": [_task_json(name) for name in task_names()], "opens_rooms": app.platform.is_running}
 
 
 @router.post("/rooms")
 async def open_room(body: NewRoom, app: App, _user: JoinedUser) -> Json:
+    """Open a room and send its name."""
     if body.control_hz:
         require_control_hz(body.control_hz)
     return {"room": await app.platform.open_room(RoomsRequest.Open(**body.model_dump()))}
@@ -63,18 +72,23 @@ async def open_room(body: NewRoom, app: App, _user: JoinedUser) -> Json:
 
 @router.get("/rooms/{room}/still")
 async def still(room: str, app: App, _user: JoinedUser) -> Response:
-    """The room's newest small picture. Whoever asks for another one gives another query: this one may be kept."""
+    """Send the room's newest small picture.
+
+    Whoever asks for another one gives another query: this one may be kept.
+    """
     jpeg = app.lobby.thumbnails.jpeg(room, clock.monotonic_s())
     return Response(jpeg, media_type="image/jpeg", headers={"Cache-Control": "private, max-age=60"})
 
 
 @router.delete("/rooms/{room}")
 async def close_room(room: str, app: App, _user: JoinedUser) -> Json:
+    """Close a room and send its name."""
     return {"room": await app.platform.close_room(room)}
 
 
 @router.post("/rooms/{room}/seats/{arm}")
 async def take_seat(room: str, arm: str, body: TakeSeatRequest, app: App, user: JoinedUser) -> Json:
+    """Give a seat to the user, to a machine or to nobody, and send it."""
     if body.operator is OperatorKind.HUMAN:
         seat = await app.rooms.take_seat(room, arm, user)
     else:
@@ -84,17 +98,19 @@ async def take_seat(room: str, arm: str, body: TakeSeatRequest, app: App, user: 
 
 @router.delete("/rooms/{room}/seats/{arm}")
 async def leave_seat(room: str, arm: str, app: App, user: JoinedUser) -> Json:
+    """Free the user's seat and send it."""
     return {"seat": seat_json(await app.rooms.leave_seat(room, arm, user), user.holder_id)}
 
 
 @router.post("/rooms/{room}/seats/{arm}/hand-back")
 async def hand_back(room: str, arm: str, app: App, user: JoinedUser) -> Json:
-    """To the machine from which this person took over."""
+    """Give a seat back to the machine from which the user took over, and send it."""
     return {"seat": seat_json(await app.rooms.hand_back_seat(room, arm, user), user.holder_id)}
 
 
 @router.post("/rooms/{room}/episode")
 async def act(room: str, body: EpisodeActionRequest, app: App, user: JoinedUser) -> Json:
+    """Do what is wanted with the episode and send the room."""
     match body.action:
         case "ready" | "unready":
             if not body.arm:

@@ -33,15 +33,20 @@ _UNREACHABLE = (
 
 
 class PairingRequest(BaseModel):
+    """The code that a phone has scanned."""
+
     code: str
 
 
 class SdpOffer(BaseModel):
+    """A WebRTC offer."""
+
     sdp: str
 
 
 @router.get("/rooms/{room}/seats/{arm}/token")
 async def token(room: str, arm: str, app: App, user: JoinedUser) -> Json:
+    """Send a token for a seat: its holder's drives, anybody else's watches."""
     seat = _seat(app, room, arm)
     role = Role.BROWSER if seat.holder_id == user.holder_id else Role.VIEWER
     signed = _sign(
@@ -52,6 +57,7 @@ async def token(room: str, arm: str, app: App, user: JoinedUser) -> Json:
 
 @router.post("/rooms/{room}/seats/{arm}/pair")
 async def pair(room: str, arm: str, request: Request, app: App, user: JoinedUser) -> Json:
+    """Send a code, also as a picture, that pairs a phone with the user's seat."""
     seat = _own_seat(app, room, arm, user)
     pairing = PairingGrant(room, arm, seat.epoch, user.holder_id, user.name)
     code = app.pairing_codes.issue(pairing, clock.monotonic_s())
@@ -68,6 +74,7 @@ async def pair(room: str, arm: str, request: Request, app: App, user: JoinedUser
 
 @router.post("/pair")
 async def redeem(body: PairingRequest, app: App, address: Address) -> Json:
+    """Send the phone that gives a code its token; five wrong codes a minute from one address."""
     now_s = clock.monotonic_s()
     key = f"pair {address}"
     app.wrong_codes.check(key, now_s)
@@ -91,7 +98,10 @@ async def redeem(body: PairingRequest, app: App, address: Address) -> Json:
 
 @router.get("/rooms/{room}/seats/{arm}/phone-token")
 async def phone_token(room: str, arm: str, app: App, authorization: Authorization = "") -> Json:
-    """A phone stays with the person who paired it: its token is renewed while, and whenever, they hold the seat."""
+    """Send a phone its renewed token.
+
+    It stays with the user who paired it: its token is renewed while, and whenever, they hold the seat.
+    """
     paired = _claims(app, room, arm, authorization)
     if paired.role is not Role.PHONE:
         raise Forbidden(f"The token of a {paired.role} was given; only a phone's is renewed here.")
@@ -106,6 +116,7 @@ async def phone_token(room: str, arm: str, app: App, authorization: Authorizatio
 
 @router.post("/rooms/{room}/seats/{arm}/offer")
 async def offer(room: str, arm: str, body: SdpOffer, app: App, authorization: Authorization = "") -> Json:
+    """Have the seat's gateway answer an offer and send the answer."""
     seat_token = _claims(app, room, arm, authorization)
     if seat_token.epoch != _seat(app, room, arm).epoch:
         raise Forbidden(

@@ -18,7 +18,7 @@ router = APIRouter(prefix="/api/training")
 
 
 class Submission(BaseModel):
-    """One job for each model and task."""
+    """What shall be trained: one job for each model and task."""
 
     models: list[str] = Field(min_length=1, max_length=16)
     tasks: list[str] = Field(min_length=1, max_length=16)
@@ -31,6 +31,7 @@ class Submission(BaseModel):
     executor: str = ""
 
     def request(self) -> TrainerRequest:
+        """Return the trainer's request."""
         order = Order(
             data=self.data,
             dataset=self.dataset,
@@ -46,10 +47,14 @@ class Submission(BaseModel):
 
 
 class JobActionRequest(BaseModel):
+    """What shall happen with a job."""
+
     action: Literal["cancel", "retry"]
 
 
 class Promotion(BaseModel):
+    """Which checkpoint becomes a policy, and its name."""
+
     job: str
     name: str
     checkpoint: str = ""
@@ -57,7 +62,10 @@ class Promotion(BaseModel):
 
 @router.get("/choices")
 async def choices(app: App, _user: JoinedUser) -> Json:
-    """None where no trainer runs: that is no fault of a page that waits for one."""
+    """Send what can be ordered.
+
+    It is null where no trainer runs: that is no fault of a page that waits for one.
+    """
     if not app.trainer.is_running:
         return {"choices": None}
     reply = await app.trainer.ask(TrainerRequest(choices=TrainerRequest.Choices()))
@@ -66,30 +74,35 @@ async def choices(app: App, _user: JoinedUser) -> Json:
 
 @router.get("/jobs")
 async def jobs(app: App, _user: JoinedUser) -> Json:
+    """Send all jobs."""
     reply = await app.trainer.ask(TrainerRequest(list=TrainerRequest.List()))
     return {"jobs": [as_json(job) for job in reply.jobs]}
 
 
 @router.post("/jobs")
 async def submit(body: Submission, app: App, _user: JoinedUser) -> Json:
+    """Submit jobs and send them."""
     reply = await app.trainer.ask(body.request())
     return {"jobs": [as_json(job) for job in reply.jobs]}
 
 
 @router.get("/jobs/{job}")
 async def show(job: str, app: App, _user: JoinedUser) -> Json:
+    """Send one job with its curves, evaluations and rollouts."""
     reply = await app.trainer.ask(TrainerRequest(show=TrainerRequest.Show(job=job)))
     return {"details": as_json(reply.details)}
 
 
 @router.get("/jobs/{job}/log")
 async def log(job: str, app: App, _user: JoinedUser) -> Json:
+    """Send what a job has printed."""
     reply = await app.trainer.ask(TrainerRequest(logs=TrainerRequest.Logs(job=job)))
     return {"log": reply.log.decode(errors="replace")}
 
 
 @router.post("/jobs/{job}")
 async def act(job: str, body: JobActionRequest, app: App, _user: JoinedUser) -> Json:
+    """Cancel a job or try it again, and send it."""
     request = TrainerRequest()
     getattr(request, body.action).job = job
     return {"jobs": [as_json(changed) for changed in (await app.trainer.ask(request)).jobs]}
@@ -97,7 +110,7 @@ async def act(job: str, body: JobActionRequest, app: App, _user: JoinedUser) -> 
 
 @router.get("/jobs/{job}/videos/{rollout}")
 async def video(job: str, rollout: str, app: App, _user: JoinedUser) -> Response:
-    """MP4; 202 while it is being rendered: ask again."""
+    """Send a rollout as MP4; 202 while it is being rendered: ask again."""
 
     async def piece(offset: int) -> TrainerReply.Video:
         request = TrainerRequest.Video(job=job, rollout=rollout, offset=offset)
@@ -115,7 +128,7 @@ async def video(job: str, rollout: str, app: App, _user: JoinedUser) -> Response
 
 @router.get("/policies")
 async def policies(app: App, _user: JoinedUser, task: str = Query("")) -> Json:
-    """None to seat where no trainer runs."""
+    """Send the policies that can take a seat; there are none where no trainer runs."""
     if not app.trainer.is_running:
         return {"policies": []}
     reply = await app.trainer.ask(TrainerRequest(policies=TrainerRequest.Policies(task=task)))
@@ -124,6 +137,7 @@ async def policies(app: App, _user: JoinedUser, task: str = Query("")) -> Json:
 
 @router.post("/policies")
 async def promote(body: Promotion, app: App, _user: JoinedUser) -> Json:
+    """Make a checkpoint a policy and send it."""
     request = TrainerRequest.Promote(job=body.job, checkpoint=body.checkpoint, name=body.name)
     reply = await app.trainer.ask(TrainerRequest(promote=request))
     return {"policies": [as_json(policy) for policy in reply.policies]}
@@ -131,6 +145,7 @@ async def promote(body: Promotion, app: App, _user: JoinedUser) -> Json:
 
 @router.delete("/policies/{policy}")
 async def withdraw(policy: str, app: App, _user: JoinedUser) -> Json:
+    """Withdraw a policy and send it."""
     request = TrainerRequest.Withdraw(policy=policy)
     reply = await app.trainer.ask(TrainerRequest(withdraw=request))
     return {"policies": [as_json(removed) for removed in reply.policies]}

@@ -20,7 +20,7 @@ _log = logging.getLogger(__name__)
 
 
 def create_app(state: AppState) -> FastAPI:
-    """The ASGI application. `state` stays the caller's to close."""
+    """Return the ASGI application; `state` stays the caller's to close."""
     app = FastAPI(title="MART", openapi_url=None, docs_url=None, redoc_url=None)
     app.state.app_state = state
     app.add_middleware(SecurityMiddleware, names=state.names)

@@ -28,6 +28,8 @@ _HEADERS = {
 
 
 class SecurityMiddleware:
+    """ASGI middleware that refuses what must not reach the application, and sets the headers of every answer."""
+
     def __init__(self, app: ASGIApp, names: tuple[str, ...]) -> None:
         self._app = app
         self._names = names

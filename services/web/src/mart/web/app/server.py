@@ -30,7 +30,10 @@ _EVERY_ADDRESS = ("0.0.0.0", "::")  # noqa: S104  (only when asked for)
 
 
 def listen(host: str, port: int) -> socket.socket:
-    """Raises Unavailable where the address is taken or not this machine's."""
+    """Return a socket that listens at `host` and `port`.
+
+    Raises Unavailable where the address is taken or not this machine's.
+    """
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
         return socket.create_server((host, port), family=family)

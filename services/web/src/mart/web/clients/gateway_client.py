@@ -1,4 +1,4 @@
-"""From a peer's offer to the gateway's answer: pick the seat's gateway, have it open the seat, hand the offer over."""
+"""What a peer's offer needs: its seat's gateway is chosen, opens the seat and answers the offer."""
 
 from __future__ import annotations
 

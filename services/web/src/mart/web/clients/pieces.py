@@ -9,14 +9,17 @@ from mart.protocol.errors import Corrupt
 
 
 class Piece(Protocol):
-    """A part of something of `size_bytes`."""
+    """One part of something of `size_bytes`."""
 
     piece: bytes
     size_bytes: int
 
 
 async def pieces_of(first: Piece, next_piece: Callable[[int], Awaitable[Piece]]) -> AsyncIterator[bytes]:
-    """All of it; `next_piece` gives the one that begins at an offset. Raises Corrupt where it ends before its size."""
+    """Yield all parts; `next_piece` gives the one that begins at an offset.
+
+    Raises Corrupt where it ends before its size.
+    """
     sent, at = 0, first
     while True:
         sent += len(at.piece)

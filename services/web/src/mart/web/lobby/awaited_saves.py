@@ -32,7 +32,7 @@ class _Wait:
 
 
 class AwaitedSaves:
-    """For which episodes to ask whether they are saved: the event that tells of it may have been lost.
+    """The episodes to ask for, because the event that tells of their file may have been lost.
 
     An episode is awaited from when its room is seen to have ended it, until its file is heard of, or for 5 minutes.
     """

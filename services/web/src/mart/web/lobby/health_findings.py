@@ -17,7 +17,7 @@ CERTIFICATE_DAYS = 7.0  # one that this site made itself is renewed long before
 
 @dataclass(frozen=True)
 class HealthFinding:
-    """`mend`: what to do; empty where all is well."""
+    """One thing that is known, and with `mend` what to do; empty where all is well."""
 
     area: str  # services, rooms, delays or machine
     name: str
@@ -50,7 +50,7 @@ _PARTS = (
 
 
 def services(running: Mapping[str, Sequence[str]]) -> Iterator[HealthFinding]:
-    """`running`: kind → ids."""
+    """Yield what is known of each part; `running`: kind → ids."""
     for part in _PARTS:
         ids = running.get(part.kind, ())
         if ids:
@@ -60,7 +60,7 @@ def services(running: Mapping[str, Sequence[str]]) -> Iterator[HealthFinding]:
 
 
 def rooms(seen: Iterable[Json]) -> Iterator[HealthFinding]:
-    """`seen`: the rooms as the lobby shows them."""
+    """Yield what is known of each room; `seen`: the rooms as the lobby shows them."""
     for room in seen:
         found = f"{room['title']}, {room['real_time_factor']:.2f}× real time"
         mend = ""
@@ -79,7 +79,7 @@ def rooms(seen: Iterable[Json]) -> Iterator[HealthFinding]:
 
 
 def delays(newest: Iterable[tuple[str, Event.Latency]]) -> Iterator[HealthFinding]:
-    """`newest`: each seat's last report, with its room."""
+    """Yield what is known of each seat's delay; `newest`: its last report, with its room."""
     for room, latency in newest:
         found = f"{latency.p50_ms:.0f} ms typical, 95 % under {latency.p95_ms:.0f} ms"
         stage = max(latency.stages, key=lambda one: one.p50_ms, default=None)
@@ -90,7 +90,7 @@ def delays(newest: Iterable[tuple[str, Event.Latency]]) -> Iterator[HealthFindin
 
 
 def machine(free_bytes: int, certificate_days: float | None) -> Iterator[HealthFinding]:
-    """`certificate_days`: until it ends; None where it cannot be read."""
+    """Yield what is known of this computer; `certificate_days`: until it ends, None where it cannot be read."""
     full = free_bytes < LOW_SPACE_BYTES
     yield HealthFinding(
         "machine",

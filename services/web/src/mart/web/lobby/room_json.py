@@ -21,7 +21,7 @@ Json = dict[str, Any]
 
 
 def seat_json(seat: Seat, holder_id: str) -> Json:
-    """The holder's id is a secret between the sim and its holder."""
+    """Return a seat as the user with `holder_id` sees it; the id is a secret between the sim and the seat's holder."""
     mine = seat.holder_id != "" and seat.holder_id == holder_id
     return {
         "arm": seat.arm,
@@ -38,7 +38,10 @@ def seat_json(seat: Seat, holder_id: str) -> Json:
 
 
 def event_json(event: Event) -> Json | None:
-    """Notices, cues and saved episodes; None for events that a room's status tells better."""
+    """Return a notice, a cue or a saved episode; None for events that a room's status tells better.
+
+    Raises ValueError where it holds a word that is not known.
+    """
     head = {"room": event.room, "kind": event.WhichOneof("what")}
     match event.WhichOneof("what"):
         case "notice":
@@ -61,6 +64,10 @@ def event_json(event: Event) -> Json | None:
 
 
 def status_json(status: RoomStatus, holder_id: str) -> Json:
+    """Return what a room says of itself as the user with `holder_id` sees it.
+
+    Raises ValueError where it holds a word that is not known.
+    """
     names = {seat.arm: seat.name for seat in status.seats}
     return {
         "room": status.room,

@@ -20,12 +20,14 @@ class _Thumbnail:
 
 
 class Thumbnails:
+    """The newest small picture of each seat, for at most 256 seats."""
+
     def __init__(self) -> None:
         self._by_seat: dict[tuple[str, str], _Thumbnail] = {}
         self._seen = 0
 
     def see(self, room: str, camera: str, jpeg: bytes, now_s: float) -> None:
-        """Raises InvalidInput where this is no JPEG, or a large one."""
+        """Keep the picture of a seat; raises InvalidInput where this is no JPEG, or a large one."""
         if not jpeg.startswith(_JPEG) or len(jpeg) > MAX_BYTES:
             raise InvalidInput(f"{len(jpeg)} bytes were given; a still is a JPEG of at most {MAX_BYTES}.")
         self._seen += 1
@@ -35,12 +37,12 @@ class Thumbnails:
             del self._by_seat[next(iter(self._by_seat))]  # the one that was not renewed for longest
 
     def number(self, room: str, now_s: float) -> int:
-        """Another one for each still of a room; 0 where there is none."""
+        """Return another number for each picture of a room; 0 where there is none."""
         still = self._shown(room, now_s)
         return still.number if still else 0
 
     def jpeg(self, room: str, now_s: float) -> bytes:
-        """Raises NotFound where nobody has looked at the room in the last seconds."""
+        """Return the picture of a room; raises NotFound where nobody has looked at it in the last seconds."""
         still = self._shown(room, now_s)
         if still is None:
             raise NotFound(f"Nobody looks at {room} now, so there is no picture; take or watch a seat there.")
