@@ -23,7 +23,7 @@ def test_a_fixed_code_replaces_the_kept_one(tmp_path: Path) -> None:
 
 
 def test_a_short_code_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InvalidInput, match="at least 6"):
+    with pytest.raises(InvalidInput):
         load_or_make_join_code(tmp_path / "join-code", "AB-1")
 
 

@@ -14,14 +14,14 @@ def test_a_code_works_once() -> None:
     codes = PairingCodes()
     code = codes.issue(ANA, 0.0)
     assert codes.redeem(code, 1.0) == ANA
-    with pytest.raises(Forbidden, match="used already"):
+    with pytest.raises(Forbidden):
         codes.redeem(code, 1.0)
 
 
 def test_a_code_ends_after_two_minutes() -> None:
     codes = PairingCodes()
     code = codes.issue(ANA, 0.0)
-    with pytest.raises(Forbidden, match="2 minutes"):
+    with pytest.raises(Forbidden):
         codes.redeem(code, LIFETIME_S)
 
 

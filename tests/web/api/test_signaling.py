@@ -113,8 +113,7 @@ async def test_a_token_ends_with_its_seat(enter: Enter, gateway: Gateway) -> Non
     token = (await ana.get(f"{SEAT}/token")).json()["token"]
     await ana.delete(SEAT)
     status, error = await offer(ana, token)
-    assert status == 403
-    assert "changed hands" in error["message"]
+    assert (status, error["code"]) == (403, "Forbidden")
 
 
 async def test_too_many_offers_have_to_wait(enter: Enter, gateway: Gateway) -> None:
@@ -150,7 +149,7 @@ async def test_a_phone_is_paired_once_and_drives(enter: Enter, gateway: Gateway,
     assert (await offer(phone, told["token"]))[0] == 200
     again = await phone.post("/api/pair", json={"code": pairing["code"]})
     assert again.status_code == 403
-    assert "used already" in again.json()["error"]["message"]
+    assert again.json()["error"]["code"] == "Forbidden"
 
 
 async def renewed(phone: Client, token: str, seat: str = SEAT) -> tuple[int, dict[str, Any]]:
@@ -172,8 +171,8 @@ async def test_a_phone_goes_on_when_its_person_takes_the_seat_back(
     token = await phone_of(ana, phone)
     await ana.post(f"{SEAT}/hand-back")
     status, told = await renewed(phone, token)
-    assert (status, told["error"]) == (409, {"code": "Conflict", "message": told["error"]["message"]})
-    assert "lifter drives arm0 now; this phone goes on" in told["error"]["message"]
+    assert (status, told["error"]["code"]) == (409, "Conflict")
+    assert "lifter" in told["error"]["message"]
     assert (await offer(phone, token))[0] == 403
     await ana.post(SEAT, json={"operator": "human"})
     assert (await offer(phone, token))[0] == 403  # the gateway and the sim know this epoch, not the old one
@@ -191,7 +190,7 @@ async def test_a_phone_drives_for_nobody_but_its_person(
     token = await phone_of(ana, phone)
     assert (await renewed(phone, token, "/api/rooms/room-1/seats/arm1"))[0] == 403
     await ana.delete(SEAT)
-    assert "Nobody drives" in (await renewed(phone, token))[1]["error"]["message"]
+    assert (await renewed(phone, token))[1]["error"]["code"] == "Conflict"
     await ben.post(SEAT, json={"operator": "human"})
     assert (await renewed(phone, token))[0] == 409
     assert (await offer(phone, token))[0] == 403

