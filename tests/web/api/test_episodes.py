@@ -10,7 +10,14 @@ from pathlib import Path
 import pytest
 
 from mart.protocol import codec, keys
-from mart.protocol.messages import CatalogueReply, CatalogueRequest
+from mart.protocol.messages import (
+    BARRIER_PHASE_RUNNING,
+    EPISODE_PHASE_ENDED,
+    EPISODE_PHASE_RECORDING,
+    CatalogueReply,
+    CatalogueRequest,
+    RoomStatus,
+)
 from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.browse import answers as browse
 from mart.recorder.browse.answers import Answers
@@ -18,6 +25,7 @@ from mart.recorder.browse.serve import answer
 from mart.runtime.bus.base import Request
 from mart.runtime.bus.memory import MemoryBus
 from mart.web.api.app_state import AppState
+from mart.web.clients.missed_saves import MissedSaves
 from tests.recorder import synthetic
 from tests.recorder.files import write_episode
 from tests.web.conftest import Enter
@@ -159,3 +167,24 @@ def test_garbage_is_answered_with_a_sentence(tmp_path: Path) -> None:
     assert isinstance(reply, CatalogueReply)
     assert reply.error.code == "InvalidInput"
     assert answer(Answers(tmp_path), codec.encode(CatalogueRequest())).error.message.startswith("An empty")
+
+
+async def test_what_is_saved_without_a_word_is_found_in_the_catalogue(
+    app_state: AppState, root: Path
+) -> None:
+    await asyncio.sleep(0)
+    lobby = app_state.lobby
+    status = RoomStatus(
+        room="room-1", task=synthetic.TASK, barrier=BARRIER_PHASE_RUNNING, wall_ns=synthetic.START_NS
+    )
+    status.episode.number = 1
+    for status.episode.phase in (EPISODE_PHASE_RECORDING, EPISODE_PHASE_ENDED):
+        lobby.see_status(status, 0.0)
+    with lobby.listeners.listen() as page:
+        await MissedSaves(lobby, app_state.catalogue).ask(now_s=60.0)
+        (event,) = page.take_events()
+    assert (event["kind"], event["path"], event["verdict"]) == (
+        "episode_saved",
+        f"episodes/{PATH}",
+        "verified",
+    )
