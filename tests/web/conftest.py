@@ -13,11 +13,12 @@ import pytest
 
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
-from mart.web.app import create_app
-from mart.web.certificate import ensure_certificate
-from mart.web.people import People
-from mart.web.rooms import Rooms
-from mart.web.site import Site
+from mart.web.access.certificate import ensure_certificate
+from mart.web.access.user_sessions import UserSessions
+from mart.web.api.app_state import AppState
+from mart.web.app.application import create_app
+from mart.web.lobby.bus_feed import LobbyFeed
+from mart.web.lobby.lobby import Lobby
 from tests.web.room import Room
 
 JOIN_CODE = "ABCD-2345"
@@ -38,13 +39,17 @@ def bus() -> MemoryBus:
 
 
 @pytest.fixture
-async def site(bus: MemoryBus, tmp_path: Path) -> AsyncIterator[Site]:
+async def app_state(bus: MemoryBus, tmp_path: Path) -> AsyncIterator[AppState]:
     aio = AsyncBus(bus, asyncio.get_running_loop())
-    with contextlib.closing(Rooms(aio)) as rooms, contextlib.closing(People(":memory:")) as people:
-        yield Site(
+    lobby = Lobby()
+    with (
+        contextlib.closing(LobbyFeed(aio, lobby)),
+        contextlib.closing(UserSessions(":memory:")) as user_sessions,
+    ):
+        yield AppState(
             bus=aio,
-            rooms=rooms,
-            people=people,
+            lobby=lobby,
+            user_sessions=user_sessions,
             join_code=JOIN_CODE,
             secret=b"0123456789abcdef0123456789abcdef",
             names=("localhost", "lab.example"),
@@ -55,16 +60,16 @@ async def site(bus: MemoryBus, tmp_path: Path) -> AsyncIterator[Site]:
 
 
 @pytest.fixture
-async def room(site: Site, bus: MemoryBus) -> AsyncIterator[Room]:
+async def room(app_state: AppState, bus: MemoryBus) -> AsyncIterator[Room]:
     with contextlib.closing(Room(bus)) as room:
         await asyncio.sleep(0)  # what the room said at its opening is on its way to the site
         yield room
 
 
 @pytest.fixture
-async def enter(site: Site) -> AsyncIterator[Enter]:
+async def enter(app_state: AppState) -> AsyncIterator[Enter]:
     """`await enter("Ana")` is a browser that has joined; `await enter()` one that has not."""
-    app = create_app(site)
+    app = create_app(app_state)
     async with contextlib.AsyncExitStack() as clients:
 
         async def make(name: str = "", address: str = "10.0.0.1") -> Client:

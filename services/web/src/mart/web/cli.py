@@ -1,4 +1,4 @@
-"""`mart web`."""
+"""The command `mart web`."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from mart.runtime.cli import json_option, print_result
 def web(as_json: bool, **options: Any) -> None:
     """Serve the lobby and the operators' and phones' pages over HTTPS."""
     from mart.runtime.service import run_async
-    from mart.web.join_code import load_or_make_join_code
-    from mart.web.names import in_url
-    from mart.web.server import listen, serve
-    from mart.web.settings import WebSettings
+    from mart.web.access.join_code import load_or_make_join_code
+    from mart.web.access.site_names import in_url
+    from mart.web.app.server import listen, serve
+    from mart.web.app.settings import WebSettings
 
     settings = WebSettings(**{name: value for name, value in options.items() if value is not None})
     join_code = load_or_make_join_code(settings.join_code_path, settings.join_code)

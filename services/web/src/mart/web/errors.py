@@ -6,7 +6,7 @@ from mart.protocol.errors import Conflict, Forbidden, InvalidInput, MartError, N
 
 
 class NotJoined(Forbidden):
-    """No session, or one that has ended."""
+    """There is no session, or it has ended."""
 
     def __init__(self) -> None:
         super().__init__(
@@ -33,6 +33,8 @@ class WrongHost(InvalidInput):
 
 
 class TooLarge(InvalidInput):
+    """The body of a request is too long, or does not say its length."""
+
     def __init__(self, limit_bytes: int) -> None:
         super().__init__(
             f"The request's body is too long, or does not say its length; at most {limit_bytes} bytes are allowed."
@@ -40,7 +42,7 @@ class TooLarge(InvalidInput):
 
 
 class TooMany(MartError):
-    """Asked too often."""
+    """Somebody asked too often; `retry_s`: seconds until they may again."""
 
     def __init__(self, what: str, retry_s: float) -> None:
         super().__init__(f"Too many {what} from here; try again in {retry_s:.0f} s.")
@@ -48,6 +50,7 @@ class TooMany(MartError):
 
     @property
     def code(self) -> str:
+        """The branch's name, as sent on the wire."""
         return "TooMany"
 
 
@@ -65,8 +68,10 @@ _STATUS: tuple[tuple[type[MartError], int], ...] = (
 
 
 def http_status(error: MartError) -> int:
+    """Return the HTTP status that an error becomes."""
     return next((status for kind, status in _STATUS if isinstance(error, kind)), 500)
 
 
 def error_json(error: MartError) -> dict[str, dict[str, str]]:
+    """Return the body of an answer that reports an error."""
     return {"error": {"code": error.code, "message": str(error)}}

@@ -50,6 +50,10 @@ class AsyncBus:
     def watch(self, alive_expression: str, handler: Callable[[str, bool], None]) -> Closable:
         return self.bus.watch(alive_expression, lambda key, alive: self._soon(handler, key, alive))
 
+    async def alive(self, alive_expression: str) -> list[str]:
+        """Return the liveliness keys that exist now, sorted; raises Unavailable where the router does not answer."""
+        return await asyncio.to_thread(self.bus.alive, alive_expression)
+
     def spawn(self, coroutine: Coroutine[Any, Any, Any]) -> asyncio.Task[Any]:
         """Runs a coroutine in the background and logs its failure."""
         task = self._loop.create_task(coroutine)

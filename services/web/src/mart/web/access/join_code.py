@@ -1,0 +1,50 @@
+"""The code that lets people in: short enough to read out across a lab."""
+
+from __future__ import annotations
+
+import hmac
+import secrets
+from pathlib import Path
+
+from mart.protocol.errors import Forbidden, InvalidInput
+from mart.runtime.atomic_file import write_atomically
+
+_ALPHABET = "23456789ABCDEFGHJKMNPQRSTVWXYZ"  # nothing that can be taken for something else
+_GROUP = 4
+_MIN_CHARACTERS = 6
+
+
+def load_or_make_join_code(path: Path, fixed: str = "") -> str:
+    """Return the code kept at `path`, or `fixed` where one is given; made at first use.
+
+    Raises InvalidInput where it is too short.
+    """
+    kept = path.read_text().strip() if path.exists() else ""
+    code = fixed.strip() or kept or _make()
+    if len(_plain(code)) < _MIN_CHARACTERS:
+        raise InvalidInput(
+            f"A join code of {len(_plain(code))} letters and digits was given; at least {_MIN_CHARACTERS} are needed."
+        )
+    if code != kept:
+        write_atomically(path, f"{code}\n".encode())
+    return code
+
+
+def check_join_code(given: str, expected: str) -> None:
+    """Compare what was given with the join code; case, spaces and dashes do not matter.
+
+    Raises Forbidden where they differ, after equally long wherever the difference is.
+    """
+    if not hmac.compare_digest(_plain(given).encode(), _plain(expected).encode()):
+        raise Forbidden(
+            "This join code is not right; ask the host for it, or look where `mart run` was started."
+        )
+
+
+def _make() -> str:
+    letters = [secrets.choice(_ALPHABET) for _ in range(2 * _GROUP)]
+    return f"{''.join(letters[:_GROUP])}-{''.join(letters[_GROUP:])}"
+
+
+def _plain(code: str) -> str:
+    return "".join(character for character in code.upper() if character.isalnum())

@@ -1,0 +1,57 @@
+"""What this site is called: the names and addresses that a browser may use for it."""
+
+from __future__ import annotations
+
+import ipaddress
+import socket
+from collections.abc import Sequence
+
+import ifaddr
+
+_VIRTUAL = ("docker", "br-", "veth", "virbr", "cni")  # networks inside this machine, which come and go
+LOOPBACK = ("localhost", "127.0.0.1", "::1")
+
+
+def site_names(public_names: Sequence[str], listening_at: str) -> tuple[str, ...]:
+    """Return the public names and the loopback's; where no public ones are given, all that this machine is called.
+
+    Told names do not change with the network, so neither does a certificate made for them.
+    """
+    told = public_names or (listening_at, *_host_names(), *lan_addresses())
+    return tuple(dict.fromkeys((*(name.lower() for name in told), *LOOPBACK)))
+
+
+def _host_names() -> tuple[str, ...]:
+    host = socket.gethostname()
+    return (host, f"{host}.local") if "." not in host else (host,)
+
+
+def lan_addresses() -> tuple[str, ...]:
+    """Return the IPv4 addresses of this machine on its networks, the private ones first."""
+    found = [
+        ipaddress.IPv4Address(address.ip)
+        for adapter in ifaddr.get_adapters()
+        for address in adapter.ips
+        if isinstance(address.ip, str) and not adapter.name.startswith(_VIRTUAL)
+    ]
+    usable = {address for address in found if not (address.is_loopback or address.is_link_local)}
+    return tuple(
+        str(address) for address in sorted(usable, key=lambda address: (not address.is_private, address))
+    )
+
+
+def host_name(host_header: str) -> str:
+    """Return the name in a Host header or an Origin's authority, without its port and an IPv6 address's brackets."""
+    if host_header.startswith("["):
+        return host_header[1:].partition("]")[0].lower()
+    return host_header.partition(":")[0].lower()
+
+
+def is_loopback(name: str) -> bool:
+    """Whether `name` means the computer that uses it."""
+    return name in LOOPBACK
+
+
+def in_url(name: str) -> str:
+    """Return `name` as it is written in a URL: an IPv6 address in brackets."""
+    return f"[{name}]" if ":" in name else name

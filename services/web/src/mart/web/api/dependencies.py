@@ -1,0 +1,55 @@
+"""What routes are given: what they share, and the user who asks."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import Depends
+from starlette.requests import HTTPConnection
+
+from mart.protocol import clock
+from mart.web.access.user_sessions import User
+from mart.web.api.app_state import AppState
+from mart.web.errors import NotJoined
+
+COOKIE = "__Host-mart-session"
+
+
+def now_unix_s() -> float:
+    """Return the Unix time, seconds."""
+    return clock.wall_ns() / 1e9
+
+
+async def app_state_of(connection: HTTPConnection) -> AppState:
+    """Return what all routes share."""
+    app = connection.app.state.app_state
+    assert isinstance(app, AppState)
+    return app
+
+
+App = Annotated[AppState, Depends(app_state_of)]
+
+
+async def maybe_user(connection: HTTPConnection, app: App) -> User | None:
+    """Return who asks; None where they have not joined."""
+    session_id = connection.cookies.get(COOKIE)
+    return app.user_sessions.find(session_id, now_unix_s()) if session_id else None
+
+
+MaybeUser = Annotated[User | None, Depends(maybe_user)]
+
+
+async def joined_user(user: MaybeUser) -> User:
+    """Return who asks; raises NotJoined."""
+    if user is None:
+        raise NotJoined
+    return user
+
+
+async def address_of(connection: HTTPConnection) -> str:
+    """Return the network address that a request comes from."""
+    return connection.client.host if connection.client else "unknown"
+
+
+JoinedUser = Annotated[User, Depends(joined_user)]
+Address = Annotated[str, Depends(address_of)]

@@ -1,0 +1,161 @@
+"""Recorded episodes: lists, one in detail, labels, and the files themselves. An episode is named by its path."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import PurePosixPath
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+from starlette.responses import Response, StreamingResponse
+
+from mart.protocol.errors import Corrupt, MartError, NotFound
+from mart.protocol.messages import CatalogueReply, CatalogueRequest, RecordedEpisode
+from mart.protocol.tasks import get_task
+from mart.protocol.vocabulary import EpisodeOutcome
+from mart.web.api.app_state import AppState
+from mart.web.api.dependencies import App, JoinedUser
+from mart.web.clients.message_json import as_json
+from mart.web.clients.pieces import pieces_of
+from mart.web.lobby.room_json import Json
+
+router = APIRouter(prefix="/api")
+
+Path = Annotated[str, Query(max_length=1024)]
+Camera = Annotated[str, Query(max_length=128)]
+
+
+class CatalogueFilter(BaseModel):
+    """Which episodes are wanted; each field is empty where all will do."""
+
+    task: str = Field("", max_length=128)
+    outcome: str = Field("", max_length=128)
+    verdict: str = Field("", max_length=128)
+    operator: str = Field("", max_length=128)
+    room: str = Field("", max_length=128)
+    skill: str = Field("", max_length=128)
+    dataset: str = Field("", max_length=128)
+
+
+class EpisodeListQuery(CatalogueFilter):
+    """One page of the episodes that a filter lets through."""
+
+    offset: int = Field(0, ge=0, lt=2**31)
+    count: int = Field(50, ge=1, le=200)
+
+
+class LabelRequest(BaseModel):
+    """What somebody says of an episode; what is absent stays as it is."""
+
+    outcome: Literal[EpisodeOutcome.SUCCESS, EpisodeOutcome.FAILURE, EpisodeOutcome.DISCARDED] | None = None
+    note: str | None = Field(None, max_length=2000)
+    dropped: bool | None = None
+
+
+@router.get("/episodes")
+async def episodes(asked: Annotated[EpisodeListQuery, Query()], app: App, _user: JoinedUser) -> Json:
+    """Send a page of the list of episodes.
+
+    It is null where no catalogue runs: that is no fault of a page that waits for one.
+    """
+    if not app.catalogue.is_running:
+        return {"listing": None}
+    request = CatalogueRequest(list=CatalogueRequest.List(**asked.model_dump()))
+    listing = (await app.catalogue.ask(request)).listing
+    page = [_episode_json(episode) for episode in listing.episodes]
+    titles = {task: _title(task) for task in listing.tasks}
+    return {"listing": as_json(listing) | {"episodes": page, "tasks": titles}}
+
+
+@router.get("/episode")
+async def episode(path: Path, app: App, _user: JoinedUser) -> Json:
+    """Send one episode in detail."""
+    request = CatalogueRequest(show=CatalogueRequest.Show(path=path))
+    details = (await app.catalogue.ask(request)).details
+    titles = _subtask_titles(details.episode)
+    told = as_json(details) | {"episode": _episode_json(details.episode)}
+    for lane in told["lanes"]:
+        lane["title"] = titles.get(lane["name"], lane["name"])
+    return {"details": told}
+
+
+@router.post("/episode")
+async def label(path: Path, body: LabelRequest, app: App, _user: JoinedUser) -> Json:
+    """Write down what somebody says of an episode."""
+    said = body.model_dump(exclude_none=True)
+    request = CatalogueRequest(label=CatalogueRequest.Label(path=path, **said))
+    return {"episode": _episode_json((await app.catalogue.ask(request)).episode)}
+
+
+@router.get("/episode/file")
+async def file(path: Path, app: App, _user: JoinedUser) -> Response:
+    """Send the episode file itself."""
+    name = PurePosixPath(path).name.replace('"', "")
+    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
+    return await _whole(
+        app,
+        lambda offset: CatalogueRequest(file=CatalogueRequest.File(path=path, offset=offset)),
+        "application/octet-stream",
+        headers,
+    )
+
+
+@router.get("/episode/video")
+async def video(path: Path, camera: Camera, app: App, _user: JoinedUser) -> Response:
+    """Send what one camera saw, as it was recorded: MP4."""
+
+    def request(offset: int) -> CatalogueRequest:
+        return CatalogueRequest(video=CatalogueRequest.Video(path=path, camera=camera, offset=offset))
+
+    return await _whole(app, request, "video/mp4")
+
+
+@router.get("/episode/picture")
+async def picture(path: Path, app: App, _user: JoinedUser) -> Response:
+    """Send the last recorded picture, small; an empty answer where there is none that can be shown."""
+    try:
+        reply = await app.catalogue.ask(CatalogueRequest(picture=CatalogueRequest.Picture(path=path)))
+    except (NotFound, Corrupt):
+        return Response(status_code=204)
+    return Response(reply.piece.piece, media_type="image/jpeg")
+
+
+async def _whole(
+    app: AppState,
+    request: Callable[[int], CatalogueRequest],
+    media_type: str,
+    headers: dict[str, str] | None = None,
+) -> Response:
+    """What comes over the bus in pieces, as one answer. `request`: for the piece that begins at an offset."""
+
+    async def piece(offset: int) -> CatalogueReply.Piece:
+        return (await app.catalogue.ask(request(offset))).piece
+
+    first = await piece(0)
+    sized = {"Content-Length": str(first.size_bytes)} | (headers or {})
+    return StreamingResponse(pieces_of(first, piece), media_type=media_type, headers=sized)
+
+
+def _episode_json(episode: RecordedEpisode) -> Json:
+    told = as_json(episode)
+    return told | {
+        "title": _title(episode.task),
+        "started_ms": episode.started_ns // 1_000_000,
+        "real_time_factor": told.get("real_time_factor"),
+    }
+
+
+def _title(task: str) -> str:
+    try:
+        return get_task(task).title
+    except NotFound:  # recorded by a newer sim than this service
+        return task.replace("_", " ") or "Unknown task"
+
+
+def _subtask_titles(episode: RecordedEpisode) -> dict[str, str]:
+    try:
+        task = get_task(episode.task, len(episode.operators) or None)
+    except MartError:
+        return {}
+    return {subtask.name: subtask.title for subtask in task.subtasks}

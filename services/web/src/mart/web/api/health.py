@@ -1,0 +1,38 @@
+"""How everything does: for machines in one word, for people with what to do."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import asdict
+
+from fastapi import APIRouter
+
+from mart.protocol import clock
+from mart.protocol.vocabulary import ServiceKind
+from mart.web.access.certificate import days_left
+from mart.web.api.dependencies import App, JoinedUser, now_unix_s
+from mart.web.lobby.health_findings import delays, machine, rooms, services
+from mart.web.lobby.room_json import Json
+
+router = APIRouter(prefix="/api/health")
+
+_EXPECTED = (ServiceKind.SIM, ServiceKind.GATEWAY, ServiceKind.RECORDER)
+
+
+@router.get("")
+async def health(app: App) -> Json:
+    """Send who is alive, and as `ok` whether everything that a collection session needs is there."""
+    running = app.lobby.services.by_kind()
+    return {"ok": all(kind in running for kind in _EXPECTED), "services": running}
+
+
+@router.get("/findings")
+async def findings(app: App, _user: JoinedUser) -> Json:
+    """Send everything that is known of the platform's health, each problem with its mend."""
+    known = (
+        *services(app.lobby.services.by_kind()),
+        *rooms(app.lobby.rooms_json("", clock.monotonic_s())),
+        *delays(app.lobby.latencies.fresh(clock.monotonic_s())),
+        *machine(shutil.disk_usage(app.data_dir).free, days_left(app.certificate, now_unix_s())),
+    )
+    return {"findings": [asdict(finding) for finding in known]}

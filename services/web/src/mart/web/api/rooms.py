@@ -1,0 +1,130 @@
+"""The API's rooms, their seats and their episodes."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from fastapi import APIRouter, Response
+from pydantic import BaseModel, Field
+
+from mart.protocol import clock
+from mart.protocol.control_rate import require_control_hz
+from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import (
+    OUTCOME_DISCARDED,
+    OUTCOME_FAILURE,
+    OUTCOME_SUCCESS,
+    RoomsRequest,
+    operator_from_word,
+)
+from mart.protocol.tasks import get_task, task_names
+from mart.protocol.vocabulary import OperatorKind
+from mart.web.api.dependencies import App, JoinedUser
+from mart.web.lobby.room_json import Json, seat_json
+
+router = APIRouter(prefix="/api")
+
+_OUTCOMES = {"success": OUTCOME_SUCCESS, "failure": OUTCOME_FAILURE, "discard": OUTCOME_DISCARDED}
+
+
+class NewRoom(BaseModel):
+    """What room is wanted."""
+
+    task: str = Field(max_length=64)
+    room: str = Field("", max_length=64)  # empty: a free name
+    control_hz: float = 0.0  # 0: the usual rate
+    episodes: int = Field(0, ge=0, le=10_000)  # good ones that are wanted; 0: no plan
+
+
+class TakeSeatRequest(BaseModel):
+    """Who shall drive an arm."""
+
+    operator: OperatorKind
+    policy: str = ""  # a promoted one, where the operator is policy
+
+
+class EpisodeActionRequest(BaseModel):
+    """What shall happen with the episode of a room."""
+
+    action: Literal["ready", "unready", "success", "failure", "discard", "reset"]
+    arm: str = ""
+
+
+@router.get("/rooms")
+async def rooms(app: App, user: JoinedUser) -> Json:
+    """Send all rooms as the user sees them."""
+    return {"rooms": app.lobby.rooms_json(user.holder_id, clock.monotonic_s())}
+
+
+@router.get("/tasks")
+async def tasks(app: App, _user: JoinedUser) -> Json:
+    """Send what a new room may be for, and whether anything here opens rooms."""
+    return {"tasks": [_task_json(name) for name in task_names()], "opens_rooms": app.platform.is_running}
+
+
+@router.post("/rooms")
+async def open_room(body: NewRoom, app: App, _user: JoinedUser) -> Json:
+    """Open a room and send its name."""
+    if body.control_hz:
+        require_control_hz(body.control_hz)
+    return {"room": await app.platform.open_room(RoomsRequest.Open(**body.model_dump()))}
+
+
+@router.get("/rooms/{room}/still")
+async def still(room: str, app: App, _user: JoinedUser) -> Response:
+    """Send the room's newest small picture.
+
+    Whoever asks for another one gives another query: this one may be kept.
+    """
+    jpeg = app.lobby.thumbnails.jpeg(room, clock.monotonic_s())
+    return Response(jpeg, media_type="image/jpeg", headers={"Cache-Control": "private, max-age=60"})
+
+
+@router.delete("/rooms/{room}")
+async def close_room(room: str, app: App, _user: JoinedUser) -> Json:
+    """Close a room and send its name."""
+    return {"room": await app.platform.close_room(room)}
+
+
+@router.post("/rooms/{room}/seats/{arm}")
+async def take_seat(room: str, arm: str, body: TakeSeatRequest, app: App, user: JoinedUser) -> Json:
+    """Give a seat to the user, to a machine or to nobody, and send it."""
+    if body.operator is OperatorKind.HUMAN:
+        seat = await app.rooms.take_seat(room, arm, user)
+    else:
+        seat = await app.rooms.assign_seat(room, arm, operator_from_word(body.operator), body.policy)
+    return {"seat": seat_json(seat, user.holder_id)}
+
+
+@router.delete("/rooms/{room}/seats/{arm}")
+async def leave_seat(room: str, arm: str, app: App, user: JoinedUser) -> Json:
+    """Free the user's seat and send it."""
+    return {"seat": seat_json(await app.rooms.leave_seat(room, arm, user), user.holder_id)}
+
+
+@router.post("/rooms/{room}/seats/{arm}/hand-back")
+async def hand_back(room: str, arm: str, app: App, user: JoinedUser) -> Json:
+    """Give a seat back to the machine from which the user took over, and send it."""
+    return {"seat": seat_json(await app.rooms.hand_back_seat(room, arm, user), user.holder_id)}
+
+
+@router.post("/rooms/{room}/episode")
+async def act(room: str, body: EpisodeActionRequest, app: App, user: JoinedUser) -> Json:
+    """Do what is wanted with the episode and send the room."""
+    match body.action:
+        case "ready" | "unready":
+            if not body.arm:
+                raise InvalidInput(
+                    f"{body.action!r} was given without an arm; name the arm whose seat you hold."
+                )
+            await app.rooms.set_ready(room, body.arm, user, body.action == "ready")
+        case "reset":
+            await app.rooms.reset_world(room, user)
+        case _:
+            await app.rooms.finish_episode(room, user, _OUTCOMES[body.action])
+    return {"room": app.lobby.room_json(room, user.holder_id, clock.monotonic_s())}
+
+
+def _task_json(name: str) -> Json:
+    task = get_task(name)
+    return {"name": name, "title": task.title, "instruction": task.instruction, "arms": len(task.arms)}

@@ -1,0 +1,160 @@
+"""Tokens, pairing and offers: how a browser or a phone gets to its seat's gateway."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Annotated
+
+import segno
+from fastapi import APIRouter, Header, Request
+from pydantic import BaseModel
+
+from mart.protocol import clock
+from mart.protocol.errors import Conflict, Forbidden
+from mart.protocol.messages import OPERATOR_HOLD, Seat
+from mart.protocol.tokens import Role, SeatToken, sign, verify
+from mart.web.access.pairing_codes import LIFETIME_S, PairingGrant
+from mart.web.access.site_names import host_name, in_url, is_loopback
+from mart.web.access.user_sessions import User
+from mart.web.api.app_state import AppState
+from mart.web.api.dependencies import Address, App, JoinedUser, now_unix_s
+from mart.web.lobby.room_json import Json
+
+router = APIRouter(prefix="/api")
+
+Authorization = Annotated[str, Header()]
+
+_BROWSER_TOKEN_S = 300.0  # a page asks for a new one whenever it connects
+_PHONE_TOKEN_S = 12 * 3600.0  # however often it is renewed
+_UNREACHABLE = (
+    "This service listens on this computer alone, so a phone cannot reach it. Start it with --host 0.0.0.0, or tell "
+    "it with --public-host the name that phones should use."
+)
+
+
+class PairingRequest(BaseModel):
+    """The code that a phone has scanned."""
+
+    code: str
+
+
+class SdpOffer(BaseModel):
+    """A WebRTC offer."""
+
+    sdp: str
+
+
+@router.get("/rooms/{room}/seats/{arm}/token")
+async def token(room: str, arm: str, app: App, user: JoinedUser) -> Json:
+    """Send a token for a seat: its holder's drives, anybody else's watches."""
+    seat = _seat(app, room, arm)
+    role = Role.BROWSER if seat.holder_id == user.holder_id else Role.VIEWER
+    signed = _sign(
+        app, SeatToken(room, arm, seat.epoch, role, user.holder_id, now_unix_s() + _BROWSER_TOKEN_S)
+    )
+    return {"token": signed, "role": role.value, "epoch": seat.epoch}
+
+
+@router.post("/rooms/{room}/seats/{arm}/pair")
+async def pair(room: str, arm: str, request: Request, app: App, user: JoinedUser) -> Json:
+    """Send a code, also as a picture, that pairs a phone with the user's seat."""
+    seat = _own_seat(app, room, arm, user)
+    pairing = PairingGrant(room, arm, seat.epoch, user.holder_id, user.name)
+    code = app.pairing_codes.issue(pairing, clock.monotonic_s())
+    host = _host_for_phone(request.headers["host"], app.lan_host)
+    url = f"https://{host}/phone#{code}"
+    return {
+        "code": code,
+        "url": url,
+        "expires_s": LIFETIME_S,
+        "qr_svg": segno.make(url, error="m", micro=False).svg_inline(dark="#000", light="#fff", border=3),
+        "hint": _UNREACHABLE if is_loopback(host_name(host)) else "",
+    }
+
+
+@router.post("/pair")
+async def redeem(body: PairingRequest, app: App, address: Address) -> Json:
+    """Send the phone that gives a code its token; five wrong codes a minute from one address."""
+    now_s = clock.monotonic_s()
+    key = f"pair {address}"
+    app.wrong_codes.check(key, now_s)
+    try:
+        pairing = app.pairing_codes.redeem(body.code, now_s)
+    except Forbidden:
+        app.wrong_codes.count(key, now_s)
+        raise
+    seat = SeatToken(
+        pairing.room, pairing.arm, pairing.epoch, Role.PHONE, pairing.holder_id, now_unix_s() + _PHONE_TOKEN_S
+    )
+    return {
+        "token": _sign(app, seat),
+        "room": pairing.room,
+        "arm": pairing.arm,
+        "epoch": pairing.epoch,
+        "name": pairing.name,
+        "role": Role.PHONE.value,
+    }
+
+
+@router.get("/rooms/{room}/seats/{arm}/phone-token")
+async def phone_token(room: str, arm: str, app: App, authorization: Authorization = "") -> Json:
+    """Send a phone its renewed token.
+
+    It stays with the user who paired it: its token is renewed while, and whenever, they hold the seat.
+    """
+    paired = _claims(app, room, arm, authorization)
+    if paired.role is not Role.PHONE:
+        raise Forbidden(f"The token of a {paired.role} was given; only a phone's is renewed here.")
+    seat = _seat(app, room, arm)
+    if seat.holder_id != paired.holder_id:
+        driver = "Nobody" if seat.operator == OPERATOR_HOLD else seat.name or "A script"
+        raise Conflict(
+            f"{driver} drives {arm} now; this phone goes on when the person who paired it takes the seat again."
+        )
+    return {"token": _sign(app, replace(paired, epoch=seat.epoch)), "epoch": seat.epoch}
+
+
+@router.post("/rooms/{room}/seats/{arm}/offer")
+async def offer(room: str, arm: str, body: SdpOffer, app: App, authorization: Authorization = "") -> Json:
+    """Have the seat's gateway answer an offer and send the answer."""
+    seat_token = _claims(app, room, arm, authorization)
+    if seat_token.epoch != _seat(app, room, arm).epoch:
+        raise Forbidden(
+            "This seat has changed hands since you got your token; take a seat in the lobby again."
+        )
+    app.offers.spend(f"{seat_token.holder_id} {seat_token.role}", clock.monotonic_s())
+    return {"sdp": await app.gateways.answer_offer(seat_token, _bearer(authorization), body.sdp)}
+
+
+def _bearer(authorization: str) -> str:
+    return authorization.removeprefix("Bearer ")
+
+
+def _claims(app: AppState, room: str, arm: str, authorization: str) -> SeatToken:
+    """What the sent token says; raises Forbidden where it is not good for this seat."""
+    claims = verify(_bearer(authorization), app.secret)
+    if (claims.room, claims.arm) != (room, arm):
+        raise Forbidden(f"This seat token is for {claims.arm} in {claims.room}, not for {arm} in {room}.")
+    return claims
+
+
+def _seat(app: AppState, room: str, arm: str) -> Seat:
+    return app.lobby.rooms.seat(room, arm, clock.monotonic_s())
+
+
+def _own_seat(app: AppState, room: str, arm: str, user: User) -> Seat:
+    seat = _seat(app, room, arm)
+    if seat.holder_id != user.holder_id:
+        raise Forbidden(f"{arm} in {room} is not your seat; only its holder can pair a phone with it.")
+    return seat
+
+
+def _sign(app: AppState, token: SeatToken) -> str:
+    return sign(token, app.secret)
+
+
+def _host_for_phone(host_header: str, lan_host: str) -> str:
+    name = host_name(host_header)
+    if lan_host and is_loopback(name):
+        return host_header.replace(in_url(name), in_url(lan_host), 1)
+    return host_header

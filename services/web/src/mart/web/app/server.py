@@ -1,0 +1,124 @@
+"""Serving the application: socket, certificate and its renewal, start and stop."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import socket
+from collections.abc import Coroutine
+from typing import Any
+
+import uvicorn
+
+from mart.protocol.errors import Unavailable
+from mart.runtime.secret_file import load_or_create_secret
+from mart.runtime.service import AsyncService, announced
+from mart.web.access.certificate import Certificate, ensure_certificate
+from mart.web.access.site_names import is_loopback, lan_addresses, site_names
+from mart.web.access.user_sessions import UserSessions
+from mart.web.api.app_state import AppState
+from mart.web.app.application import create_app
+from mart.web.app.certificate_renewal import keep_renewed, now
+from mart.web.app.security_middleware import MAX_BODY_BYTES
+from mart.web.app.settings import WebSettings
+from mart.web.clients.missed_saves import MissedSaves
+from mart.web.lobby.bus_feed import LobbyFeed
+from mart.web.lobby.lobby import Lobby
+
+_STOP_S = 2
+_EVERY_ADDRESS = ("0.0.0.0", "::")  # noqa: S104  (only when asked for)
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """Return a socket that listens at `host` and `port`.
+
+    Raises Unavailable where the address is taken or not this machine's.
+    """
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        return socket.create_server((host, port), family=family)
+    except OSError as error:
+        raise Unavailable(
+            f"Could not listen at {host} port {port}: {error.strerror}. Choose another with --host or --port."
+        ) from error
+
+
+async def serve(
+    settings: WebSettings, service: AsyncService, listener: socket.socket, join_code: str
+) -> None:
+    """Serve the pages and the API at `listener` until cancelled, or stopped by a signal."""
+    lobby = Lobby()
+    with contextlib.ExitStack() as stack:
+        user_sessions = stack.enter_context(contextlib.closing(UserSessions(settings.sessions_path)))
+        feed = stack.enter_context(contextlib.closing(LobbyFeed(service.bus, lobby)))
+        state = AppState(
+            bus=service.bus,
+            lobby=lobby,
+            user_sessions=user_sessions,
+            join_code=join_code,
+            secret=load_or_create_secret(settings.secret_path),
+            names=site_names(settings.public_names, settings.web_host),
+            lan_host=_lan_host(settings),
+            data_dir=settings.data_dir,
+            certificate=settings.certificate or settings.certificates_dir / "site.pem",
+        )
+        config, background = _configured(settings, state)
+        tasks = [service.bus.spawn(work) for work in (*background, feed.keep_asking(), _missed(state))]
+        try:
+            await feed.settled()
+            # Whoever comes before the server is quite up waits in the listener's queue.
+            with announced(service):
+                await _run(uvicorn.Server(config), listener)
+        finally:
+            for task in tasks:
+                task.cancel()
+
+
+def _configured(
+    settings: WebSettings, state: AppState
+) -> tuple[uvicorn.Config, list[Coroutine[Any, Any, None]]]:
+    """Return how to serve, and what renews the certificate meanwhile where it is one of this site's own."""
+
+    def ensure() -> Certificate:
+        return ensure_certificate(settings.certificates_dir, state.names, now())
+
+    config = uvicorn.Config(
+        create_app(state),
+        ssl_certfile=settings.certificate or ensure().path,
+        ssl_keyfile=settings.certificate_key,
+        lifespan="off",
+        log_config=None,
+        log_level="warning",
+        access_log=False,
+        server_header=False,
+        ws="websockets-sansio",
+        ws_max_size=MAX_BODY_BYTES,
+        timeout_graceful_shutdown=_STOP_S,
+    )
+    config.load()
+    assert config.ssl is not None
+    return config, [] if settings.certificate else [keep_renewed(ensure, config.ssl)]
+
+
+def _missed(state: AppState) -> Coroutine[Any, Any, None]:
+    return MissedSaves(state.lobby, state.catalogue).keep_asking()
+
+
+async def _run(server: uvicorn.Server, listener: socket.socket) -> None:
+    """When cancelled, it first says goodbye to those who are connected."""
+    serving = asyncio.ensure_future(server.serve(sockets=[listener]))
+    try:
+        await asyncio.shield(serving)
+    except asyncio.CancelledError:
+        server.should_exit = True
+        await serving
+        raise
+
+
+def _lan_host(settings: WebSettings) -> str:
+    """What a phone should call this site; empty where it cannot reach it."""
+    if settings.public_names:
+        return next((name for name in settings.public_names if not is_loopback(name)), "")
+    if settings.web_host in _EVERY_ADDRESS:
+        return next(iter(lan_addresses()), "")
+    return "" if is_loopback(settings.web_host) else settings.web_host

@@ -1,0 +1,46 @@
+"""Settings of the web service."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import Field
+
+from mart.runtime.settings import Settings
+
+
+class WebSettings(Settings):
+    """Settings of the web service, from the environment or the command line."""
+
+    web_host: str = Field(
+        "127.0.0.1", description="Address to listen at; 0.0.0.0 lets phones and other laptops in."
+    )
+    web_port: int = Field(8443, ge=0, le=65535)
+    public_host: str = Field("", description="Names and addresses that people use, separated by commas.")
+    join_code: str = Field("", description="Fixed join code; default: one made at first start.")
+    certificate: Path | None = Field(
+        None, description="PEM certificate chain; default: one made at first start."
+    )
+    certificate_key: Path | None = Field(
+        None, description="PEM private key, where it is not in the same file."
+    )
+
+    @property
+    def public_names(self) -> tuple[str, ...]:
+        """The names and addresses that people use."""
+        return tuple(name.strip() for name in self.public_host.split(",") if name.strip())
+
+    @property
+    def certificates_dir(self) -> Path:
+        """The folder of the certificate that this site makes for itself."""
+        return self.data_dir / "certificates"
+
+    @property
+    def sessions_path(self) -> Path:
+        """The file of the users' sessions."""
+        return self.data_dir / "web" / "sessions.sqlite"
+
+    @property
+    def join_code_path(self) -> Path:
+        """The file of the join code."""
+        return self.data_dir / "join-code"

@@ -1,0 +1,34 @@
+"""What a peer's offer needs: its seat's gateway is chosen, opens the seat and answers the offer."""
+
+from __future__ import annotations
+
+from mart.protocol import keys
+from mart.protocol.gateway_choice import gateway_of
+from mart.protocol.messages import Answer, Offer, OpenSeat, OpenSeatReply
+from mart.protocol.tokens import SeatToken
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.ask_async import ask_async
+from mart.runtime.bus.aio import AsyncBus
+from mart.web.lobby.live_services import LiveServices
+
+_OPEN_TIMEOUT_S = 20.0  # a gateway may have to fetch and load the room's model first
+_OFFER_TIMEOUT_S = 10.0
+
+
+class GatewayClient:
+    """Requests to the gateways."""
+
+    def __init__(self, bus: AsyncBus, services: LiveServices) -> None:
+        self._bus, self._services = bus, services
+
+    async def answer_offer(self, seat: SeatToken, token: str, sdp: str) -> str:
+        """Return the SDP of the answer to the offer `sdp`, which `token`, saying `seat`, came with.
+
+        Raises Unavailable where no gateway runs, and whatever the gateway reports.
+        """
+        gateway = gateway_of(self._services.ids(ServiceKind.GATEWAY), seat.room, seat.arm)
+        opening = OpenSeat(room=seat.room, arm=seat.arm, seat_epoch=seat.epoch)
+        await ask_async(self._bus, keys.open_seat(gateway), opening, OpenSeatReply, timeout_s=_OPEN_TIMEOUT_S)
+        topic = keys.signal(seat.room, seat.arm, seat.role.value)
+        offer = Offer(token=token, sdp=sdp)
+        return (await ask_async(self._bus, topic, offer, Answer, timeout_s=_OFFER_TIMEOUT_S)).sdp

@@ -1,0 +1,106 @@
+"""How everything does, in words, each problem with its mend. Pure: what is known in, findings out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from mart.protocol.messages import Event
+from mart.protocol.vocabulary import ServiceKind
+from mart.web.lobby.room_json import Json
+
+SLOW = 0.95  # of real time: below it, people feel it
+LATE_MS = 200.0  # from hand to picture: above it, people lose speed
+LOW_SPACE_BYTES = 1_000_000_000
+CERTIFICATE_DAYS = 7.0  # one that this site made itself is renewed long before
+
+
+@dataclass(frozen=True)
+class HealthFinding:
+    """One thing that is known, and with `mend` what to do; empty where all is well."""
+
+    area: str  # services, rooms, delays or machine
+    name: str
+    found: str
+    mend: str = ""
+
+
+@dataclass(frozen=True)
+class _Part:
+    kind: ServiceKind
+    name: str
+    mend: str
+    needed: bool = True
+
+
+_PARTS = (
+    _Part(ServiceKind.SIM, "Rooms", "Open one in the lobby, or start `mart sim`."),
+    _Part(
+        ServiceKind.GATEWAY,
+        "Pictures and hands",
+        "Start `mart gateway`; nobody sees or drives anything without.",
+    ),
+    _Part(ServiceKind.RECORDER, "Recording", "Start `mart recorder`; nothing is saved without."),
+    _Part(ServiceKind.REPLICA, "Verification", "Start `mart replica`; episodes stay unverified without."),
+    _Part(ServiceKind.EXPERTS, "Scripts", "Start `mart experts`; a seat on script stands still without."),
+    _Part(ServiceKind.CATALOGUE, "Episodes page", "Start `mart catalogue`."),
+    _Part(ServiceKind.TRAINER, "Training", "", needed=False),
+    _Part(ServiceKind.POLICIES, "Policies in seats", "", needed=False),
+)
+
+
+def services(running: Mapping[str, Sequence[str]]) -> Iterator[HealthFinding]:
+    """Yield what is known of each part; `running`: kind → ids."""
+    for part in _PARTS:
+        ids = running.get(part.kind, ())
+        if ids:
+            yield HealthFinding("services", part.name, ", ".join(ids))
+        else:
+            yield HealthFinding("services", part.name, "not running", part.mend if part.needed else "")
+
+
+def rooms(seen: Iterable[Json]) -> Iterator[HealthFinding]:
+    """Yield what is known of each room; `seen`: the rooms as the lobby shows them."""
+    for room in seen:
+        found = f"{room['title']}, {room['real_time_factor']:.2f}× real time"
+        mend = ""
+        if room["stale"]:
+            found = "does not answer"
+            mend = "It comes back by itself when its simulation runs again; its log says what happened."
+        elif room["waiting_for"]:
+            late = ", ".join(one["name"] or one["arm"] for one in room["waiting_for"])
+            found, mend = (
+                f"waits for {late}",
+                "Ask them, or set their seat to script or hold once it is free.",
+            )
+        elif room["tick"] and room["real_time_factor"] < SLOW and room["barrier"] == "running":
+            mend = "This machine is busy: close a room, fewer windows, or fewer ticks a second."
+        yield HealthFinding("rooms", room["room"], found, mend)
+
+
+def delays(newest: Iterable[tuple[str, Event.Latency]]) -> Iterator[HealthFinding]:
+    """Yield what is known of each seat's delay; `newest`: its last report, with its room."""
+    for room, latency in newest:
+        found = f"{latency.p50_ms:.0f} ms typical, 95 % under {latency.p95_ms:.0f} ms"
+        stage = max(latency.stages, key=lambda one: one.p50_ms, default=None)
+        worst = f" Most of it: {stage.name.replace('_', ' ')}." if stage else ""
+        late = latency.p50_ms > LATE_MS
+        mend = f"Use a cable, or move nearer to the access point.{worst}" if late else ""
+        yield HealthFinding("delays", f"{latency.arm} in {room}, hand to picture", found, mend)
+
+
+def machine(free_bytes: int, certificate_days: float | None) -> Iterator[HealthFinding]:
+    """Yield what is known of this computer; `certificate_days`: until it ends, None where it cannot be read."""
+    full = free_bytes < LOW_SPACE_BYTES
+    yield HealthFinding(
+        "machine",
+        "Disk",
+        f"{free_bytes / 1e9:.1f} GB free",
+        "Make room before the next episode." if full else "",
+    )
+    if certificate_days is None:
+        yield HealthFinding("machine", "Certificate", "cannot be read", "Look at MART_CERTIFICATE.")
+    else:
+        soon = certificate_days < CERTIFICATE_DAYS
+        mend = "Put a new one at MART_CERTIFICATE and restart `mart web`." if soon else ""
+        yield HealthFinding("machine", "Certificate", f"good for {certificate_days:.0f} days", mend)

@@ -1,0 +1,130 @@
+"""The rooms and their events as the pages get them: JSON in the words of the protocol."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mart.protocol.errors import InvalidInput, NotFound
+from mart.protocol.messages import (
+    Event,
+    RoomStatus,
+    Seat,
+    barrier_word,
+    cue_word,
+    operator_word,
+    outcome_word,
+    phase_word,
+)
+from mart.protocol.tasks import get_task
+
+Json = dict[str, Any]
+
+
+def seat_json(seat: Seat, holder_id: str) -> Json:
+    """Return a seat as the user with `holder_id` sees it; the id is a secret between the sim and the seat's holder."""
+    mine = seat.holder_id != "" and seat.holder_id == holder_id
+    return {
+        "arm": seat.arm,
+        "operator": operator_word(seat.operator),
+        "epoch": seat.epoch,
+        "holder_id": seat.holder_id if mine else "",
+        "name": seat.name,
+        "ready": seat.ready,
+        "engaged": seat.engaged,
+        "mine": mine,
+        "policy": seat.policy,
+        "relieved": seat.relieved,
+    }
+
+
+def event_json(event: Event) -> Json | None:
+    """Return a notice, a cue or a saved episode; None for events that a room's status tells better.
+
+    Raises ValueError where it holds a word that is not known.
+    """
+    head = {"room": event.room, "kind": event.WhichOneof("what")}
+    match event.WhichOneof("what"):
+        case "notice":
+            notice = event.notice
+            return head | {"level": notice.level, "text": notice.text, "from": getattr(notice, "from")}
+        case "cue_given":
+            return head | {"arm": event.cue_given.arm, "cue": cue_word(event.cue_given.cue)}
+        case "episode_saved":
+            saved = event.episode_saved
+            return head | {
+                "number": saved.number,
+                "path": saved.path,
+                "verified": saved.verified,
+                "verdict": saved.verdict,
+                "size_bytes": saved.size_bytes,
+                "outcome": outcome_word(saved.outcome),
+            }
+        case _:
+            return None
+
+
+def status_json(status: RoomStatus, holder_id: str) -> Json:
+    """Return what a room says of itself as the user with `holder_id` sees it.
+
+    Raises ValueError where it holds a word that is not known.
+    """
+    names = {seat.arm: seat.name for seat in status.seats}
+    return {
+        "room": status.room,
+        **_task_json(status),
+        "control_hz": status.control_hz,
+        "tick": status.tick,
+        "real_time_factor": status.real_time_factor,
+        "barrier": barrier_word(status.barrier),
+        "waiting_for": [
+            {"arm": late.arm, "name": names.get(late.arm, ""), "since_s": late.since_s}
+            for late in status.waiting_for
+        ],
+        "seats": [seat_json(seat, holder_id) for seat in status.seats],
+        "episode": _episode_json(status),
+        "episodes_saved": status.episodes_saved,
+        "episodes_good": status.episodes_good,
+        "plan": _plan_json(status),
+    }
+
+
+def _plan_json(status: RoomStatus) -> Json | None:
+    plan = status.plan
+    return {"episodes": plan.episodes, "good": plan.good} if status.HasField("plan") else None
+
+
+def _task_json(status: RoomStatus) -> Json:
+    titles: dict[str, str] = {}
+    try:
+        task = get_task(status.task, len(status.seats))
+    except (NotFound, InvalidInput):  # a newer sim than this service: show the task under its own name
+        title, instruction, time_limit_s = status.task, "", None
+    else:
+        title, instruction = task.title, task.instruction
+        time_limit_s = task.time_limit_s
+        titles = {subtask.name: subtask.title for subtask in task.subtasks}
+    progress = status.progress
+    subtasks = [
+        {"name": subtask.name, "title": titles.get(subtask.name, subtask.name), "done": subtask.done}
+        for subtask in progress.subtasks
+    ]
+    return {
+        "task": status.task,
+        "title": title,
+        "instruction": instruction,
+        "time_limit_s": time_limit_s,
+        "progress": {"subtasks": subtasks, "success": progress.success, "failed": progress.failed},
+    }
+
+
+def _episode_json(status: RoomStatus) -> Json:
+    episode = status.episode
+    return {
+        "number": episode.number,
+        "phase": phase_word(episode.phase),
+        "remaining_s": episode.remaining_s,
+        "ticks": episode.ticks,
+        "elapsed_s": episode.elapsed_s,
+        "outcome": outcome_word(episode.outcome),
+        "reason": episode.reason,
+    }

@@ -1,0 +1,85 @@
+"""The newest status of every room that was heard of. Pure; times are monotonic seconds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from mart.protocol.errors import NotFound
+from mart.protocol.messages import RoomStatus, Seat
+
+STALE_AFTER_S = 1.0  # a sim speaks five times a second
+GONE_AFTER_S = 3.0  # without its liveliness token; a router's restart takes every token for about 2 s
+
+
+@dataclass(frozen=True)
+class _Room:
+    status: RoomStatus
+    seen_s: float
+    alive: bool
+
+
+class RoomTable:
+    """Every room that was heard of. A silent room is stale; a silent one whose sim is gone disappears."""
+
+    def __init__(self) -> None:
+        self._rooms: dict[str, _Room] = {}
+        self._alive: set[str] = set()
+
+    def see(self, status: RoomStatus, now_s: float) -> bool:
+        """Keep `status` as its room's newest; return whether it is.
+
+        Answers overtake what was said before them. A status that says it is older than a fresh one of the same sim
+        is not used, or whoever has just taken a seat would be shown without it.
+        """
+        known = self._rooms.get(status.room)
+        if known is not None and now_s - known.seen_s <= STALE_AFTER_S and _is_older(status, known.status):
+            return False
+        self._rooms[status.room] = _Room(status, now_s, status.room in self._alive)
+        return True
+
+    def set_alive(self, room: str, alive: bool) -> None:
+        """Take in whether the sim of `room` runs."""
+        (self._alive.add if alive else self._alive.discard)(room)
+        if room in self._rooms:
+            self._rooms[room] = replace(self._rooms[room], alive=alive)
+
+    @property
+    def unheard(self) -> set[str]:
+        """Rooms whose sim runs and that have not said anything yet."""
+        return self._alive - self._rooms.keys()
+
+    def names(self, now_s: float) -> list[str]:
+        """Return the names of the rooms that are there, sorted."""
+        self._forget(now_s)
+        return sorted(self._rooms)
+
+    def status(self, room: str, now_s: float) -> RoomStatus:
+        """Return the newest status of `room`; raises NotFound, with the rooms that are open, where there is none."""
+        self._forget(now_s)
+        if room not in self._rooms:
+            raise NotFound.named("room", room, self._rooms)
+        return self._rooms[room].status
+
+    def seat(self, room: str, arm: str, now_s: float) -> Seat:
+        """Return the seat of `arm` in `room`; raises NotFound where the room or the arm does not exist."""
+        status = self.status(room, now_s)
+        for seat in status.seats:
+            if seat.arm == arm:
+                return seat
+        raise NotFound.named("arm", arm, (seat.arm for seat in status.seats))
+
+    def is_stale(self, room: str, now_s: float) -> bool:
+        """Whether `room` is silent, or its sim is gone."""
+        known = self._rooms[room]
+        return not known.alive or now_s - known.seen_s > STALE_AFTER_S
+
+    def _forget(self, now_s: float) -> None:
+        self._rooms = {
+            name: room
+            for name, room in self._rooms.items()
+            if room.alive or now_s - room.seen_s <= GONE_AFTER_S
+        }
+
+
+def _is_older(status: RoomStatus, known: RoomStatus) -> bool:
+    return status.boot == known.boot and status.wall_ns < known.wall_ns

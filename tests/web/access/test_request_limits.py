@@ -1,0 +1,52 @@
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mart.web.access.request_limits import RequestLimit
+from mart.web.errors import TooMany
+
+
+@given(
+    count=st.integers(1, 8),
+    window_s=st.floats(0.1, 100.0),
+    gaps_s=st.lists(st.floats(0.0, 30.0), min_size=1, max_size=60),
+)
+def test_no_window_ever_holds_more_than_the_limit(count: int, window_s: float, gaps_s: list[float]) -> None:
+    limit = RequestLimit("tries", count, window_s)
+    now_s = 0.0
+    granted: list[float] = []
+    for gap_s in gaps_s:
+        now_s += gap_s
+        try:
+            limit.spend("ana", now_s)
+        except TooMany:
+            assert sum(now_s - at_s < window_s for at_s in granted) >= count
+        else:
+            granted.append(now_s)
+    for start_s in granted:
+        assert sum(start_s <= at_s < start_s + window_s * (1 - 1e-9) for at_s in granted) <= count
+
+
+def test_everybody_has_a_share_of_their_own() -> None:
+    limit = RequestLimit("tries", 1, 10.0)
+    limit.spend("ana", 0.0)
+    limit.spend("ben", 0.0)
+    with pytest.raises(TooMany) as refused:
+        limit.spend("ana", 1.0)
+    assert refused.value.retry_s == 9.0
+
+
+def test_who_is_forgiven_starts_anew() -> None:
+    limit = RequestLimit("tries", 1, 10.0)
+    limit.spend("ana", 0.0)
+    limit.forgive("ana")
+    limit.spend("ana", 0.0)
+
+
+def test_memory_is_bounded() -> None:
+    limit = RequestLimit("tries", 1, 10.0)
+    for number in range(10_000):
+        limit.spend(str(number), 0.0)
+    assert len(limit._limit._limits) <= 4096

@@ -1,0 +1,79 @@
+"""What the health page says: each problem has its mend, and what is well has none."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from mart.protocol.messages import Event
+from mart.web.api.app_state import AppState
+from mart.web.lobby.health_findings import delays, machine, rooms, services
+from mart.web.lobby.room_json import Json
+from tests.web.conftest import Enter
+from tests.web.room import Room
+
+EVERYTHING = ("sim", "gateway", "recorder", "replica", "experts", "catalogue", "trainer", "policies")
+
+
+def a_room(**changes: object) -> Json:
+    told = {"room": "room-1", "title": "Lifting", "real_time_factor": 1.0, "stale": False, "tick": 99}
+    return {**told, "waiting_for": [], "barrier": "running", **changes}
+
+
+def test_all_is_well_where_everything_runs() -> None:
+    known = [
+        *services({kind: [f"{kind}-1"] for kind in EVERYTHING}),
+        *rooms([a_room()]),
+        *machine(50_000_000_000, 300.0),
+    ]
+    assert [finding.mend for finding in known] == [""] * len(known)
+
+
+@pytest.mark.parametrize("kind", EVERYTHING)
+def test_what_does_not_run_is_named_with_its_command(kind: str) -> None:
+    found = list(services({other: ["x"] for other in EVERYTHING if other != kind}))
+    missing = [finding for finding in found if finding.found == "not running"]
+    assert len(missing) == 1
+    assert (f"mart {kind}" in missing[0].mend) == (kind not in ("trainer", "policies"))
+
+
+@pytest.mark.parametrize(
+    ("changes", "found"),
+    [
+        ({"stale": True}, "does not answer"),
+        ({"waiting_for": [{"arm": "arm0", "name": "Ana", "since_s": 1.0}]}, "waits for Ana"),
+        ({"real_time_factor": 0.8}, "0.80"),
+    ],
+)
+def test_a_room_that_does_not_do_well(changes: Json, found: str) -> None:
+    (finding,) = rooms([a_room(**changes)])
+    assert found in finding.found
+    assert finding.mend
+    (resting,) = rooms([a_room(real_time_factor=0.0, tick=0)])
+    assert not resting.mend
+
+
+def test_long_delays_full_disks_and_old_certificates() -> None:
+    slow = Event.Latency(
+        arm="arm0", p50_ms=250, p95_ms=400, stages=[Event.Latency.Stage(name="to_photon", p50_ms=200)]
+    )
+    (late,) = delays([("room-1", slow)])
+    assert "250 ms" in late.found
+    assert "to photon" in late.mend
+    disk, certificate = machine(5_000_000, 3.0)
+    assert disk.mend
+    assert certificate.mend
+    assert list(machine(5, None))[1].found == "cannot be read"
+
+
+@pytest.mark.anyio
+async def test_who_has_joined_sees_it(enter: Enter, room: Room, app_state: AppState) -> None:
+    assert (await (await enter()).get("/api/health/findings")).status_code == 401
+    room.tell(Event(latency=Event.Latency(arm="arm0", p50_ms=40, p95_ms=60)))
+    await asyncio.sleep(0)
+    told = (await (await enter("Ana")).get("/api/health/findings")).json()["findings"]
+    areas = {finding["area"]: finding for finding in told}
+    assert areas["delays"]["found"] == "40 ms typical, 95 % under 60 ms"
+    assert areas["rooms"]["name"] == "room-1"
+    assert "good for 39" in areas["machine"]["found"]

@@ -1,0 +1,37 @@
+"""Statuses that overtake each other: a lobby never goes back in time, and never waits for a clock that does."""
+
+from __future__ import annotations
+
+from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, Operator, RoomStatus, Seat
+from mart.web.lobby.room_table import STALE_AFTER_S, RoomTable
+
+
+def status(operator: Operator, wall_ns: int, boot: int = 1) -> RoomStatus:
+    seat = Seat(arm="arm0", operator=operator, epoch=wall_ns)
+    return RoomStatus(room="room-1", seats=[seat], wall_ns=wall_ns, boot=boot)
+
+
+def operator_in(table: RoomTable, now_s: float) -> Operator:
+    return table.seat("room-1", "arm0", now_s).operator
+
+
+def test_who_has_taken_a_seat_is_not_shown_without_it_by_what_was_said_before() -> None:
+    table = RoomTable()
+    assert table.see(status(OPERATOR_HUMAN, wall_ns=20), 1.0)  # the answer to who took it
+    assert not table.see(status(OPERATOR_HOLD, wall_ns=10), 1.01)
+    assert operator_in(table, 1.01) == OPERATOR_HUMAN
+
+
+def test_a_sim_that_was_started_anew_is_believed_whatever_its_clock_says() -> None:
+    table = RoomTable()
+    table.see(status(OPERATOR_HUMAN, wall_ns=20), 1.0)
+    assert table.see(status(OPERATOR_HOLD, wall_ns=10, boot=2), 1.01)
+    assert operator_in(table, 1.01) == OPERATOR_HOLD
+
+
+def test_a_clock_that_was_set_back_costs_a_second() -> None:
+    table = RoomTable()
+    table.see(status(OPERATOR_HUMAN, wall_ns=20), 1.0)
+    late_s = 1.01 + STALE_AFTER_S
+    assert table.see(status(OPERATOR_HOLD, wall_ns=10), late_s)
+    assert operator_in(table, late_s) == OPERATOR_HOLD
