@@ -88,6 +88,10 @@ check-proto: $(VENV)/.tools
 task-pages: $(VENV)/.tools ## Write docs/tasks.md and draw its pictures anew, from the catalogue and the scenes
 	@$(BIN)/python tools/task_pages.py
 
+.PHONY: page-facts
+page-facts: $(VENV)/.tools ## Write what the pages know from the Python parts: lists, limits, colours, types
+	@$(BIN)/python tools/page_facts.py
+
 .PHONY: operator-picture
 operator-picture: $(VENV)/.tools ## Take the picture of the operator's page anew, in a real browser
 	@$(BIN)/python tools/operator_picture.py

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-import mart.web
 from mart.protocol.episodes.labels import Kind, Label
-from mart.protocol.tasks import get_task
 from tests.browser.pages.conftest import Run
 
 GOLDEN = json.loads(Path("tests/teleop_gateway/golden/phone_frame.json").read_text())["cases"]
-STATIC = Path(mart.web.__file__).parent / "static"
 
 
 @pytest.mark.parametrize("case", GOLDEN, ids=lambda case: case["name"])
@@ -165,13 +161,6 @@ def test_the_coach_moves_on_when_a_step_was_done(run: Run) -> None:
     coached = run("phone/coach.js", script)
     assert [tip[:1] for tip in coached["tips"]] == ["1", "2", "3", "4", ""]
     assert coached["finished"]
-
-
-def test_arm_colours_are_those_of_the_task_catalogue() -> None:
-    tokens = (STATIC / "css" / "tokens.css").read_text()
-    pages = dict(re.findall(r"--(arm\d): (#[0-9a-f]{6});", tokens))
-    catalogue = {arm.name: arm.color.lower() for arm in get_task("two_arm_multi_cube_lifting", 4).arms}
-    assert pages == catalogue
 
 
 REPEAT = """async ({ repeating }) => {

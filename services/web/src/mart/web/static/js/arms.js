@@ -1,6 +1,7 @@
 // How arms and seats are called and drawn, the same on every page.
 
 import { element } from "./dom.js";
+import { ARM_SYMBOLS } from "./facts.js";
 
 const COLOR_WORDS = { arm0: "Blue", arm1: "Orange", arm2: "Green", arm3: "Pink" };
 
@@ -8,7 +9,7 @@ export const armName = (arm) => (COLOR_WORDS[arm] ? `${COLOR_WORDS[arm]} arm` : 
 
 export const armNumber = (arm) => arm.replace("arm", "");
 
-export const badge = (arm) => element("span", { class: "badge", dataset: { arm }, title: arm }, armNumber(arm));
+export const badge = (arm) => element("span", { class: "badge", dataset: { arm, symbol: ARM_SYMBOLS[arm] ?? "" }, title: arm }, armNumber(arm));
 
 /** Nobody in particular is meant to drive it. */
 export const isFree = (seat) => seat.operator === "hold" || seat.operator === "script";

@@ -2,16 +2,14 @@
 
 import { openRoom } from "./api.js";
 import { byId, element, setText } from "./dom.js";
-
-const RATES_HZ = [20, 30, 60];
-const MOST_EPISODES = 10_000;
+import { CONTROL_RATES_HZ, MAX_NAME_LENGTH, MAX_PLANNED_EPISODES } from "./facts.js";
 
 /** Fills the card `new-room`; `attempt(deed)` runs the opening and shows its failure. */
 export function newRoom(tasks, attempt) {
   const task = element("select", { id: "new-task" }, ...tasks.map(({ name, title }) => element("option", { value: name }, title)));
-  const name = element("input", { id: "new-name", maxlength: 64, pattern: "[a-z0-9][a-z0-9_\\-]*", placeholder: "a free one", spellcheck: "false", autocapitalize: "none", autocomplete: "off" });
-  const rate = element("select", { id: "new-rate" }, ...RATES_HZ.map((hz) => element("option", { value: hz }, `${hz} a second`)));
-  const episodes = element("input", { id: "new-episodes", type: "number", min: 1, max: MOST_EPISODES, inputmode: "numeric", placeholder: "as many as you like" });
+  const name = element("input", { id: "new-name", maxlength: MAX_NAME_LENGTH, pattern: "[a-z0-9][a-z0-9_\\-]*", placeholder: "a free one", spellcheck: "false", autocapitalize: "none", autocomplete: "off" });
+  const rate = element("select", { id: "new-rate" }, ...CONTROL_RATES_HZ.map((hz) => element("option", { value: hz }, `${hz} a second`)));
+  const episodes = element("input", { id: "new-episodes", type: "number", min: 1, max: MAX_PLANNED_EPISODES, inputmode: "numeric", placeholder: "as many as you like" });
   const picture = element("img", { alt: "", width: 384, height: 288 });
   const about = element("p", { class: "soft" });
   const labelled = Object.entries({ Name: name, Ticks: rate, "Good episodes wanted": episodes }).map(([text, input]) => element("label", {}, text, input));

@@ -3,8 +3,8 @@
 import * as api from "./api.js";
 import { armName, badge, isSeen } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
-import { CUES } from "./cues.js";
 import { Driver } from "./drive/driver.js";
+import { CUES } from "./facts.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
 import { HandPanel } from "./hud/hand-panel.js";

@@ -1,6 +1,6 @@
 // Which keys mean what, and what those that are held ask for. Pure.
 
-import { CUES } from "../cues.js";
+import { CUES } from "../facts.js";
 
 const MOTIONS = {
   KeyW: ["move", 2, -1],

@@ -3,6 +3,7 @@
 import * as api from "../api.js";
 import { armName, badge } from "../arms.js";
 import { byId, element, setText } from "../dom.js";
+import { MAX_NOTE_LENGTH } from "../facts.js";
 import { fileSize } from "../words.js";
 import { laneRows, traceRows } from "./lanes.js";
 import { Player } from "./player.js";
@@ -43,7 +44,7 @@ export class EpisodeView {
     const { episode } = details;
     this.outcomes = element("div", { class: "segments", role: "radiogroup", "aria-label": "How it ended" }, ...OUTCOMES.map((one) => this.#outcome(one)));
     this.use = element("input", { type: "checkbox", id: "use", on: { change: () => this.#say({ dropped: !this.use.checked }) } });
-    this.note = element("input", { id: "note", maxlength: 2000, placeholder: "Anything worth remembering" });
+    this.note = element("input", { id: "note", maxlength: MAX_NOTE_LENGTH, placeholder: "Anything worth remembering" });
     this.note.addEventListener("change", () => this.#say({ note: this.note.value }));
     this.subtitle = element("p", { class: "soft" });
     byId("one").replaceChildren(

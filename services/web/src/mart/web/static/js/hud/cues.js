@@ -1,8 +1,9 @@
 // Words to one's partners: a button each, and what was said, for a few seconds.
 
 import { armName, holder } from "../arms.js";
-import { CUES, cueText } from "../cues.js";
+import { cueText } from "../cues.js";
 import { byId, element, setShown, setText } from "../dom.js";
+import { CUES } from "../facts.js";
 import { nowUs } from "../link/seat-link.js";
 
 const SHOWN_MS = 4000;

@@ -1,8 +1,9 @@
 // The right edge: what one drives with, and the phone's pairing code.
 
 import { pairPhone } from "../api.js";
-import { CUES, cueText } from "../cues.js";
+import { cueText } from "../cues.js";
 import { byId, element, setShown, setText } from "../dom.js";
+import { CUES } from "../facts.js";
 
 const HOLD_TO_MOVE = "Hold space or drag the picture to move.";
 

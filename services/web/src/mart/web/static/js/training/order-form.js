@@ -1,15 +1,12 @@
 // What to train: data, a point of the grid planner × actor × residual, and how much of it.
 
 import { element, setShown, setText } from "../dom.js";
+import { MAX_ROLLOUTS, MAX_SEEDS, MODEL_AXES, PAPER_MODELS } from "../facts.js";
 import { dataText, takenText, taskText } from "./words.js";
 
-const AXES = [
-  ["planner", "Planner", [["none", "None"], ["joint", "Joint"], ["per-arm", "Per arm"]]],
-  ["actor", "Actor", [["joint", "Joint"], ["per-arm", "Per arm"]]],
-  ["residual", "Residual", [["none", "None"], ["joint", "Joint"], ["per-arm", "Per arm"]]],
-];
-const PAPER = ["BC-RNN", "HBC", "d-HBC", "dh-HBC", "dl-HBC", "r-HBC", "rd-HBC"];
-const PRESETS = { debug: "Seconds, to try it out", fast: "Minutes on two cores", paper: "The published sizes: hours" };
+const AXES = Object.keys(MODEL_AXES);
+const WIDTHS = { none: "None", joint: "Joint", "per-arm": "Per arm" };
+const SIZES = { debug: "Seconds, to try it out", fast: "Minutes on two cores", paper: "The published sizes: hours" };
 
 export class OrderForm {
   #choices = null;
@@ -49,8 +46,8 @@ export class OrderForm {
     this.task = element("select", { required: true });
     this.name = element("output", { class: "model-name" });
     this.about = element("p", { class: "soft" });
-    this.seeds = element("input", { type: "number", min: 1, max: 64, value: Math.max(1, order.seeds.length), inputmode: "numeric" });
-    this.episodes = element("input", { type: "number", min: 0, max: 1000, value: order.evaluation_episodes, inputmode: "numeric" });
+    this.seeds = element("input", { type: "number", min: 1, max: MAX_SEEDS, value: Math.max(1, order.seeds.length), inputmode: "numeric" });
+    this.episodes = element("input", { type: "number", min: 0, max: MAX_ROLLOUTS, value: order.evaluation_episodes, inputmode: "numeric" });
     this.all = element("input", { type: "checkbox" });
     this.presetText = element("p", { class: "soft" });
     this.executor = element("select", {}, ...executors.map((name) => element("option", { value: name }, name)));
@@ -67,7 +64,7 @@ export class OrderForm {
         element("legend", {}, "Model"),
         element("p", { class: "chosen", "aria-live": "polite" }, this.name),
         this.about,
-        ...AXES.map((axis) => segmented(...axis)),
+        ...AXES.map((axis) => segmented(axis, sentence(axis), MODEL_AXES[axis].map((width) => [width, WIDTHS[width]]))),
         element("div", { class: "names", role: "group", "aria-label": "Named models" }, ...models.map((model) => this.#chip(model))),
         element("label", { class: "inline" }, this.all, "Compare all seven of the paper"),
       ),
@@ -91,7 +88,7 @@ export class OrderForm {
 
   /** A named model sets the grid. */
   #choose(model) {
-    for (const [axis] of AXES) check(this.form, axis, model[axis]);
+    for (const axis of AXES) check(this.form, axis, model[axis]);
     this.#model = model.name;
   }
 
@@ -106,16 +103,16 @@ export class OrderForm {
   }
 
   #render() {
-    const point = AXES.map(([axis]) => this.form.elements[axis].value);
+    const point = AXES.map((axis) => this.form.elements[axis].value);
     const named = this.#modelAt(point);
     this.#model = named?.name ?? point.join("/");
     setText(this.name, this.all.checked ? "All seven" : this.#model);
-    setText(this.about, this.all.checked ? PAPER.join(", ") : (named?.about ?? "A point of the grid that the paper does not name."));
+    setText(this.about, this.all.checked ? PAPER_MODELS.join(", ") : (named?.about ?? "A point of the grid that the paper does not name."));
     for (const chip of this.form.querySelectorAll(".chip")) {
-      chip.setAttribute("aria-pressed", String(this.all.checked ? PAPER.includes(chip.dataset.model) : chip.dataset.model === this.#model));
+      chip.setAttribute("aria-pressed", String(this.all.checked ? PAPER_MODELS.includes(chip.dataset.model) : chip.dataset.model === this.#model));
     }
     setText(this.dataText, this.#chosen ? takenText(this.#chosen) : "");
-    setText(this.presetText, PRESETS[this.form.elements.preset.value] ?? "");
+    setText(this.presetText, SIZES[this.form.elements.preset.value] ?? "");
     setText(this.button, this.all.checked ? "Train all seven" : `Train ${this.#model}`);
     this.button.disabled = this.#choices.data.length === 0;
     setText(this.hint, this.#choices.data.length ? "" : "There are no episodes yet. Record some in the lobby, or let scripts: mart collect");
@@ -123,13 +120,13 @@ export class OrderForm {
 
   /** Several models may share a point: the one chosen by name, else the first. */
   #modelAt(point) {
-    const here = this.#choices.models.filter((model) => AXES.every(([axis], index) => model[axis] === point[index]));
+    const here = this.#choices.models.filter((model) => AXES.every((axis, index) => model[axis] === point[index]));
     return here.find((model) => model.name === this.#model) ?? here[0];
   }
 
   #submit() {
     this.onSubmit({
-      models: this.all.checked ? PAPER : [this.#model],
+      models: this.all.checked ? PAPER_MODELS : [this.#model],
       tasks: [this.task.value],
       data: this.#chosen.path,
       dataset: this.#chosen.name,
@@ -141,6 +138,8 @@ export class OrderForm {
     });
   }
 }
+
+const sentence = (word) => word.charAt(0).toUpperCase() + word.slice(1);
 
 const keyOf = ({ path, name }) => (name ? `${path}#${name}` : path);
 
