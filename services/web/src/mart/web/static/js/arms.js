@@ -18,7 +18,7 @@ export const isFree = (seat) => seat.operator === "hold" || seat.operator === "s
 export const isMachine = (seat) => seat.operator === "script" || seat.operator === "policy";
 
 /** There is a picture from this arm's side. */
-export const isSeen = (seat) => seat.operator === "human" || seat.operator === "policy";
+export const hasPicture = (seat) => seat.operator === "human" || seat.operator === "policy";
 
 /** Who sits there, in one or two words. */
 export function holder(seat) {

@@ -1,15 +1,15 @@
 // The episodes page: what was recorded, one of them in full, and what people say about it.
 
 import { byId, setShown, setText } from "./dom.js";
-import { Curation } from "./episodes/curation.js";
-import { EpisodeList } from "./episodes/list.js";
-import { EpisodeView } from "./episodes/one.js";
+import { CurationForm } from "./episodes/curation-form.js";
+import { EpisodeList } from "./episodes/episode-list.js";
+import { EpisodeView } from "./episodes/episode-view.js";
 import { followRooms } from "./live.js";
 import { isMember, toLobby } from "./member.js";
 
 const RETRY_MS = 2000;
 
-const curation = new Curation({ attempt, onChanged: show });
+const curation = new CurationForm({ attempt, onChanged: show });
 const list = new EpisodeList({ onChange: (query) => go(query), onOpen: (path) => go(new URLSearchParams({ path })), curation });
 const one = new EpisodeView({ attempt, onBack: () => go(list.query) });
 let timer = 0;

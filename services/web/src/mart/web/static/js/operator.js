@@ -1,21 +1,21 @@
 // The operator's page: the picture, the hand that drives, and what is going on.
 
 import * as api from "./api.js";
-import { armName, badge, isSeen } from "./arms.js";
+import { armName, badge, hasPicture } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
-import { Driver } from "./drive/driver.js";
+import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
 import { CUES } from "./facts.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
-import { HandPanel } from "./hud/hand-panel.js";
-import { showHealth } from "./hud/health.js";
+import { InputPanel } from "./hud/input-panel.js";
+import { showLatency } from "./hud/latency.js";
 import { showPartners } from "./hud/partners.js";
-import { Strip } from "./hud/strip.js";
+import { StatusBar } from "./hud/status-bar.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
 import { toLobby } from "./member.js";
-import { waitingText } from "./words.js";
+import { waitingText } from "./formatting.js";
 
 const NOTICE_MS = 6000;
 const MOVED_KEY = "mart.moved";
@@ -27,9 +27,9 @@ let noticeTimer = 0;
 let followed = 0; // the seat epoch that the connection is for
 
 const confirm = new Confirm(() => render());
-const strip = new Strip((command) => run(command));
-const panel = new HandPanel(roomName, armId, (error) => notice(error.message));
-const driver = new Driver(byId("picture"), byCommand);
+const statusBar = new StatusBar((command) => run(command));
+const panel = new InputPanel(roomName, armId, (error) => notice(error.message));
+const driver = new KeyboardMouseInput(byId("picture"), byCommand);
 const link = new SeatLink({
   fetchToken: async () => ({ room: roomName, arm: armId, ...(await api.seatToken(roomName, armId)) }),
   wantsVideo: true,
@@ -83,13 +83,13 @@ function follow(seat) {
   if (!seat || seat.epoch === followed) return;
   followed = seat.epoch;
   status = null;
-  if (isSeen(seat)) link.connect();
+  if (hasPicture(seat)) link.connect();
   else link.close();
 }
 
 function onEvent(event) {
   if (event.room !== roomName) return;
-  if (event.kind === "episode_saved") strip.saved(event);
+  if (event.kind === "episode_saved") statusBar.saved(event);
   if (event.kind === "cue_given") cues.heard(event, room);
   if (event.kind === "notice") notice(event.text);
   render();
@@ -105,8 +105,8 @@ function heard(message) {
 
 function render() {
   const seat = ownSeat();
-  strip.update({ room, seat, link, pending: confirm.pending, isNew: !localStorage.getItem(MOVED_KEY) });
-  showHealth(status, room);
+  statusBar.update({ room, seat, link, pending: confirm.pending, isNew: !localStorage.getItem(MOVED_KEY) });
+  showLatency(status, room);
   panel.update(status, driver.view(status));
   cues.update(room, seat?.mine && drives());
   if (room) showPartners(room, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
@@ -122,18 +122,18 @@ function render() {
 
 function showPicture(seat) {
   const seen = byId("video").videoWidth > 0;
-  const empty = seat && !isSeen(seat) ? NO_PICTURE[seat.operator] : "Connecting to the scene…";
+  const empty = seat && !hasPicture(seat) ? NO_PICTURE[seat.operator] : "Connecting to the scene…";
   setText(byId("no-picture"), empty);
-  setShown(byId("video"), !seat || isSeen(seat)); // its last picture would be an old one
-  setShown(byId("no-picture"), Boolean(seat) && (!seen || !isSeen(seat)));
+  setShown(byId("video"), !seat || hasPicture(seat)); // its last picture would be an old one
+  setShown(byId("no-picture"), Boolean(seat) && (!seen || !hasPicture(seat)));
   byId("picture").classList.toggle("live", seen && link.state === LinkState.LIVE);
 }
 
 /** A key was pressed: some have to be pressed twice. */
 function byCommand(command) {
-  const wanted = command === "next" ? strip.next() : command;
+  const wanted = command === "next" ? statusBar.next() : command;
   if (!wanted) return;
-  if (["success", "failure", "discard", "back"].includes(wanted) && !strip.offers(wanted)) return;
+  if (["success", "failure", "discard", "back"].includes(wanted) && !statusBar.offers(wanted)) return;
   if (confirm.press(wanted)) run(wanted);
 }
 

@@ -6,9 +6,9 @@ import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
 import { everyFrame } from "./drive/ticker.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
-import { Coach } from "./phone/coach.js";
-import { GripperBar, Hold, StopButton } from "./phone/controls.js";
-import { feel, newsIn, stayAwake } from "./phone/feedback.js";
+import { Tutorial } from "./phone/tutorial.js";
+import { ClutchPad, GripperBar, StopButton } from "./phone/controls.js";
+import { vibrate, vibrationsFor, keepScreenOn } from "./phone/feedback.js";
 import { TouchTracker } from "./phone/touch-tracker.js";
 import { canTrack, XrTracker } from "./phone/xr.js";
 
@@ -16,12 +16,12 @@ const PAIRING_KEY = "mart.pairing";
 const COACHED_KEY = "mart.coached";
 
 const gripper = new GripperBar(byId("gripper"));
-const hold = new Hold(byId("hold"), byId("height"), (held) => held && feel("engaged"));
-const stop = new StopButton(byId("stop"), byId("stop-text"), (stopped) => stopped && feel("stopped"));
+const hold = new ClutchPad(byId("hold"), byId("height"), (held) => held && vibrate("engaged"));
+const stop = new StopButton(byId("stop"), byId("stop-text"), (stopped) => stopped && vibrate("stopped"));
 
 let link = null;
 let tracker = null;
-let coach = null;
+let tutorial = null;
 let status = null;
 let sequence = 0;
 let tracking = false;
@@ -93,7 +93,7 @@ function onLinkState() {
 }
 
 async function start(tracks) {
-  stayAwake();
+  keepScreenOn();
   if (link.state === LinkState.REPLACED) link.connect();
   try {
     tracker ??= tracks ? await XrTracker.start(byId("app"), onSessionEnd) : await TouchTracker.start(hold);
@@ -101,14 +101,14 @@ async function start(tracks) {
     say("This phone could not start", `${error.message} Press Start to try again.`);
     return;
   }
-  coach ??= localStorage.getItem(COACHED_KEY) ? null : new Coach(document.body.dataset.mode);
+  tutorial ??= localStorage.getItem(COACHED_KEY) ? null : new Tutorial(document.body.dataset.mode);
   setShown(byId("begin"), false);
 }
 
 function onSessionEnd() {
   tracker = null;
   hold.release();
-  feel("lost");
+  vibrate("lost");
   say("Paused", "Tracking has ended, and the arm holds still. Press Start to go on.");
 }
 
@@ -124,7 +124,7 @@ function sendFrame(nowMs) {
   const pose = tracker?.sample(nowMs) ?? AT_REST;
   if (tracker && tracking && !pose.tracking) {
     hold.release();
-    feel("lost");
+    vibrate("lost");
   }
   tracking = pose.tracking;
   const { position, quaternionWxyz } = pose;
@@ -140,23 +140,23 @@ function sendFrame(nowMs) {
 }
 
 function guide(hand, nowMs) {
-  if (!tracker || !coach?.see(hand, nowMs)) return;
-  feel("step");
+  if (!tracker || !tutorial?.see(hand, nowMs)) return;
+  vibrate("step");
   showLink();
-  if (coach.finished) localStorage.setItem(COACHED_KEY, "yes");
+  if (tutorial.finished) localStorage.setItem(COACHED_KEY, "yes");
 }
 
 function heard(message) {
   if (message.type !== "tick") return;
   if (status === null) gripper.set(message.gripper);
-  newsIn(message, status, document.body.dataset.arm).forEach(feel);
+  vibrationsFor(message, status, document.body.dataset.arm).forEach(vibrate);
   status = message;
   showLink();
 }
 
 function showLink() {
   setText(byId("link"), linkText());
-  setText(byId("hold-text"), coach?.tip || (status?.engaged ? "Moving" : "Hold to move"));
+  setText(byId("hold-text"), tutorial?.tip || (status?.engaged ? "Moving" : "Hold to move"));
 }
 
 function linkText() {

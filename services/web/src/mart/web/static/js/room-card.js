@@ -1,10 +1,10 @@
 // One room in the lobby: its task, its seats and what can be done with each.
 
 import * as api from "./api.js";
-import { armName, badge, holder, isMachine, isSeen } from "./arms.js";
+import { armName, badge, holder, isMachine, hasPicture } from "./arms.js";
 import { element, keepChildren, setShown, setText } from "./dom.js";
 import { machineSelect } from "./machine-select.js";
-import { phaseText, planText, waitingText } from "./words.js";
+import { phaseText, planText, waitingText } from "./formatting.js";
 
 /**
  * `attempt(deed)` runs an action and shows its failure; `policies(task)` gives the promoted ones. Returns the card's node
@@ -124,7 +124,7 @@ function seatRow(room, arm, attempt) {
     machine.update(seat, where, machines);
     setShown(who, seat.operator === "human");
     setShown(machine.node, seat.operator !== "human");
-    setShown(deeds.watch, isSeen(seat) && !seat.mine);
+    setShown(deeds.watch, hasPicture(seat) && !seat.mine);
     setShown(deeds.leave, seat.mine && !seat.relieved);
     setShown(deeds.back, seat.mine && Boolean(seat.relieved));
     setShown(deeds.go, seat.mine);

@@ -4,7 +4,7 @@ const METRES_ACROSS = 1.4; // about what the picture's width shows at the middle
 const RADIANS_ACROSS = 5;
 const WHEEL_M_PER_PX = 0.0004;
 
-/** Feeds `hand` (a VirtualHand) from pointer events on `surface`. Shift or the right button turns instead of moving. */
+/** Feeds `hand` (a VirtualPhone) from pointer events on `surface`. Shift or the right button turns instead of moving. */
 export class Pointer {
   held = false;
 

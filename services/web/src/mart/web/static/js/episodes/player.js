@@ -3,7 +3,7 @@
 import * as api from "../api.js";
 import { armName, badge } from "../arms.js";
 import { element, setText } from "../dom.js";
-import { lengthText } from "./words.js";
+import { lengthText } from "./formatting.js";
 
 const DRIFT_S = 0.12; // more than two pictures apart is seen
 const STEP_S = 1;

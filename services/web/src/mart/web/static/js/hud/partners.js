@@ -2,7 +2,7 @@
 
 import { armName, badge, holder } from "../arms.js";
 import { byId, element, keepChildren, setShown, setText } from "../dom.js";
-import { seconds } from "../words.js";
+import { seconds } from "../formatting.js";
 
 const rows = new Map();
 

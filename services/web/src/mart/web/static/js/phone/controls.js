@@ -8,12 +8,12 @@ const TAP_PX = 12;
 const GRIPPER_STEP = 0.1;
 
 /** Held while at least one finger is on `node`. After `release()` the fingers must be put down anew. */
-export class Hold {
+export class ClutchPad {
   onDrag = () => {};
-  #fingers = new Map(); // pointer id → { x, y, onStrip }
+  #fingers = new Map(); // pointer id → { x, y, onHeightPad }
 
-  constructor(node, strip, onChange) {
-    Object.assign(this, { node, strip, onChange });
+  constructor(node, heightPad, onChange) {
+    Object.assign(this, { node, heightPad, onChange });
     node.addEventListener("pointerdown", (event) => this.#down(event));
     node.addEventListener("pointermove", (event) => this.#move(event));
     for (const type of ["pointerup", "pointercancel", "lostpointercapture"]) {
@@ -34,15 +34,15 @@ export class Hold {
   #down(event) {
     event.preventDefault();
     this.node.setPointerCapture(event.pointerId);
-    const onStrip = this.strip.contains(event.target);
-    this.#fingers.set(event.pointerId, { x: event.clientX, y: event.clientY, onStrip });
+    const onHeightPad = this.heightPad.contains(event.target);
+    this.#fingers.set(event.pointerId, { x: event.clientX, y: event.clientY, onHeightPad });
     this.#tell();
   }
 
   #move({ pointerId, clientX, clientY }) {
     const finger = this.#fingers.get(pointerId);
     if (!finger) return;
-    this.onDrag(clientX - finger.x, clientY - finger.y, finger.onStrip);
+    this.onDrag(clientX - finger.x, clientY - finger.y, finger.onHeightPad);
     Object.assign(finger, { x: clientX, y: clientY });
   }
 

@@ -10,12 +10,12 @@ const PATTERNS = {
 };
 
 /** Buzzes where the phone can; iPhones cannot. */
-export function feel(what) {
+export function vibrate(what) {
   navigator.vibrate?.(PATTERNS[what]);
 }
 
 /** What a hand that drives `arm` should feel of a new status. `before`: the one that it had, or null. */
-export function newsIn(status, before, arm) {
+export function vibrationsFor(status, before, arm) {
   const late = (one) => Boolean(one?.waiting.some((waiting) => waiting.arm === arm));
   const news = [];
   if (late(status) && !late(before)) news.push("late");
@@ -24,7 +24,7 @@ export function newsIn(status, before, arm) {
 }
 
 /** Keeps the screen on while the page is visible. */
-export function stayAwake() {
+export function keepScreenOn() {
   const request = () => {
     // Refused where the battery is low: the person's own setting then decides.
     if (!document.hidden) navigator.wakeLock?.request("screen").catch(() => {});

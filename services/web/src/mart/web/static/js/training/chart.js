@@ -1,6 +1,6 @@
 // Line charts in SVG: a few series over updates, with intervals where they are known. Scales are pure; drawing is below.
 
-import { short } from "./words.js";
+import { short } from "./formatting.js";
 
 const MARGIN = { top: 12, right: 24, bottom: 28, left: 56 };
 const NAMESPACE = "http://www.w3.org/2000/svg";

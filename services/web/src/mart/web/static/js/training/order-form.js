@@ -2,7 +2,7 @@
 
 import { element, setShown, setText } from "../dom.js";
 import { MAX_ROLLOUTS, MAX_SEEDS, MODEL_AXES, PAPER_MODELS } from "../facts.js";
-import { dataText, takenText, taskText } from "./words.js";
+import { dataText, takenText, taskText } from "./formatting.js";
 
 const AXES = Object.keys(MODEL_AXES);
 const WIDTHS = { none: "None", joint: "Joint", "per-arm": "Per arm" };

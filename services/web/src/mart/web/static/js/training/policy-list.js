@@ -2,7 +2,7 @@
 
 import { armName } from "../arms.js";
 import { byId, element, setShown } from "../dom.js";
-import { percent, short, taskText } from "./words.js";
+import { percent, short, taskText } from "./formatting.js";
 
 export class PolicyList {
   #policies = [];

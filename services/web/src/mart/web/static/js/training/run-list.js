@@ -1,7 +1,7 @@
 // Every run in one line: what, how far, how good; ticked ones are in the charts.
 
 import { byId, element, keepChildren, setShown, setText } from "../dom.js";
-import { orderText, percent, plural, progressOf, stateText, taskText } from "./words.js";
+import { orderText, percent, plural, progressOf, stateText, taskText } from "./formatting.js";
 
 export class RunList {
   #rows = new Map();

@@ -2,7 +2,7 @@
 
 import * as api from "../api.js";
 import { byId, element, setShown } from "../dom.js";
-import { failuresText, learnedText, orderText, policyName, short, stateText, successText, taskText } from "./words.js";
+import { failuresText, learnedText, orderText, policyName, short, stateText, successText, taskText } from "./formatting.js";
 
 const RUNNING = ["queued", "running"];
 const FEW = 3;

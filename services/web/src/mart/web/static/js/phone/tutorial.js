@@ -29,7 +29,7 @@ const DONE = [
   ({ gripper }) => gripper >= CLOSED,
 ];
 
-export class Coach {
+export class Tutorial {
   #step = 0;
   #press = null; // { atMs, y, quaternionWxyz }
 

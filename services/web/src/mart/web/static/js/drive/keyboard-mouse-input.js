@@ -4,14 +4,14 @@ import { encodeFrame, Flag } from "./frame.js";
 import { Keyboard } from "./keyboard.js";
 import { Pointer } from "./pointer.js";
 import { everyFrame } from "./ticker.js";
-import { VirtualHand } from "./virtual-hand.js";
+import { VirtualPhone } from "./virtual-phone.js";
 
 const LONGEST_STEP_S = 0.1;
 const CLOSED_ABOVE = 0.15; // a gripper that holds something is neither open nor shut
 
-export class Driver {
+export class KeyboardMouseInput {
   seenTick = 0;
-  #hand = new VirtualHand();
+  #hand = new VirtualPhone();
   #keyboard;
   #pointer;
   #gripper = 0;

@@ -1,9 +1,9 @@
-// The state strip: what is happening, and the next action as the one prominent button.
+// The status bar: what is happening, and the next action as the one prominent button.
 
 import { byId, element, setShown, setText } from "../dom.js";
-import { stripView } from "./strip-view.js";
+import { statusBarView } from "./status-bar-view.js";
 
-export class Strip {
+export class StatusBar {
   #shown = "";
   #saved = null;
 
@@ -20,7 +20,7 @@ export class Strip {
   /** `pending`: the command whose key has to be pressed once more. */
   update({ room, seat, link, pending, isNew }) {
     if (room && ["countdown", "recording"].includes(room.episode.phase)) this.#saved = null;
-    const view = stripView({ room, seat, link, saved: this.#saved, isNew });
+    const view = statusBarView({ room, seat, link, saved: this.#saved, isNew });
     setText(byId("state-label"), view.label);
     byId("state-label").classList.toggle("recording", view.recording);
     setText(byId("state-figure"), view.figure);

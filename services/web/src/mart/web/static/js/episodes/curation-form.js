@@ -2,9 +2,9 @@
 
 import * as api from "../api.js";
 import { byId, element, setShown, setText } from "../dom.js";
-import { allText, curatedText, datasetName, plural } from "./words.js";
+import { allText, curatedText, datasetName, plural } from "./formatting.js";
 
-export class Curation {
+export class CurationForm {
   #chosen = new Set();
   #filter = {};
   #matching = 0;

@@ -24,7 +24,7 @@ const KEYS = [
   ["?", "These keys"],
 ];
 
-export class HandPanel {
+export class InputPanel {
   #expiry = 0;
 
   constructor(room, arm, onFailure) {

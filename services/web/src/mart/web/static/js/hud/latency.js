@@ -12,7 +12,7 @@ export function gradeOf(delayMs) {
 }
 
 /** `status`: the newest message of the status channel, or null while there is none. */
-export function showHealth(status, room) {
+export function showLatency(status, room) {
   const delayMs = status?.latency?.p50_ms ?? null;
   const grade = gradeOf(delayMs);
   setText(byId("delay"), delayMs == null ? "– ms" : `${Math.round(delayMs)} ms`);
@@ -42,7 +42,7 @@ function breakdown(status) {
   ];
 }
 
-/** Without the strip below it. It is smaller than usual where drawing takes too long. */
+/** Without the tick code below it. It is smaller than usual where drawing takes too long. */
 const sizeOf = ({ videoWidth: width }) => (width ? `${width} × ${(width * 3) / 4}` : "–");
 
 const milliseconds = (value) => (value == null ? "–" : `${value.toFixed(0)} ms`);

@@ -3,7 +3,7 @@
 import * as api from "../api.js";
 import { badge } from "../arms.js";
 import { byId, element, setShown, setText } from "../dom.js";
-import { countText, dateText, drivers, lengthText, OUTCOMES, outcomeText, rateText, remarks, VERDICTS } from "./words.js";
+import { countText, dateText, drivers, lengthText, OUTCOMES, outcomeText, rateText, remarks, VERDICTS } from "./formatting.js";
 
 const COUNT = 50;
 const FILTERS = ["task", "outcome", "operator", "skill", "verdict", "dataset"];

@@ -3,7 +3,7 @@
 import { armName } from "../arms.js";
 import { cueText } from "../cues.js";
 import { element } from "../dom.js";
-import { driverText, lengthText } from "./words.js";
+import { driverText, lengthText } from "./formatting.js";
 
 const NAMESPACE = "http://www.w3.org/2000/svg";
 const HEIGHT = 100;

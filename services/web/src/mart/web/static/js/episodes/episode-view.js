@@ -4,10 +4,10 @@ import * as api from "../api.js";
 import { armName, badge } from "../arms.js";
 import { byId, element, setText } from "../dom.js";
 import { MAX_NOTE_LENGTH } from "../facts.js";
-import { fileSize } from "../words.js";
-import { laneRows, traceRows } from "./lanes.js";
+import { fileSize } from "../formatting.js";
+import { laneRows, traceRows } from "./timeline.js";
 import { Player } from "./player.js";
-import { dateText, drivers, lengthText, OUTCOMES, outcomeText, rateText, remarks, verdictText } from "./words.js";
+import { dateText, drivers, lengthText, OUTCOMES, outcomeText, rateText, remarks, verdictText } from "./formatting.js";
 
 export class EpisodeView {
   #player = null;

@@ -10,7 +10,7 @@ const DRAG_SPEED_M_PER_S = 0.8; // under the arm's own limit, so that a drag is 
 const DRAG_TURN_RAD_PER_S = 4;
 
 /** The pose is screen-aligned: x right, y up, z towards the person. It drifts back to the middle while let go. */
-export class VirtualHand {
+export class VirtualPhone {
   position = [0, 0, 0];
   quaternionWxyz = IDENTITY;
   #velocity = [0, 0, 0];

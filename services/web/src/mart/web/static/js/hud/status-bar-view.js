@@ -1,8 +1,8 @@
-// What the state strip says and offers, from what is known. Pure.
+// What the status bar says and offers, from what is known. Pure.
 
 import { armName, holder, isMachine } from "../arms.js";
 import { LinkState } from "../link/seat-link.js";
-import { clockTime, fileSize, outcomeText, planText } from "../words.js";
+import { clockTime, fileSize, outcomeText, planText } from "../formatting.js";
 
 const ACTIONS = {
   ready: { command: "ready", text: "Ready", key: "N", primary: true },
@@ -24,7 +24,7 @@ const ACTIONS = {
  * (`link`: state, problem, role), the newest `saved` episode of this room (null: none yet), and whether one is new
  * here (`isNew`): has not moved the arm yet.
  */
-export function stripView(known) {
+export function statusBarView(known) {
   return { ...whatHappens(known), plan: planText(known.room?.plan) };
 }
 
