@@ -201,7 +201,7 @@ def test_a_hand_feels_what_is_new_and_only_while_it_drives(run: Run) -> None:
 
 def test_whatever_is_typed_becomes_a_name_that_a_data_set_may_have(run: Run) -> None:
     typed = ["Cubes, good", "  -_a", "Ünder 2", "x" * 99, "ok_1-2", "!?"]
-    names = run("episodes/formatting.js", "({ datasetName }, typed) => typed.map(datasetName)", typed)
+    names = run("names.js", "({ nameFrom }, typed) => typed.map((text) => nameFrom(text))", typed)
     assert names == ["cubes-good", "a", "nder-2", "x" * 64, "ok_1-2", ""]
     for name in filter(None, names):
         Label("a", Kind.JOIN, name, 1)

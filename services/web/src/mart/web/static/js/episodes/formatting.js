@@ -1,78 +1,108 @@
 // What the episodes page says. Pure.
 
-export const OUTCOMES = [
-  ["success", "Success"],
-  ["failure", "Failed"],
-  ["discarded", "Discarded"],
-];
+import { plural } from "../formatting.js";
 
-export const outcomeText = (outcome) => Object.fromEntries(OUTCOMES)[outcome] ?? "Not said";
+/** @type {Record<Messages.Outcome, string>} */
+const OUTCOMES = { success: "Success", failure: "Failed", discarded: "Discarded" };
+const NOT_SAID = "Not said";
 
-export const VERDICTS = [
-  ["verified", "Verified"],
-  ["diverged", "Diverged"],
-  ["unverified", "Not verified"],
-];
+/** @type {Record<Verdict, string>} */
+const VERDICTS = { verified: "Verified", diverged: "Diverged", unverified: "Not verified" };
 
-export const verdictText = (verdict) => Object.fromEntries(VERDICTS)[verdict] ?? verdict;
+/** @type {Record<Messages.Operator, string>} */
+const DRIVERS = { human: "Person", policy: "Policy", script: "Script", hold: "Nobody" };
 
-/** 12.34 → "12.3 s", 75 → "1:15" */
+/** @type {Record<Messages.Operator, string>} */
+const NAMELESS = { ...DRIVERS, human: "A person", policy: "A policy" };
+
+/** @typedef {"verified" | "diverged" | "unverified"} Verdict */
+/** @typedef {[value: string, text: string]} Option */
+
+/** How people can say that an episode ended, in words. */
+export const OUTCOME_OPTIONS = /** @type {[Messages.Outcome, string][]} */ (Object.entries(OUTCOMES));
+
+/** The same, and that nobody said. @type {Option[]} */
+export const OUTCOME_FILTERS = [...OUTCOME_OPTIONS, ["unspecified", NOT_SAID]];
+
+/** What re-simulation can have said, in words. @type {Option[]} */
+export const VERDICT_FILTERS = Object.entries(VERDICTS);
+
+/** How an episode ended. @type {(outcome: string) => string} */
+export const outcomeText = (outcome) => wordOf(OUTCOMES, outcome) ?? NOT_SAID;
+
+/** What re-simulation said. @type {(verdict: string) => string} */
+export const verdictText = (verdict) => wordOf(VERDICTS, verdict) ?? verdict;
+
+/** What kind of operator drives. @type {(operator: string) => string} */
+export const driverText = (operator) => wordOf(DRIVERS, operator) ?? operator;
+
+/** @type {(words: Record<string, string>, key: string) => string | undefined} */
+const wordOf = (words, key) => words[key];
+
+/** 12.34 → "12.3 s", 75 → "1:15" @type {(seconds: number) => string} */
 export function lengthText(seconds) {
   if (seconds < 60) return `${seconds.toFixed(1)} s`;
   const whole = Math.round(seconds);
   return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
 }
 
-/** "human Ana | tick 57: hold" → ["Ana", "Nobody"]: who drove, in order, each once. */
+/**
+ * Who drove, in order, each once: "human Ana | tick 57: hold" → ["Ana", "Nobody"]
+ * @type {(text: string) => string[]}
+ */
 export function drivers(text) {
   const shifts = text.split(" | ").map((shift) => shift.replace(/^tick \d+: /, ""));
-  const names = shifts.map((shift) => {
-    const [, kind, name = ""] = shift.match(/^([a-z]+)(?: (.+))?$/) ?? [];
-    return name || { human: "A person", policy: "A policy", script: "Script", hold: "Nobody" }[kind] || shift;
-  });
-  return [...new Set(names)];
+  return [...new Set(shifts.map(driverOf))];
 }
 
-export const driverText = (kind) => ({ human: "Person", policy: "Policy", script: "Script", hold: "Nobody" })[kind] ?? kind;
+/** @type {(shift: string) => string} */
+function driverOf(shift) {
+  const [, operator = "", name = ""] = shift.match(/^([a-z]+)(?: (.+))?$/) ?? [];
+  return name || wordOf(NAMELESS, operator) || shift;
+}
 
 const DAY = new Intl.DateTimeFormat(undefined, { dateStyle: "medium", timeStyle: "short" });
 
-export const dateText = (ms) => (ms ? DAY.format(ms) : "");
+/** When it began; nothing where it is not known. @type {(unixMs: number) => string} */
+export const dateText = (unixMs) => (unixMs ? DAY.format(unixMs) : "");
 
-export const rateText = (factor) => (factor == null ? "–" : `${factor.toFixed(2)}×`);
+/** 0.97 → "0.97×" @type {(factor: number | null) => string} */
+export const rateText = (factor) => (factor === null ? "–" : `${factor.toFixed(2)}×`);
 
-/** What is unusual about it, in a few words. */
+/** What is unusual about an episode, in a few words each. @type {(episode: Api.Episode) => string[]} */
 export function remarks({ complete, repaired, interrupted, missing_ticks: missing, dropped, datasets, error }) {
   if (error) return ["cannot be read"];
   return [
-    datasets.length > 0 && `in ${datasets.join(", ")}`,
-    dropped && "left out of data sets",
-    interrupted && "paused meanwhile",
-    !complete && "incomplete",
-    repaired && "repaired",
-    missing > 0 && `${missing} ${missing === 1 ? "tick" : "ticks"} missing`,
+    datasets.length > 0 ? `in ${datasets.join(", ")}` : "",
+    dropped ? "left out of data sets" : "",
+    interrupted ? "paused meanwhile" : "",
+    complete ? "" : "incomplete",
+    repaired ? "repaired" : "",
+    missing > 0 ? `${plural(missing, "tick")} missing` : "",
   ].filter(Boolean);
 }
 
-export const plural = (count) => `${count} ${count === 1 ? "episode" : "episodes"}`;
-
-/** What is taken where nothing is ticked: also what did not succeed, because a data set is learned from whole. */
+/**
+ * What is taken where nothing is ticked: also what did not succeed, because a data set is learned from whole.
+ * @type {(unsuccessful: number) => string}
+ */
 export function allText(unsuccessful) {
   const failed = unsuccessful ? `, also ${unsuccessful} without success` : "";
   return `All that are shown${failed}; tick some to choose fewer`;
 }
 
-/** "61 episodes joined “cubes-good”. It holds 61 now. Left out: 2 discarded, 1 dropped." */
+/**
+ * "61 episodes joined “cubes-good”. It holds 61 now. Left out: 2 discarded, 1 dropped."
+ * @type {(curated: Messages.CatalogueReplyCurated, did: string) => string}
+ */
 export function curatedText({ dataset, changed, left_out: leftOut, episodes }, did) {
   const why = Object.entries(leftOut).map(([reason, count]) => `${count} ${reason}`);
   const rest = why.length ? ` Left out: ${why.join(", ")}.` : "";
-  return `${plural(changed)} ${did} “${dataset}”. It holds ${episodes} now.${rest}`;
+  return `${plural(changed, "episode")} ${did} “${dataset}”. It holds ${episodes} now.${rest}`;
 }
 
-/** What people type as a name of a data set, as it may be: "Cubes, good" → "cubes-good" */
-export const datasetName = (text) => text.toLowerCase().replace(/[^a-z0-9_]+/g, "-").replace(/^[-_]+/, "").slice(0, 64);
-
+/** "61 episodes, 57 good (93 %)" @type {(listing: Api.EpisodeListing) => string} */
 export function countText({ matching, successes }) {
   if (matching === 0) return "";
-  return `${plural(matching)}, ${successes} good (${Math.round((100 * successes) / matching)} %)`;
+  return `${plural(matching, "episode")}, ${successes} good (${Math.round((100 * successes) / matching)} %)`;
 }
