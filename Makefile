@@ -9,6 +9,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/pip --disable-pip-version-check -qq
+NODE := node_modules
+NODE_BIN := $(NODE)/.bin
 
 # Every part is a distribution of its own; this is the one list of them.
 DISTRIBUTIONS := protocol libraries/runtime libraries/episodes libraries/render libraries/rollouts libraries/operators services/sim services/teleop-gateway services/recorder services/trainer services/web platform
@@ -56,7 +58,7 @@ test-compose: $(VENV)/.tools ## Build the images and collect an episode through 
 	@$(BIN)/pytest tests/compose
 
 .PHONY: check
-check: $(VENV)/.tools check-proto ## Check style, types, import rules, generated code and the repository's own rules
+check: $(VENV)/.tools check-proto check-pages ## Check style, types, import rules, generated code and the repository's own rules
 	@$(BIN)/ruff check
 	@$(BIN)/ruff format --check
 	@$(BIN)/mypy
@@ -84,9 +86,18 @@ check-proto: $(VENV)/.tools
 	diff -r --brief --exclude=__pycache__ "$$fresh/mart/v1" protocol/src/mart/v1 \
 	|| { echo "The generated protobuf code is stale: run 'make proto' and commit the result." >&2; exit 1; }
 
+.PHONY: check-pages
+check-pages: $(NODE)/.installed
+	@$(NODE_BIN)/eslint --max-warnings 0 .
+	@$(NODE_BIN)/tsc
+
 .PHONY: task-pages
 task-pages: $(VENV)/.tools ## Write docs/tasks.md and draw its pictures anew, from the catalogue and the scenes
 	@$(BIN)/python tools/task_pages.py
+
+.PHONY: page-facts
+page-facts: $(VENV)/.tools ## Write what the pages know from the Python parts: lists, limits, colours, types
+	@$(BIN)/python tools/page_facts.py
 
 .PHONY: operator-picture
 operator-picture: $(VENV)/.tools ## Take the picture of the operator's page anew, in a real browser
@@ -98,7 +109,7 @@ constraints: ## Pin the newest versions of everything anew, from a real installa
 
 .PHONY: clean
 clean: ## Remove everything that was built or recorded by tests; recorded episodes stay
-	@rm -rf $(VENV) test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	@rm -rf $(VENV) $(NODE) test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	@find protocol libraries services platform -name '*.egg-info' -prune -exec rm -rf {} + -o -name '*.so' -delete
 
 .PHONY: help
@@ -125,4 +136,10 @@ $(VENV)/.parts: $(VENV)/.build $(PART_SOURCES)
 $(VENV)/.tools: $(VENV)/.parts pyproject.toml
 	@tools/system-packages browser
 	@$(PIP) install --constraint constraints.txt --group dev
+	@touch $@
+
+# Nothing of these packages is run but eslint and tsc, and none of their install scripts.
+$(NODE)/.installed: package.json package-lock.json .npmrc
+	@tools/system-packages pages
+	@npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null
 	@touch $@

@@ -96,11 +96,11 @@ class Person:
         return Phone(page)
 
     def press(self, command: str) -> None:
-        """A button of the state strip: ready, success, failure, discard."""
+        """A button of the status bar: ready, success, failure, discard."""
         self.page.locator(f"#actions button[data-command={command}]").click()
 
     def sees(self, label: str) -> None:
-        """The state strip says so."""
+        """The status bar says so."""
         expect(self.page.locator("#state-label")).to_have_text(label)
 
     def shoot(self, what: str) -> None:

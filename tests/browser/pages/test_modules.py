@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-import mart.web
 from mart.episodes.labels import Kind, Label
-from mart.protocol.tasks import get_task
 from tests.browser.pages.conftest import Run
 
 GOLDEN = json.loads(Path("tests/teleop_gateway/golden/phone_frame.json").read_text())["cases"]
-STATIC = Path(mart.web.__file__).parent / "static"
 
 
 @pytest.mark.parametrize("case", GOLDEN, ids=lambda case: case["name"])
@@ -60,8 +56,8 @@ def test_a_torn_tick_code_is_not_read(run: Run, square: int) -> None:
     assert run("link/tickcode.js", DECODE, luma) is None
 
 
-MOVE = """({ VirtualHand }, { engaged, move, drag, seconds }) => {
-  const hand = new VirtualHand();
+MOVE = """({ VirtualPhone }, { engaged, move, drag, seconds }) => {
+  const hand = new VirtualPhone();
   const steps = [];
   hand.drag(drag);
   for (let at = 0; at < seconds; at += 0.016) {
@@ -77,7 +73,7 @@ def moved(
     run: Run, engaged: bool, move: list[float], drag: list[float], seconds: float = 1.0
 ) -> dict[str, Any]:
     argument = {"engaged": engaged, "move": move, "drag": drag, "seconds": seconds}
-    hand: dict[str, Any] = run("drive/virtual-hand.js", MOVE, argument)
+    hand: dict[str, Any] = run("drive/virtual-phone.js", MOVE, argument)
     return hand
 
 
@@ -150,28 +146,21 @@ def test_h264_without_reencoding_is_preferred_then_vp8(run: Run) -> None:
 
 
 def test_the_coach_moves_on_when_a_step_was_done(run: Run) -> None:
-    script = """({ Coach }) => {
-      const coach = new Coach("xr");
+    script = """({ Tutorial }) => {
+      const tutorial = new Tutorial("xr");
       const still = { held: false, position: [0, 1, 0], quaternionWxyz: [1, 0, 0, 0], gripper: 0 };
       const held = { ...still, held: true };
-      const tips = [coach.tip];
-      const see = (hand, atMs) => coach.see(hand, atMs) && tips.push(coach.tip);
+      const tips = [tutorial.tip];
+      const see = (hand, atMs) => tutorial.see(hand, atMs) && tips.push(tutorial.tip);
       see(still, 0); see(held, 100); see(held, 400); see(still, 450); see(held, 500); see(held, 1000);
       see(held, 1100); see({ ...held, position: [0, 1.06, 0] }, 1200);
       see(held, 1300); see({ ...held, quaternionWxyz: [Math.cos(0.2), 0, Math.sin(0.2), 0] }, 1400);
       see({ ...still, gripper: 0.9 }, 1500);
-      return { tips, finished: coach.finished };
+      return { tips, finished: tutorial.finished };
     }"""
-    coached = run("phone/coach.js", script)
+    coached = run("phone/tutorial.js", script)
     assert [tip[:1] for tip in coached["tips"]] == ["1", "2", "3", "4", ""]
     assert coached["finished"]
-
-
-def test_arm_colours_are_those_of_the_task_catalogue() -> None:
-    tokens = (STATIC / "css" / "tokens.css").read_text()
-    pages = dict(re.findall(r"--(arm\d): (#[0-9a-f]{6});", tokens))
-    catalogue = {arm.name: arm.color.lower() for arm in get_task("two_arm_multi_cube_lifting", 4).arms}
-    assert pages == catalogue
 
 
 REPEAT = """async ({ repeating }) => {
@@ -195,7 +184,7 @@ def test_what_is_asked_for_thrice_is_repeated_once(run: Run) -> None:
 
 
 def test_a_hand_feels_what_is_new_and_only_while_it_drives(run: Run) -> None:
-    script = """({ newsIn }, said) => said.map((one, at) => newsIn(one, said[at - 1] ?? null, "arm0"))"""
+    script = """({ vibrationsFor }, said) => said.map((one, at) => vibrationsFor(one, said[at - 1] ?? null, "arm0"))"""
     said = [
         {"holding": holding, "input": source, "waiting": [{"arm": arm} for arm in late]}
         for holding, source, late in (
@@ -212,14 +201,14 @@ def test_a_hand_feels_what_is_new_and_only_while_it_drives(run: Run) -> None:
 
 def test_whatever_is_typed_becomes_a_name_that_a_data_set_may_have(run: Run) -> None:
     typed = ["Cubes, good", "  -_a", "Ünder 2", "x" * 99, "ok_1-2", "!?"]
-    names = run("episodes/words.js", "({ datasetName }, typed) => typed.map(datasetName)", typed)
+    names = run("names.js", "({ nameFrom }, typed) => typed.map((text) => nameFrom(text))", typed)
     assert names == ["cubes-good", "a", "nder-2", "x" * 64, "ok_1-2", ""]
     for name in filter(None, names):
         Label("a", Kind.JOIN, name, 1)
 
 
 def test_who_takes_all_that_are_shown_knows_how_many_did_not_succeed(run: Run) -> None:
-    texts = run("episodes/words.js", "({ allText }, counts) => counts.map(allText)", [0, 3])
+    texts = run("episodes/formatting.js", "({ allText }, counts) => counts.map(allText)", [0, 3])
     assert texts == [
         "All that are shown; tick some to choose fewer",
         "All that are shown, also 3 without success; tick some to choose fewer",

@@ -1,17 +1,21 @@
 // A WebXR runtime for tests: `window.xrDevice` is the phone, its pose is set by hand. Only what a phone page uses.
 (() => {
+  /** @typedef {ReturnType<typeof device.viewerPose>} Pose */
+
   class Session extends EventTarget {
     visibilityState = "visible";
     #ended = false;
 
-    updateRenderState(state) {
-      this.renderState = state;
+    updateRenderState() {
+      // Nothing is drawn.
     }
 
+    /** @param {string} type */
     async requestReferenceSpace(type) {
       return { type };
     }
 
+    /** @param {(nowMs: number, frame: { session: Session, getViewerPose: () => Pose }) => void} callback */
     requestAnimationFrame(callback) {
       return window.requestAnimationFrame((nowMs) => {
         if (!this.#ended) callback(nowMs, { session: this, getViewerPose: () => device.viewerPose() });
@@ -28,20 +32,21 @@
     position: { x: 0, y: 1.4, z: 0 },
     orientation: { x: 0, y: 0, z: 0, w: 1 },
     tracked: true, // false: the runtime guesses the position
-    session: null,
+    session: /** @type {Session | null} */ (null),
 
     viewerPose() {
       const { position, orientation } = this;
-      return { transform: { position: { ...position }, orientation: { ...orientation } }, emulatedPosition: !this.tracked };
+      const transform = { position: { ...position }, orientation: { ...orientation } };
+      return { transform, emulatedPosition: !this.tracked };
     },
   };
 
   const system = {
+    /** @param {string} mode */
     isSessionSupported: async (mode) => mode === "immersive-ar",
     requestSession: async () => (device.session = new Session()),
   };
 
-  window.xrDevice = device;
-  window.XRWebGLLayer = class {};
+  Object.assign(window, { xrDevice: device, XRWebGLLayer: class {} });
   Object.defineProperty(navigator, "xr", { value: system, configurable: true });
 })();

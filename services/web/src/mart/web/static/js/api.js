@@ -1,6 +1,12 @@
 // The HTTP API of docs/protocol.md. A failure is an ApiError whose message is meant for people.
 
+/** A request that failed: its HTTP status (0 where no server answered), the error's code, and a sentence for people. */
 export class ApiError extends Error {
+  /**
+   * @param {number} status
+   * @param {string} code
+   * @param {string} message
+   */
   constructor(status, code, message) {
     super(message);
     this.status = status;
@@ -8,11 +14,26 @@ export class ApiError extends Error {
   }
 }
 
+/** What to show of anything that was thrown. @type {(error: unknown) => string} */
+export const messageOf = (error) => (error instanceof Error ? error.message : String(error));
+
+/** The HTTP status of a failure, 0 where it is none of the API's. @type {(error: unknown) => number} */
+export const statusOf = (error) => (error instanceof ApiError ? error.status : 0);
+
+/**
+ * @template T what docs/protocol.md says that the answer's JSON is
+ * @param {string} method
+ * @param {string} path below /api
+ * @param {unknown} [body]
+ * @param {Record<string, string>} [headers]
+ * @returns {Promise<T>}
+ */
 async function request(method, path, body, headers = {}) {
-  const options = { method, headers: { ...headers } };
+  /** @type {RequestInit} */
+  const options = { method, headers };
   if (body !== undefined) {
     options.body = JSON.stringify(body);
-    options.headers["Content-Type"] = "application/json";
+    options.headers = { ...headers, "Content-Type": "application/json" };
   }
   let response;
   try {
@@ -26,54 +47,179 @@ async function request(method, path, body, headers = {}) {
   throw new ApiError(response.status, code, message);
 }
 
-const seat = (room, arm) => `/rooms/${encodeURIComponent(room)}/seats/${encodeURIComponent(arm)}`;
+/**
+ * Runs what a press asked for and shows its failure; true where it worked.
+ * @typedef {(action: () => unknown) => Promise<boolean>} Attempt
+ */
 
+const encoded = encodeURIComponent;
+
+/** @type {(token: string) => Record<string, string>} */
+const bearer = (token) => ({ Authorization: `Bearer ${token}` });
+
+// People
+
+/** Joins with the site's join code. @type {(code: string, name: string) => Promise<Api.Person>} */
 export const join = (code, name) => request("POST", "/join", { code, name });
-export const me = () => request("GET", "/me");
-export const rooms = () => request("GET", "/rooms");
-export const findings = () => request("GET", "/health/findings");
-export const tasks = () => request("GET", "/tasks");
-export const openRoom = (wanted) => request("POST", "/rooms", wanted);
-export const closeRoom = (room) => request("DELETE", `/rooms/${encodeURIComponent(room)}`);
-export const takeSeat = (room, arm, operator = "human", policy = "") => request("POST", seat(room, arm), { operator, policy });
-export const leaveSeat = (room, arm) => request("DELETE", seat(room, arm));
-export const handBack = (room, arm) => request("POST", `${seat(room, arm)}/hand-back`);
-export const seatToken = (room, arm) => request("GET", `${seat(room, arm)}/token`);
-export const pairPhone = (room, arm) => request("POST", `${seat(room, arm)}/pair`);
-export const phoneToken = (room, arm, token) =>
-  request("GET", `${seat(room, arm)}/phone-token`, undefined, { Authorization: `Bearer ${token}` });
-export const redeemPairing = (code) => request("POST", "/pair", { code });
-export const act = (room, action, arm) =>
-  request("POST", `/rooms/${encodeURIComponent(room)}/episode`, { action, arm });
-export const sendOffer = (room, arm, token, sdp) =>
-  request("POST", `${seat(room, arm)}/offer`, { sdp }, { Authorization: `Bearer ${token}` });
 
+/** Who one is here; fails with 401 where one has not joined. @type {() => Promise<Api.Person>} */
+export const me = () => request("GET", "/me");
+
+/** How every part does. @type {() => Promise<{ findings: Api.Finding[] }>} */
+export const findings = () => request("GET", "/health/findings");
+
+// Rooms
+
+/** @type {(room: string) => string} */
+const roomPath = (room) => `/rooms/${encoded(room)}`;
+
+/** The rooms as they are now. @type {() => Promise<{ rooms: Api.Room[] }>} */
+export const rooms = () => request("GET", "/rooms");
+
+/** What a new room may be for. @type {() => Promise<{ tasks: Api.TaskOption[], opens_rooms: boolean }>} */
+export const tasks = () => request("GET", "/tasks");
+
+/** Opens a room; the answer is its name. @type {(wanted: Api.NewRoom) => Promise<{ room: string }>} */
+export const openRoom = (wanted) => request("POST", "/rooms", wanted);
+
+/** Closes an empty room. @type {(room: string) => Promise<{ room: string }>} */
+export const closeRoom = (room) => request("DELETE", roomPath(room));
+
+/**
+ * Says how an episode goes on, from one's own seat at `arm`.
+ * @type {(room: string, action: Api.EpisodeAction, arm: string) => Promise<{ room: Api.Room }>}
+ */
+export const actOnEpisode = (room, action, arm) => request("POST", `${roomPath(room)}/episode`, { action, arm });
+
+// Seats
+
+/** @typedef {Promise<{ seat: Api.Seat }>} SeatAnswer */
+
+/** @type {(room: string, arm: string) => string} */
+const seatPath = (room, arm) => `${roomPath(room)}/seats/${encoded(arm)}`;
+
+/**
+ * Takes a seat for oneself, or gives it to a machine; `policy` names a promoted one.
+ * @type {(room: string, arm: string, operator?: Messages.Operator, policy?: string) => SeatAnswer}
+ */
+export const takeSeat = (room, arm, operator = "human", policy = "") =>
+  request("POST", seatPath(room, arm), { operator, policy });
+
+/** Leaves one's own seat. @type {(room: string, arm: string) => SeatAnswer} */
+export const leaveSeat = (room, arm) => request("DELETE", seatPath(room, arm));
+
+/** Gives one's seat back to the machine that had it. @type {(room: string, arm: string) => SeatAnswer} */
+export const handBack = (room, arm) => request("POST", `${seatPath(room, arm)}/hand-back`);
+
+/** What a gateway lets one in for, now. @type {(room: string, arm: string) => Promise<Api.SeatToken>} */
+export const seatToken = (room, arm) => request("GET", `${seatPath(room, arm)}/token`);
+
+/** A code that makes a phone the hand of one's seat. @type {(room: string, arm: string) => Promise<Api.Pairing>} */
+export const pairPhone = (room, arm) => request("POST", `${seatPath(room, arm)}/pair`);
+
+/** What a phone gets for a pairing code, once. @type {(code: string) => Promise<Api.PairedPhone>} */
+export const redeemPairing = (code) => request("POST", "/pair", { code });
+
+/**
+ * Renews a paired phone's token.
+ * @type {(room: string, arm: string, token: string) => Promise<{ token: string, epoch: number }>}
+ */
+export const phoneToken = (room, arm, token) =>
+  request("GET", `${seatPath(room, arm)}/phone-token`, undefined, bearer(token));
+
+/**
+ * Hands a WebRTC offer to the seat's gateway; the answer is the gateway's.
+ * @type {(room: string, arm: string, token: string, sdp: string) => Promise<{ sdp: string }>}
+ */
+export const sendOffer = (room, arm, token, sdp) =>
+  request("POST", `${seatPath(room, arm)}/offer`, { sdp }, bearer(token));
+
+// Recorded episodes
+
+/** @typedef {Promise<{ curated: Messages.CatalogueReplyCurated }>} CurationAnswer */
+
+/** @type {(path: string, part?: string) => string} */
 const episodePath = (path, part = "") => `/episode${part}?${new URLSearchParams({ path })}`;
 
-export const episodes = (query, count) => request("GET", `/episodes?${new URLSearchParams([...query, ["count", count]])}`);
+/** @type {(dataset: string) => string} */
+const datasetPath = (dataset) => `/datasets/${encoded(dataset)}`;
+
+/**
+ * `count` of the episodes that a query lets through; null where no catalogue runs.
+ * @type {(query: URLSearchParams, count: number) => Promise<{ listing: Api.EpisodeListing | null }>}
+ */
+export const episodes = (query, count) =>
+  request("GET", `/episodes?${new URLSearchParams([...query, ["count", String(count)]])}`);
+
+/** One episode in full. @type {(path: string) => Promise<{ details: Api.EpisodeDetails }>} */
 export const episode = (path) => request("GET", episodePath(path));
-export const labelEpisode = (path, said) => request("POST", episodePath(path), said);
-export const curate = (dataset, curation) => request("POST", `/datasets/${encodeURIComponent(dataset)}`, curation);
-export const undoCuration = (dataset, act) => request("POST", `/datasets/${encodeURIComponent(dataset)}/undo`, { act_ns: act });
+
+/**
+ * Says something about an episode; what is absent stays as it is.
+ * @type {(path: string, labels: Api.EpisodeLabels) => Promise<{ episode: Api.Episode }>}
+ */
+export const labelEpisode = (path, labels) => request("POST", episodePath(path), labels);
+
+/**
+ * Puts episodes into a data set, or takes them out of it.
+ * @type {(dataset: string, curation: Api.Curation) => CurationAnswer}
+ */
+export const curate = (dataset, curation) => request("POST", datasetPath(dataset), curation);
+
+/** Takes back what was done at `actNs`. @type {(dataset: string, actNs: string) => CurationAnswer} */
+export const undoCuration = (dataset, actNs) => request("POST", `${datasetPath(dataset)}/undo`, { act_ns: actNs });
+
+/** The address of an episode file. @type {(path: string) => string} */
 export const fileOf = (path) => `/api${episodePath(path, "/file")}`;
+
+/** The address of an episode's last recorded picture. @type {(path: string) => string} */
 export const pictureOf = (path) => `/api${episodePath(path, "/picture")}`;
 
-/** A recorded video, whole. */
+/**
+ * A recorded video, whole.
+ * @param {string} path
+ * @param {string} camera
+ */
 export async function video(path, camera) {
-  const response = await fetch(`/api${episodePath(path, "/video")}&camera=${encodeURIComponent(camera)}`);
-  if (!response.ok) throw new ApiError(response.status, "", "The recorded video cannot be had; reload the page to try again.");
-  return response.blob();
+  const response = await fetch(`/api${episodePath(path, "/video")}&camera=${encoded(camera)}`);
+  if (response.ok) return response.blob();
+  throw new ApiError(response.status, "", "The recorded video cannot be had; reload the page to try again.");
 }
 
-const job = (id) => `/training/jobs/${encodeURIComponent(id)}`;
+// Training
 
+/** @typedef {Promise<{ jobs: Api.Job[] }>} JobsAnswer */
+/** @typedef {Promise<{ policies: Messages.Policy[] }>} PoliciesAnswer */
+
+/** @type {(id: string) => string} */
+const jobPath = (id) => `/training/jobs/${encoded(id)}`;
+
+/** What can be ordered; null where no trainer runs. @type {() => Promise<{ choices: Api.TrainingChoices | null }>} */
 export const trainingChoices = () => request("GET", "/training/choices");
+
+/** All jobs, the newest first. @type {() => JobsAnswer} */
 export const trainingJobs = () => request("GET", "/training/jobs");
-export const trainingJob = (id) => request("GET", job(id));
-export const trainingLog = (id) => request("GET", `${job(id)}/log`);
+
+/** One job in full. @type {(id: string) => Promise<{ details: Api.JobDetails }>} */
+export const trainingJob = (id) => request("GET", jobPath(id));
+
+/** The end of what a job printed. @type {(id: string) => Promise<{ log: string }>} */
+export const trainingLog = (id) => request("GET", `${jobPath(id)}/log`);
+
+/** Orders a training: a job for each model. @type {(order: Api.TrainingOrder) => JobsAnswer} */
 export const train = (order) => request("POST", "/training/jobs", order);
-export const actOnJob = (id, action) => request("POST", job(id), { action });
-export const policies = (task = "") => request("GET", `/training/policies?task=${encodeURIComponent(task)}`);
+
+/** Cancels a job or tries it again. @type {(id: string, action: "cancel" | "retry") => JobsAnswer} */
+export const actOnJob = (id, action) => request("POST", jobPath(id), { action });
+
+/** Promoted policies, of one task or of all. @type {(task?: string) => PoliciesAnswer} */
+export const policies = (task = "") => request("GET", `/training/policies?task=${encoded(task)}`);
+
+/** Gives a checkpoint a name, by which it can take a seat. @type {(promotion: Api.Promotion) => PoliciesAnswer} */
 export const promote = (promotion) => request("POST", "/training/policies", promotion);
-export const withdraw = (policy) => request("DELETE", `/training/policies/${encodeURIComponent(policy)}`);
-export const videoOf = (id, rollout) => `/api${job(id)}/videos/${encodeURIComponent(rollout)}`;
+
+/** Takes a promoted policy away. @type {(policy: string) => PoliciesAnswer} */
+export const withdraw = (policy) => request("DELETE", `/training/policies/${encoded(policy)}`);
+
+/** The address of a rollout's video. @type {(id: string, rollout: string) => string} */
+export const videoOf = (id, rollout) => `/api${jobPath(id)}/videos/${encoded(rollout)}`;

@@ -1,7 +1,13 @@
-// The words that partners can say by one press, in the order of their keys: 1, 2, 3 …
+// The words that partners can say by one press.
 
+/** @type {Record<Messages.Cue, string>} */
 const WORDS = { have_it: "I have it", go: "Go", wait: "Wait", slower: "Slower", thanks: "Thanks" };
 
-export const CUES = Object.keys(WORDS);
+/** A cue as people say it; one that this page does not know, as it is. @type {(cue: string) => string} */
+export const cueText = (cue) => (isCue(cue) ? WORDS[cue] : cue);
 
-export const cueText = (cue) => WORDS[cue] ?? cue;
+/**
+ * @param {string} cue
+ * @returns {cue is Messages.Cue}
+ */
+const isCue = (cue) => cue in WORDS;

@@ -1,17 +1,21 @@
 // The episodes page: what was recorded, one of them in full, and what people say about it.
 
+import { messageOf } from "./api.js";
 import { byId, setShown, setText } from "./dom.js";
-import { Curation } from "./episodes/curation.js";
-import { EpisodeList } from "./episodes/list.js";
-import { EpisodeView } from "./episodes/one.js";
+import { CurationForm } from "./episodes/curation-form.js";
+import { EpisodeList } from "./episodes/episode-list.js";
+import { EpisodeView } from "./episodes/episode-view.js";
 import { followRooms } from "./live.js";
 import { isMember, toLobby } from "./member.js";
 
 const RETRY_MS = 2000;
 
-const curation = new Curation({ attempt, onChanged: show });
-const list = new EpisodeList({ onChange: (query) => go(query), onOpen: (path) => go(new URLSearchParams({ path })), curation });
-const one = new EpisodeView({ attempt, onBack: () => go(list.query) });
+const curation = new CurationForm(attempt, show);
+const list = new EpisodeList(curation, {
+  onChange: (query) => go(query),
+  onOpen: (path) => go(new URLSearchParams({ path })),
+});
+const view = new EpisodeView(attempt, () => go(list.query));
 let timer = 0;
 
 if (await isMember()) start();
@@ -22,6 +26,7 @@ function start() {
   show();
 }
 
+/** @param {URLSearchParams} query */
 function go(query) {
   byId("curated").replaceChildren();
   history.pushState(null, "", query.size ? `/episodes?${query}` : "/episodes");
@@ -36,16 +41,18 @@ async function show() {
   await attempt(() => (path ? showOne(path) : showList(parameters)));
 }
 
+/** @param {string} path */
 async function showOne(path) {
-  await one.open(path);
+  await view.open(path);
   setShown(byId("list"), false);
   setShown(byId("absent"), false);
   setShown(byId("one"), true);
   scrollTo({ top: 0 });
 }
 
+/** @param {URLSearchParams} parameters */
 async function showList(parameters) {
-  one.close();
+  view.close();
   document.title = "Episodes · MART";
   list.adopt(parameters);
   const listing = await list.load();
@@ -56,15 +63,17 @@ async function showList(parameters) {
   else list.show(listing);
 }
 
+/** @param {Api.RoomEvent} event */
 function onEvent(event) {
-  if (event.kind === "episode_saved" && !one.isOpen) show();
+  if (event.kind === "episode_saved" && !view.isOpen) show();
 }
 
-async function attempt(deed) {
+/** @param {() => Promise<void>} action */
+async function attempt(action) {
   setText(byId("page-message"), "");
   try {
-    await deed();
+    await action();
   } catch (error) {
-    setText(byId("page-message"), error.message);
+    setText(byId("page-message"), messageOf(error));
   }
 }

@@ -6,10 +6,17 @@ import { isMember, toLobby } from "./member.js";
 import { repeating } from "./repeating.js";
 
 const REFRESH_MS = 2000;
-const AREAS = { services: "Services", rooms: "Rooms", delays: "Delays", machine: "This machine" };
-const EMPTY = {
-  rooms: "No room is open. The lobby opens one.",
-  delays: "Nobody looks at a picture right now; what they see is measured while they do.",
+const NOT_JOINED = 401;
+
+/** @type {Record<Api.Finding["area"], { title: string, empty: string }>} */
+const AREAS = {
+  services: { title: "Services", empty: "" },
+  rooms: { title: "Rooms", empty: "No room is open. The lobby opens one." },
+  delays: {
+    title: "Delays",
+    empty: "Nobody looks at a picture right now; what they see is measured while they do.",
+  },
+  machine: { title: "This machine", empty: "" },
 };
 
 let shown = "";
@@ -21,43 +28,60 @@ async function refresh() {
     show((await api.findings()).findings);
     setText(byId("page-message"), "");
   } catch (error) {
-    if (error.status === 401) toLobby();
-    setText(byId("page-message"), error.message);
+    if (api.statusOf(error) === NOT_JOINED) toLobby();
+    setText(byId("page-message"), api.messageOf(error));
   }
 }
 
+/** @param {Api.Finding[]} findings */
 function show(findings) {
   const wanted = JSON.stringify(findings);
   if (wanted === shown) return;
   shown = wanted;
   setText(byId("page-title"), headline(findings.filter(({ mend }) => mend).length));
-  byId("areas").replaceChildren(...Object.entries(AREAS).map(([area, title]) => card(title, findings.filter((one) => one.area === area), EMPTY[area])));
+  const cards = Object.entries(AREAS).map(([area, { title, empty }]) =>
+    card(title, findings.filter((one) => one.area === area), empty),
+  );
+  byId("areas").replaceChildren(...cards);
 }
 
+/** @param {number} problems */
 function headline(problems) {
   if (problems === 0) return "Everything is well";
   return problems === 1 ? "One thing needs attention" : `${problems} things need attention`;
 }
 
-/** What does not run and is not needed is neither well nor a problem. */
+/**
+ * What does not run and is not needed is neither well nor a problem.
+ * @param {Api.Finding} finding
+ */
 function lookOf({ found, mend }) {
-  if (mend) return ["poor", "!", "Problem"];
-  return found === "not running" ? ["idle", "–", "Not needed"] : ["well", "✓", "Well"];
+  if (mend) return { kind: "poor", sign: "!", words: "Problem" };
+  if (found === "not running") return { kind: "idle", sign: "–", words: "Not needed" };
+  return { kind: "well", sign: "✓", words: "Well" };
 }
 
+/**
+ * @param {string} title
+ * @param {Api.Finding[]} findings
+ * @param {string} empty
+ */
 function card(title, findings, empty) {
-  const rows = findings.map((finding) => {
-    const { name, found, mend } = finding;
-    const [kind, sign, words] = lookOf(finding);
-    return element(
-      "li",
-      { class: `finding ${kind}` },
-      element("span", { class: "sign", "aria-label": words, role: "img" }, sign),
-      element("span", { class: "name" }, name),
-      element("span", { class: "found soft figures" }, found),
-      element("span", { class: "mend" }, mend),
-    );
-  });
-  const content = rows.length ? element("ul", {}, ...rows) : element("p", { class: "soft" }, empty);
+  const content = findings.length
+    ? element("ul", {}, ...findings.map(row))
+    : element("p", { class: "soft" }, empty);
   return element("section", { class: "card" }, element("h2", {}, title), content);
+}
+
+/** @param {Api.Finding} finding */
+function row(finding) {
+  const { kind, sign, words } = lookOf(finding);
+  return element(
+    "li",
+    { class: `finding ${kind}` },
+    element("span", { class: "sign", "aria-label": words, role: "img" }, sign),
+    element("span", { class: "name" }, finding.name),
+    element("span", { class: "found soft figures" }, finding.found),
+    element("span", { class: "mend" }, finding.mend),
+  );
 }

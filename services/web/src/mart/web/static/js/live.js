@@ -1,17 +1,27 @@
 // The rooms as they change, over one WebSocket that comes back by itself.
 
-import { me } from "./api.js";
+import { me, statusOf } from "./api.js";
 
 const FIRST_RETRY_MS = 250;
 const LONGEST_RETRY_MS = 4000;
+const NOT_JOINED = 401;
 
-/** Calls `onRooms(rooms)`, `onEvent(event)`, `onConnection(connected)` and, where the visit has ended, `onEnded()`. */
+/**
+ * Follows the rooms. `onConnection` is called with every news and when the connection is lost, `onEnded` when the visit
+ * has ended.
+ * @param {object} listeners
+ * @param {(rooms: Api.Room[]) => void} listeners.onRooms
+ * @param {(event: Api.RoomEvent) => void} [listeners.onEvent]
+ * @param {(connected: boolean) => void} [listeners.onConnection]
+ * @param {() => void} [listeners.onEnded]
+ */
 export function followRooms({ onRooms, onEvent = () => {}, onConnection = () => {}, onEnded = () => {} }) {
   let retryMs = FIRST_RETRY_MS;
 
   function open() {
     const socket = new WebSocket(`wss://${location.host}/api/live`);
     socket.addEventListener("message", ({ data }) => {
+      /** @type {Api.LiveMessage} */
       const message = JSON.parse(data);
       retryMs = FIRST_RETRY_MS;
       if (message.rooms) {
@@ -27,7 +37,7 @@ export function followRooms({ onRooms, onEvent = () => {}, onConnection = () => 
     onConnection(false);
     const ended = await me().then(
       () => false,
-      (error) => error.status === 401,
+      (error) => statusOf(error) === NOT_JOINED,
     );
     if (ended) {
       onEnded();

@@ -7,24 +7,35 @@ import { followRooms } from "./live.js";
 import { newRoom } from "./new-room.js";
 import { roomCard } from "./room-card.js";
 
+/** @import { Part } from "./dom.js" */
+
+/** @typedef {{ room: Api.Room, seat: Api.Seat }} Place */
+
 const NAME_KEY = "mart.name";
 const POLICIES_MS = 5000;
 const LOST = "The connection to the server is lost; it comes back by itself.";
-const cards = new Map();
-let rooms = [];
-let policies = [];
 
-const form = byId("join");
-const tryButton = byId("try");
+const form = byId("join", HTMLFormElement);
+const nameInput = byId("name", HTMLInputElement);
+const codeInput = byId("code", HTMLInputElement);
+const tryButton = byId("try", HTMLButtonElement);
+
+/** @type {Map<string, Part<[Api.Room, Messages.Policy[]]>>} */
+const cards = new Map();
+/** @type {Api.Room[]} */
+let rooms = [];
+/** @type {Messages.Policy[]} */
+let policies = [];
+let offered = false; // the form that opens a room
 
 start();
 
 async function start() {
-  byId("name").value = localStorage.getItem(NAME_KEY) ?? "";
-  byId("code").value = new URLSearchParams(location.hash.slice(1)).get("code") ?? "";
+  nameInput.value = localStorage.getItem(NAME_KEY) ?? "";
+  codeInput.value = new URLSearchParams(location.hash.slice(1)).get("code") ?? "";
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    submit(event.submitter?.value === "try");
+    submit(event.submitter instanceof HTMLButtonElement && event.submitter.value === "try");
   });
   tryButton.addEventListener("click", () => attempt(tryIt));
   const person = localStorage.getItem(NAME_KEY) && (await api.me().catch(() => null));
@@ -38,39 +49,37 @@ function askToJoin() {
   setShown(byId("rooms-section"), false);
   setShown(byId("pages"), false);
   setText(byId("me"), "");
-  (byId("name").value && !byId("code").value ? byId("code") : byId("name")).focus();
+  (nameInput.value && !codeInput.value ? codeInput : nameInput).focus();
 }
 
+/** @param {boolean} thenTry */
 async function submit(thenTry) {
-  const name = byId("name").value;
+  const name = nameInput.value;
   const buttons = form.querySelectorAll("button");
   buttons.forEach((button) => (button.disabled = true));
   setText(byId("join-error"), "");
   try {
-    const person = await api.join(byId("code").value, name);
+    const person = await api.join(codeInput.value, name);
     localStorage.setItem(NAME_KEY, name);
     history.replaceState(null, "", "/");
     if (thenTry) ({ rooms } = await api.rooms());
     if (thenTry && (await attempt(tryIt))) return;
     enter(person);
   } catch (error) {
-    setText(byId("join-error"), error.message);
+    setText(byId("join-error"), api.messageOf(error));
   } finally {
     buttons.forEach((button) => (button.disabled = false));
   }
 }
 
+/** @param {Api.Person} person */
 function enter(person) {
   setShown(form, false);
   setShown(byId("go"), true);
   setShown(byId("rooms-section"), true);
   setShown(byId("pages"), true);
   setText(byId("me"), person.name);
-  followRooms({
-    onRooms: show,
-    onEnded: askToJoin,
-    onConnection: tellConnection,
-  });
+  followRooms({ onRooms: show, onEnded: askToJoin, onConnection: showConnection });
   followPolicies();
   offerRooms();
 }
@@ -78,7 +87,8 @@ function enter(person) {
 /** Rooms can be opened and closed where a platform runs them; elsewhere the page says why not, and how. */
 async function offerRooms() {
   const { tasks, opens_rooms: opens } = await api.tasks();
-  if (opens && !byId("new-task")) newRoom(tasks, attempt);
+  if (opens && !offered) newRoom(tasks, attempt);
+  offered ||= opens;
   setShown(byId("new-room"), true);
   setShown(byId("rooms-elsewhere"), !opens);
   byId("task-names").replaceChildren(...tasks.map(({ name }) => element("code", {}, name)));
@@ -91,13 +101,14 @@ async function followPolicies() {
   setTimeout(followPolicies, POLICIES_MS);
 }
 
-const policiesFor = (task) => policies.filter((policy) => policy.task === task);
-
+/** @param {Api.Room[]} latest */
 function show(latest) {
   rooms = latest;
   const names = rooms.map((room) => room.room);
-  keepChildren(byId("rooms"), names, cards, () => roomCard(attempt, policiesFor));
-  rooms.forEach((room) => cards.get(room.room).update(room));
+  keepChildren(byId("rooms"), names, cards, () => roomCard(attempt));
+  for (const room of rooms) {
+    cards.get(room.room)?.update(room, policies.filter((policy) => policy.task === room.task));
+  }
   setShown(byId("empty"), rooms.length === 0);
   showNextAction();
 }
@@ -110,12 +121,17 @@ function showNextAction() {
   setText(byId("try-text"), nextActionText(mine, free));
 }
 
+/**
+ * @param {Place | undefined} mine
+ * @param {Place | undefined} free
+ */
 function nextActionText(mine, free) {
   if (mine) return `${armName(mine.seat.arm)}, ${mine.room.title}`;
   if (free) return `${armName(free.seat.arm)}, with the keyboard. Nothing is recorded until you say so.`;
   return rooms.length ? "Every seat is taken. You can watch until one is free." : "";
 }
 
+/** @type {(list: Api.Room[]) => Place[]} */
 const seatsOf = (list) => list.flatMap((room) => room.seats.map((seat) => ({ room, seat })));
 const ownSeat = () => seatsOf(rooms).find(({ seat }) => seat.mine);
 const firstFreeSeat = () => seatsOf(rooms.filter((room) => !room.stale)).find(({ seat }) => isFree(seat));
@@ -133,24 +149,31 @@ async function tryIt() {
   location.assign(`/rooms/${room.room}/arms/${seat.arm}`);
 }
 
-/** Runs what a press asked for and shows its failure; true where it worked. */
-async function attempt(deed) {
+/**
+ * Runs what a press asked for and shows its failure; true where it worked.
+ * @param {() => unknown} action
+ */
+async function attempt(action) {
   say("");
   try {
-    await deed();
+    await action();
     return true;
   } catch (error) {
-    say(error.message);
+    say(api.messageOf(error));
     return false;
   }
 }
 
-/** Told with every news of the rooms: what a press has failed at stays until the next press. */
-function tellConnection(connected) {
+/**
+ * Called with every news of the rooms: what a press has failed at stays until the next press.
+ * @param {boolean} connected
+ */
+function showConnection(connected) {
   if (!connected) say(LOST);
   else if (byId("lobby-message").textContent === LOST) say("");
 }
 
+/** @param {string} text */
 function say(text) {
   setText(byId("lobby-message"), text);
 }

@@ -3,53 +3,88 @@
 import * as api from "./api.js";
 import { element } from "./dom.js";
 
-/** A select named `label`; `attempt(deed)` runs what is chosen and shows its failure. */
+/** @import { Attempt } from "./api.js" */
+/** @import { Part } from "./dom.js" */
+
+/**
+ * What a choice is made for; `policies` are the promoted ones of the room's task.
+ * @typedef {{ seat: Api.Seat, room: Api.Room, policies: Messages.Policy[] }} Place
+ */
+/** @typedef {{ operator: Messages.Operator, policy: string, text: string }} Choice */
+
+/**
+ * A select of what can drive a seat.
+ * @param {string} label
+ * @param {Attempt} attempt runs what is chosen
+ * @returns {Part<[Place]>}
+ */
 export function machineSelect(label, attempt) {
   const node = element("select", { class: "machine", "aria-label": label, on: { change: () => attempt(choose) } });
-  let seat = null;
-  let room = null;
+  /** @type {Place | null} */
+  let place = null;
   let shown = "";
-  let known = [];
 
   async function choose() {
-    const [operator, policy = ""] = node.value.split(" ");
+    const choice = place && choicesFor(place).find((one) => keyOf(one) === node.value);
+    if (!place || !choice) return;
+    const { operator, policy } = choice;
+    const { room } = place.room;
     try {
-      for (const arm of armsFor(policy)) await api.takeSeat(room.room, arm, operator, policy);
+      for (const arm of armsFor(policy, place)) await api.takeSeat(room, arm, operator, policy);
     } finally {
       shown = ""; // what holds is what the room says
     }
   }
 
-  /** A joint policy drives all its arms that no person holds. */
-  function armsFor(policy) {
-    const joint = known.find((one) => one.name === policy && one.joint);
-    if (!joint) return [seat.arm];
-    return room.seats.filter((one) => joint.arms.includes(one.arm) && one.operator !== "human").map((one) => one.arm);
-  }
-
-  function update(latest, where, policies) {
-    [seat, room, known] = [latest, where, policies];
-    const value = [seat.operator, seat.policy].join(" ").trim();
-    const options = optionsFor(seat, policies);
-    const wanted = JSON.stringify([value, options]);
+  /** @param {Place} latest */
+  function update(latest) {
+    place = latest;
+    const value = keyOf(latest.seat);
+    const choices = choicesFor(latest);
+    const wanted = JSON.stringify([value, choices]);
     if (wanted === shown) return;
     shown = wanted;
-    node.replaceChildren(...options.map(([key, text]) => element("option", { value: key }, text)));
+    node.replaceChildren(...choices.map((one) => element("option", { value: keyOf(one) }, one.text)));
     node.value = value;
   }
 
   return { node, update };
 }
 
-function optionsFor(seat, policies) {
-  const fitting = policies.filter((policy) => policy.arms.includes(seat.arm));
-  const options = [
-    ["hold", "Free"],
-    ["script", "Script"],
-    ...fitting.map((policy) => [`policy ${policy.name}`, policyText(policy)]),
-  ];
-  const isListed = seat.operator !== "policy" || fitting.some((policy) => policy.name === seat.policy);
-  return isListed ? options : [...options, [["policy", seat.policy].join(" ").trim(), seat.name]];
+/** @type {(choice: { operator: Messages.Operator, policy: string }) => string} */
+const keyOf = ({ operator, policy }) => `${operator} ${policy}`.trim();
+
+/**
+ * A joint policy drives all its arms that no person holds.
+ * @param {string} policy
+ * @param {Place} place
+ */
+function armsFor(policy, { seat, room, policies }) {
+  const joint = policies.find((one) => one.name === policy && one.joint);
+  if (!joint) return [seat.arm];
+  return room.seats.filter((one) => joint.arms.includes(one.arm) && one.operator !== "human").map((one) => one.arm);
 }
 
-const policyText = ({ name, model, joint }) => `${name} (${model}${joint ? ", all arms" : ""})`;
+/**
+ * Also a policy that is not on offer, where it drives the seat.
+ * @param {Place} place
+ * @returns {Choice[]}
+ */
+function choicesFor({ seat, policies }) {
+  const fitting = policies.filter((policy) => policy.arms.includes(seat.arm));
+  /** @type {Choice[]} */
+  const choices = [
+    { operator: "hold", policy: "", text: "Free" },
+    { operator: "script", policy: "", text: "Script" },
+    ...fitting.map(policyChoice),
+  ];
+  const isListed = seat.operator !== "policy" || fitting.some((policy) => policy.name === seat.policy);
+  return isListed ? choices : [...choices, { operator: "policy", policy: seat.policy, text: seat.name }];
+}
+
+/** @type {(policy: Messages.Policy) => Choice} */
+const policyChoice = ({ name, model, joint }) => ({
+  operator: "policy",
+  policy: name,
+  text: `${name} (${model}${joint ? ", all arms" : ""})`,
+});

@@ -11,4 +11,5 @@ export async function isMember() {
   return person !== null;
 }
 
+/** Leaves this page for the lobby. */
 export const toLobby = () => location.assign("/");

@@ -1,43 +1,49 @@
 // The operator's page: the picture, the hand that drives, and what is going on.
 
 import * as api from "./api.js";
-import { armName, badge, isSeen } from "./arms.js";
+import { armName, badge, hasPicture } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
-import { CUES } from "./cues.js";
-import { Driver } from "./drive/driver.js";
+import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
+import { CUES } from "./facts.js";
+import { waitingText } from "./formatting.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
-import { HandPanel } from "./hud/hand-panel.js";
-import { showHealth } from "./hud/health.js";
+import { InputPanel } from "./hud/input-panel.js";
+import { showLatency } from "./hud/latency.js";
 import { showPartners } from "./hud/partners.js";
-import { Strip } from "./hud/strip.js";
+import { StatusBar } from "./hud/status-bar.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
 import { toLobby } from "./member.js";
-import { waitingText } from "./words.js";
+
+/** @import { Command } from "./drive/keys.js" */
+/** @import { ActionCommand } from "./hud/status-bar-view.js" */
 
 const NOTICE_MS = 6000;
 const MOVED_KEY = "mart.moved";
-const [, , roomName, , armId] = location.pathname.split("/").map(decodeURIComponent);
+const [, , roomName = "", , armId = ""] = location.pathname.split("/").map(decodeURIComponent);
+const video = byId("video", HTMLVideoElement);
 
+/** @type {Api.Room | null} */
 let room = null;
+/** @type {StatusChannel.Tick | null} */
 let status = null;
 let noticeTimer = 0;
 let followed = 0; // the seat epoch that the connection is for
 
 const confirm = new Confirm(() => render());
-const strip = new Strip((command) => run(command));
-const panel = new HandPanel(roomName, armId, (error) => notice(error.message));
-const driver = new Driver(byId("picture"), byCommand);
+const statusBar = new StatusBar((command) => run(command));
+const panel = new InputPanel(roomName, armId, (error) => notice(api.messageOf(error)));
+const input = new KeyboardMouseInput(byId("picture"), onKey);
 const link = new SeatLink({
   fetchToken: async () => ({ room: roomName, arm: armId, ...(await api.seatToken(roomName, armId)) }),
   wantsVideo: true,
   onState: () => render(),
-  onStatus: heard,
-  onTrack: (stream) => (byId("video").srcObject = stream),
+  onStatus,
+  onTrack: (stream) => (video.srcObject = stream),
 });
-const cues = new Cues(armId, (message) => link.tell(message), () => render());
+const cues = new Cues(armId, (message) => link.send(message), () => render());
 
 begin();
 
@@ -48,29 +54,38 @@ function begin() {
   setText(byId("page-title"), `${armName(armId)} in ${roomName}`);
   setText(byId("arm"), armName(armId));
   setText(byId("room"), roomName);
-  for (const [id, command] of [["gripper", "gripper"], ["stop", "stop"], ["leave", "leave"]]) {
-    byId(id).addEventListener("click", () => run(command));
+  for (const command of /** @type {const} */ (["gripper", "stop", "leave"])) {
+    byId(command).addEventListener("click", () => run(command));
   }
   byId("toggle").addEventListener("click", () => {
-    byId("toggle").setAttribute("aria-pressed", String(driver.toggleHold()));
+    byId("toggle").setAttribute("aria-pressed", String(input.toggleHold()));
   });
   byId("switch").addEventListener("click", () => {
-    link.tell({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" });
+    link.send({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" });
   });
   byId("health").addEventListener("toggle", () => render());
-  byId("video").addEventListener("resize", () => render());
-  document.addEventListener("click", ({ detail, target }) => detail > 0 && target.closest("button")?.blur());
-  watchTicks(byId("video"), (tick, displayedMs) => {
-    driver.seenTick = Math.max(driver.seenTick, tick);
-    link.tell({ type: "seen", tick, t_us: displayedMs * 1000 });
+  video.addEventListener("resize", () => render());
+  document.addEventListener("click", letGoOfButton);
+  watchTicks(video, (tick, displayedMs) => {
+    input.seenTick = Math.max(input.seenTick, tick);
+    link.send({ type: "seen", tick, t_us: displayedMs * 1000 });
   });
-  driver.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));
+  input.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));
   followRooms({ onRooms, onEvent, onEnded: toLobby });
+}
+
+/**
+ * A button that was pressed with the pointer gives the keys back to the arm.
+ * @param {MouseEvent} event
+ */
+function letGoOfButton({ detail, target }) {
+  if (detail > 0 && target instanceof Element) target.closest("button")?.blur();
 }
 
 const ownSeat = () => room?.seats.find((seat) => seat.arm === armId);
 const drives = () => link.role === "browser" && status !== null;
 
+/** @param {Api.Room[]} rooms */
 function onRooms(rooms) {
   // A room that was there and is gone is being restarted, or will be missed: the page stays.
   room = rooms.find((one) => one.room === roomName) ?? (room && { ...room, stale: true });
@@ -78,73 +93,92 @@ function onRooms(rooms) {
   render();
 }
 
-/** Every holder of the seat is a connection of its own; a free seat shows no picture. */
+/**
+ * Every holder of the seat is a connection of its own; a free seat shows no picture.
+ * @param {Api.Seat | undefined} seat
+ */
 function follow(seat) {
   if (!seat || seat.epoch === followed) return;
   followed = seat.epoch;
   status = null;
-  if (isSeen(seat)) link.connect();
+  if (hasPicture(seat)) link.connect();
   else link.close();
 }
 
+/** @param {Api.RoomEvent} event */
 function onEvent(event) {
   if (event.room !== roomName) return;
-  if (event.kind === "episode_saved") strip.saved(event);
-  if (event.kind === "cue_given") cues.heard(event, room);
+  if (event.kind === "episode_saved") statusBar.onSaved(event);
+  if (event.kind === "cue_given") cues.onGiven(event, room);
   if (event.kind === "notice") notice(event.text);
   render();
 }
 
-function heard(message) {
-  if (message.type !== "tick") return;
-  if (status === null) driver.adoptGripper(message.gripper);
-  status = message;
-  if (message.engaged) localStorage.setItem(MOVED_KEY, "yes");
+/** @param {StatusChannel.Tick} tick */
+function onStatus(tick) {
+  if (status === null) input.adoptGripper(tick.gripper);
+  status = tick;
+  if (tick.engaged) localStorage.setItem(MOVED_KEY, "yes");
   render();
 }
 
 function render() {
   const seat = ownSeat();
-  strip.update({ room, seat, link, pending: confirm.pending, isNew: !localStorage.getItem(MOVED_KEY) });
-  showHealth(status, room);
-  panel.update(status, driver.view(status));
-  cues.update(room, seat?.mine && drives());
-  if (room) showPartners(room, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
-  const waiting = room && !room.stale ? waitingText(room) : "";
-  setText(byId("waiting"), waiting);
-  setShown(byId("waiting"), waiting !== "");
+  const mine = seat?.mine ?? false;
+  statusBar.update({ room, seat, link, pending: confirm.pending, isNew: !localStorage.getItem(MOVED_KEY) });
+  showLatency(status, room);
+  panel.update(status, input.view(status));
+  cues.update(room, mine && drives());
+  if (room) showRoom(room);
   showPicture(seat);
-  document.body.classList.toggle("engaged", Boolean(status?.engaged));
-  document.body.classList.toggle("can-drive", Boolean(seat?.mine));
-  setShown(document.querySelector(".hand"), Boolean(seat?.mine) && link.state !== LinkState.REPLACED);
-  setText(byId("leave"), confirm.pending === "leave" ? "Press Q again" : seat?.mine ? "Leave" : "Lobby");
+  document.body.classList.toggle("engaged", status?.engaged ?? false);
+  document.body.classList.toggle("can-drive", mine);
+  setShown(byId("hand"), mine && link.state !== LinkState.REPLACED);
+  const leave = mine ? "Leave" : "Lobby";
+  setText(byId("leave"), confirm.pending === "leave" ? "Press Q again" : leave);
 }
 
+/** @param {Api.Room} shown */
+function showRoom(shown) {
+  showPartners(shown, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
+  const waiting = shown.stale ? "" : waitingText(shown);
+  setText(byId("waiting"), waiting);
+  setShown(byId("waiting"), waiting !== "");
+}
+
+/** @param {Api.Seat | undefined} seat */
 function showPicture(seat) {
-  const seen = byId("video").videoWidth > 0;
-  const empty = seat && !isSeen(seat) ? NO_PICTURE[seat.operator] : "Connecting to the scene…";
+  const seen = video.videoWidth > 0;
+  const empty = (seat && NO_PICTURE[seat.operator]) ?? "Connecting to the scene…";
   setText(byId("no-picture"), empty);
-  setShown(byId("video"), !seat || isSeen(seat)); // its last picture would be an old one
-  setShown(byId("no-picture"), Boolean(seat) && (!seen || !isSeen(seat)));
+  setShown(video, !seat || hasPicture(seat)); // its last picture would be an old one
+  setShown(byId("no-picture"), seat !== undefined && (!seen || !hasPicture(seat)));
   byId("picture").classList.toggle("live", seen && link.state === LinkState.LIVE);
 }
 
-/** A key was pressed: some have to be pressed twice. */
-function byCommand(command) {
-  const wanted = command === "next" ? strip.next() : command;
+/**
+ * A key was pressed: some have to be pressed twice.
+ * @param {Command} command
+ */
+function onKey(command) {
+  const wanted = command === "next" ? statusBar.next() : command;
   if (!wanted) return;
-  if (["success", "failure", "discard", "back"].includes(wanted) && !strip.offers(wanted)) return;
+  if (["success", "failure", "discard", "back"].includes(wanted) && !statusBar.offers(wanted)) return;
   if (confirm.press(wanted)) run(wanted);
 }
 
+/** @type {Partial<Record<Messages.Operator, string>>} */
 const NO_PICTURE = {
   hold: "Nobody drives this arm, so there is no picture.",
   script: "A script drives this arm, so there is no picture until you take over.",
 };
 
-const DEEDS = {
-  gripper: () => driver.switchGripper(),
-  stop: () => driver.switchStop(),
+/** @typedef {Exclude<Command | ActionCommand, Messages.Cue | Api.EpisodeAction | "next">} PageCommand */
+
+/** @type {Record<PageCommand, () => unknown>} */
+const ACTIONS = {
+  gripper: () => input.switchGripper(),
+  stop: () => input.switchStop(),
   help: () => panel.toggleHelp(),
   lobby: toLobby,
   here: () => link.connect(),
@@ -154,22 +188,43 @@ const DEEDS = {
     if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);
     toLobby();
   },
-  ...Object.fromEntries(CUES.map((cue) => [cue, () => cues.give(cue)])),
 };
 
+/** @param {Exclude<Command, "next"> | ActionCommand} command */
 async function run(command) {
-  await attempt(DEEDS[command] ?? (() => api.act(roomName, command, armId)));
+  await attempt(() => perform(command));
   render();
 }
 
-async function attempt(deed) {
+/** @param {Exclude<Command, "next"> | ActionCommand} command */
+function perform(command) {
+  if (isCue(command)) return cues.give(command);
+  if (isPageCommand(command)) return ACTIONS[command]();
+  return api.actOnEpisode(roomName, command, armId);
+}
+
+/**
+ * @param {string} command
+ * @returns {command is PageCommand}
+ */
+const isPageCommand = (command) => command in ACTIONS;
+
+/**
+ * @param {string} command
+ * @returns {command is Messages.Cue}
+ */
+const isCue = (command) => CUES.some((cue) => cue === command);
+
+/** @param {() => unknown} action */
+async function attempt(action) {
   try {
-    await deed();
+    await action();
   } catch (error) {
-    notice(error.message);
+    notice(api.messageOf(error));
   }
 }
 
+/** @param {string} text */
 function notice(text) {
   setText(byId("notice"), text);
   clearTimeout(noticeTimer);

@@ -1,30 +1,37 @@
 // The phone: a hand that is usable without looking.
 
-import { phoneToken, redeemPairing } from "./api.js";
-import { armName } from "./arms.js";
+import { messageOf, phoneToken, redeemPairing } from "./api.js";
+import { armName, theArm } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
+import { IDENTITY } from "./drive/quaternion.js";
 import { everyFrame } from "./drive/ticker.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
-import { Coach } from "./phone/coach.js";
-import { GripperBar, Hold, StopButton } from "./phone/controls.js";
-import { feel, newsIn, stayAwake } from "./phone/feedback.js";
+import { ClutchPad, GripperBar, StopButton } from "./phone/controls.js";
+import { keepScreenOn, vibrate, vibrationsFor } from "./phone/feedback.js";
 import { TouchTracker } from "./phone/touch-tracker.js";
+import { Tutorial } from "./phone/tutorial.js";
 import { canTrack, XrTracker } from "./phone/xr.js";
 
+/** @import { Hand, Mode } from "./phone/tutorial.js" */
+/** @import { Sample } from "./phone/xr.js" */
+
 const PAIRING_KEY = "mart.pairing";
-const COACHED_KEY = "mart.coached";
+const TUTORIAL_DONE_KEY = "mart.coached";
 
 const gripper = new GripperBar(byId("gripper"));
-const hold = new Hold(byId("hold"), byId("height"), (held) => held && feel("engaged"));
-const stop = new StopButton(byId("stop"), byId("stop-text"), (stopped) => stopped && feel("stopped"));
+const clutch = new ClutchPad(byId("hold"), byId("height"), (held) => held && vibrate("engaged"));
+const stop = new StopButton(byId("stop"), byId("stop-text"), (stopped) => stopped && vibrate("stopped"));
 
-let link = null;
+/** @type {XrTracker | TouchTracker | null} */
 let tracker = null;
-let coach = null;
+/** @type {Tutorial | null} */
+let tutorial = null;
+/** @type {StatusChannel.Tick | null} */
 let status = null;
 let sequence = 0;
 let tracking = false;
+let arm = "";
 
 begin();
 
@@ -33,32 +40,42 @@ async function begin() {
   try {
     pairing = await takePairing();
   } catch (error) {
-    say("Not paired", error.message);
+    say("Not paired", messageOf(error));
     return;
   }
   if (!pairing) {
     say("Not paired", "Press “Pair a phone” on the operator's page and scan the code with this phone.");
     return;
   }
-  document.body.dataset.arm = pairing.arm;
-  document.title = `${armName(pairing.arm)} · Phone · MART`;
-  setText(byId("arm"), armName(pairing.arm));
-  const tracks = await canTrack();
-  document.body.dataset.mode = tracks ? "xr" : "touch";
-  setShown(byId("height"), !tracks);
-  say(`${armName(pairing.arm)}, ${pairing.name}`, tracks ? HOW.xr : HOW.touch);
+  arm = pairing.arm;
+  document.body.dataset.arm = arm;
+  document.title = `${armName(arm)} · Phone · MART`;
+  setText(byId("arm"), armName(arm));
+  /** @type {Mode} */
+  const mode = (await canTrack()) ? "xr" : "touch";
+  document.body.dataset.mode = mode;
+  setShown(byId("height"), mode === "touch");
+  say(`${armName(arm)}, ${pairing.name}`, HOW[mode]);
   setShown(byId("start"), true);
-  byId("start").addEventListener("click", () => start(tracks));
-  connect(pairing);
-  document.addEventListener("visibilitychange", () => document.hidden && hold.release());
+  const link = connect(pairing);
+  byId("start").addEventListener("click", () => start(mode, link));
+  document.addEventListener("visibilitychange", () => document.hidden && clutch.release());
 }
 
+/** @type {Record<Mode, string>} */
 const HOW = {
-  xr: "Look at the laptop. Hold the coloured area, and the arm follows this phone. It asks for the camera to know where it is; no picture leaves the phone.",
-  touch: "This browser cannot follow the phone through the room, so the coloured area is a touch pad, and tilting the phone turns the hand.",
+  xr:
+    "Look at the laptop. Hold the coloured area, and the arm follows this phone. It asks for the camera to know " +
+    "where it is; no picture leaves the phone.",
+  touch:
+    "This browser cannot follow the phone through the room, so the coloured area is a touch pad, and tilting the " +
+    "phone turns the hand.",
 };
 
-/** The code in the address works once; what it gave is kept for a reload of this tab. */
+/**
+ * The code in the address works once; what it gave is kept for a reload of this tab.
+ * @returns {Promise<Api.PairedPhone | null>}
+ */
 async function takePairing() {
   const code = location.hash.slice(1);
   if (code) {
@@ -66,106 +83,143 @@ async function takePairing() {
     sessionStorage.removeItem(PAIRING_KEY);
     sessionStorage.setItem(PAIRING_KEY, JSON.stringify(await redeemPairing(code)));
   }
-  return JSON.parse(sessionStorage.getItem(PAIRING_KEY));
+  return JSON.parse(sessionStorage.getItem(PAIRING_KEY) ?? "null");
 }
 
+/** @param {Api.PairedPhone} pairing */
 function connect(pairing) {
-  link = new SeatLink({
+  const link = new SeatLink({
     fetchToken: async () => {
       const renewed = await phoneToken(pairing.room, pairing.arm, pairing.token);
       if (renewed.epoch !== link.epoch) status = null; // somebody else drove meanwhile: the gripper is as they left it
       return { ...pairing, ...renewed };
     },
     wantsVideo: false,
-    onState: onLinkState,
-    onStatus: heard,
+    onState: () => onLinkState(link),
+    onStatus: (tick) => onStatus(tick, link),
   });
   link.connect();
-  everyFrame(sendFrame);
+  everyFrame((nowMs) => sendFrame(link, nowMs));
+  return link;
 }
 
-function onLinkState() {
-  if (link?.state === LinkState.REPLACED) {
-    hold.release();
+/** @param {SeatLink} link */
+function onLinkState(link) {
+  if (link.state === LinkState.REPLACED) {
+    clutch.release();
     say("Another phone drives", "Press Start to drive with this one again.");
   }
-  showLink();
+  showLink(link);
 }
 
-async function start(tracks) {
-  stayAwake();
+/**
+ * @param {Mode} mode
+ * @param {SeatLink} link
+ */
+async function start(mode, link) {
+  keepScreenOn();
   if (link.state === LinkState.REPLACED) link.connect();
   try {
-    tracker ??= tracks ? await XrTracker.start(byId("app"), onSessionEnd) : await TouchTracker.start(hold);
+    tracker ??= mode === "xr" ? await XrTracker.start(byId("app"), onSessionEnd) : await TouchTracker.start(clutch);
   } catch (error) {
-    say("This phone could not start", `${error.message} Press Start to try again.`);
+    say("This phone could not start", `${messageOf(error)} Press Start to try again.`);
     return;
   }
-  coach ??= localStorage.getItem(COACHED_KEY) ? null : new Coach(document.body.dataset.mode);
+  tutorial ??= localStorage.getItem(TUTORIAL_DONE_KEY) ? null : new Tutorial(mode);
   setShown(byId("begin"), false);
 }
 
 function onSessionEnd() {
   tracker = null;
-  hold.release();
-  feel("lost");
+  clutch.release();
+  vibrate("lost");
   say("Paused", "Tracking has ended, and the arm holds still. Press Start to go on.");
 }
 
+/**
+ * @param {string} title
+ * @param {string} text
+ */
 function say(title, text) {
   setText(byId("begin-title"), title);
   setText(byId("begin-text"), text);
   setShown(byId("begin"), true);
 }
 
-const AT_REST = { position: [0, 0, 0], quaternionWxyz: [1, 0, 0, 0], tracking: false, flags: 0 };
+/** @type {Sample} */
+const AT_REST = { position: [0, 0, 0], quaternionWxyz: IDENTITY, tracking: false, flags: 0 };
 
-function sendFrame(nowMs) {
+/**
+ * @param {SeatLink} link
+ * @param {number} nowMs
+ */
+function sendFrame(link, nowMs) {
   const pose = tracker?.sample(nowMs) ?? AT_REST;
   if (tracker && tracking && !pose.tracking) {
-    hold.release();
-    feel("lost");
+    clutch.release();
+    vibrate("lost");
   }
   tracking = pose.tracking;
   const { position, quaternionWxyz } = pose;
-  const flags =
-    pose.flags |
-    (pose.tracking ? Flag.TRACKING : 0) |
-    (hold.held ? Flag.CLUTCH : 0) |
-    (stop.stopped ? Flag.EMERGENCY_STOP : 0);
+  const hand = { position, quaternionWxyz, gripper: gripper.value };
   sequence += 1;
   const seen = { seatEpoch: link.epoch, sequence, seenTick: status?.tick ?? 0, sentUs: nowUs() };
-  link.sendFrame(encodeFrame({ ...seen, position, quaternionWxyz, gripper: gripper.value, flags }));
-  guide({ held: hold.held, position, quaternionWxyz, gripper: gripper.value }, nowMs);
+  link.sendFrame(encodeFrame({ ...seen, ...hand, flags: flagsOf(pose) }));
+  if (tracker) guide({ ...hand, held: clutch.held }, link, nowMs);
 }
 
-function guide(hand, nowMs) {
-  if (!tracker || !coach?.see(hand, nowMs)) return;
-  feel("step");
-  showLink();
-  if (coach.finished) localStorage.setItem(COACHED_KEY, "yes");
+/** @param {Sample} pose */
+function flagsOf(pose) {
+  return (
+    pose.flags |
+    (pose.tracking ? Flag.TRACKING : 0) |
+    (clutch.held ? Flag.CLUTCH : 0) |
+    (stop.stopped ? Flag.EMERGENCY_STOP : 0)
+  );
 }
 
-function heard(message) {
-  if (message.type !== "tick") return;
-  if (status === null) gripper.set(message.gripper);
-  newsIn(message, status, document.body.dataset.arm).forEach(feel);
-  status = message;
-  showLink();
+/**
+ * @param {Hand} hand
+ * @param {SeatLink} link
+ * @param {number} nowMs
+ */
+function guide(hand, link, nowMs) {
+  if (!tutorial?.see(hand, nowMs)) return;
+  vibrate("step");
+  showLink(link);
+  if (tutorial.finished) localStorage.setItem(TUTORIAL_DONE_KEY, "yes");
 }
 
-function showLink() {
-  setText(byId("link"), linkText());
-  setText(byId("hold-text"), coach?.tip || (status?.engaged ? "Moving" : "Hold to move"));
+/**
+ * @param {StatusChannel.Tick} tick
+ * @param {SeatLink} link
+ */
+function onStatus(tick, link) {
+  if (status === null) gripper.set(tick.gripper);
+  vibrationsFor(tick, status, arm).forEach(vibrate);
+  status = tick;
+  showLink(link);
 }
 
-function linkText() {
-  if (link?.state === LinkState.SILENT) return "Connection lost";
-  if (link?.state !== LinkState.LIVE || !status) return link?.problem || "Connecting…";
-  if (status.barrier === "stopped") return stop.stopped ? "Everything is stopped; hold Go on" : "Everything is stopped";
-  if (status.input !== "phone") return "The keyboard drives";
-  const others = status.waiting.filter(({ arm }) => arm !== document.body.dataset.arm);
-  if (others.length) return `Waiting for the ${armName(others[0].arm).toLowerCase()}`;
-  const delay = status.latency ? `${Math.round(status.latency.p50_ms)} ms` : "connected";
+/** @param {SeatLink} link */
+function showLink(link) {
+  setText(byId("link"), linkText(link));
+  setText(byId("hold-text"), tutorial?.tip || (status?.engaged ? "Moving" : "Hold to move"));
+}
+
+/** @param {SeatLink} link */
+function linkText(link) {
+  if (link.state === LinkState.SILENT) return "Connection lost";
+  if (link.state !== LinkState.LIVE || !status) return link.problem || "Connecting…";
+  return statusText(status);
+}
+
+/** @param {StatusChannel.Tick} tick */
+function statusText({ barrier, input, waiting, latency }) {
+  if (barrier === "stopped") return stop.stopped ? "Everything is stopped; hold Go on" : "Everything is stopped";
+  if (input !== "phone") return "The keyboard drives";
+  const other = waiting.find((one) => one.arm !== arm);
+  if (other) return `Waiting for ${theArm(other.arm)}`;
+  const delay = latency ? `${Math.round(latency.p50_ms)} ms` : "connected";
   return tracker ? `${delay}, tracking ${tracking ? "good" : "lost"}` : delay;
 }

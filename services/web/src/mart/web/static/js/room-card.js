@@ -1,69 +1,99 @@
 // One room in the lobby: its task, its seats and what can be done with each.
 
 import * as api from "./api.js";
-import { armName, badge, holder, isMachine, isSeen } from "./arms.js";
+import { armName, badge, hasPicture, holderName, isMachine, theArm } from "./arms.js";
 import { element, keepChildren, setShown, setText } from "./dom.js";
+import { phaseText, plural, planText, waitingText } from "./formatting.js";
 import { machineSelect } from "./machine-select.js";
-import { phaseText, planText, waitingText } from "./words.js";
+
+/** @import { Attempt } from "./api.js" */
+/** @import { Part } from "./dom.js" */
 
 /**
- * `attempt(deed)` runs an action and shows its failure; `policies(task)` gives the promoted ones. Returns the card's node
- * and what updates it.
+ * What a seat's row shows; `holdsOne`: whoever looks has a seat in this room.
+ * @typedef {{ seat: Api.Seat, room: Api.Room, policies: Messages.Policy[], holdsOne: boolean }} SeatNews
  */
-export function roomCard(attempt, policies) {
+
+/**
+ * A card that shows a room, and the promoted policies of its task.
+ * @param {Attempt} attempt
+ * @returns {Part<[Api.Room, Messages.Policy[]]>}
+ */
+export function roomCard(attempt) {
   const title = element("h2");
-  const picture = element("img", { class: "scene", alt: "", width: 384, height: 288 });
-  let shown = { room: "", task: "", still: 0 };
-  picture.addEventListener("error", () => {
-    if (shown.still) picture.src = sceneOf(shown.task); // nobody looks any more
-    else picture.remove(); // a newer sim's task
-  });
-  const close = closing(attempt);
+  const scene = scenePicture();
+  const close = closeButton(attempt);
   const phase = element("span", { class: "soft" });
   const instruction = element("p");
   const seats = element("ul", { class: "seats" });
   const facts = { id: element("span"), rate: element("span"), plan: element("strong"), saved: element("span") };
+  const about = element("div", {}, element("header", {}, title, phase), instruction);
   const node = element(
     "article",
     { class: "room card" },
-    element("div", { class: "about" }, picture, element("div", {}, element("header", {}, title, phase), instruction)),
+    element("div", { class: "about" }, scene.node, about),
     seats,
     element("p", { class: "room-facts figures" }, ...Object.values(facts), close.node),
   );
+  /** @type {Map<string, Part<[SeatNews]>>} */
   const rows = new Map();
 
-  /** What somebody sees there now; where nobody looks, the task's scene. */
-  function show({ room, task, title, still }) {
-    shown = { room, task, still };
-    picture.src = still ? `/api/rooms/${room}/still?number=${still}` : sceneOf(task);
-    picture.alt = still ? `${title} in ${room}, now` : "";
-  }
-
-  function update(room) {
+  /**
+   * @param {Api.Room} room
+   * @param {Messages.Policy[]} policies
+   */
+  function update(room, policies) {
     setText(title, room.title);
-    if (shown.room !== room.room || shown.task !== room.task || shown.still !== room.still) show(room);
+    scene.update(room);
     close.update(room);
     setText(phase, room.stale ? "Not answering" : waitingText(room) || phaseText(room.episode));
     setText(instruction, room.instruction);
     setText(facts.id, room.room);
     setText(facts.rate, `${room.real_time_factor.toFixed(2)}× real time`);
     setText(facts.plan, planText(room.plan));
-    setShown(facts.plan, Boolean(room.plan));
+    setShown(facts.plan, room.plan !== null);
     setText(facts.saved, savedText(room));
     const arms = room.seats.map((seat) => seat.arm);
     keepChildren(seats, arms, rows, (arm) => seatRow(room.room, arm, attempt));
     const holdsOne = room.seats.some((seat) => seat.mine);
-    const machines = policies(room.task);
-    room.seats.forEach((seat) => rows.get(seat.arm).update(seat, { room, holdsOne, machines }));
+    for (const seat of room.seats) rows.get(seat.arm)?.update({ seat, room, policies, holdsOne });
   }
 
   return { node, update };
 }
 
+/**
+ * What somebody sees in a room now; where nobody looks, the task's scene.
+ * @returns {Part<[Api.Room]>}
+ */
+function scenePicture() {
+  const node = element("img", { class: "scene", alt: "", width: 384, height: 288 });
+  let shown = { room: "", task: "", still: 0 };
+  node.addEventListener("error", () => {
+    if (shown.still) node.src = sceneOf(shown.task); // nobody looks any more
+    else node.remove(); // a newer sim's task
+  });
+
+  /** @param {Api.Room} room */
+  function update({ room, task, title, still }) {
+    if (shown.room === room && shown.task === task && shown.still === still) return;
+    shown = { room, task, still };
+    node.src = still ? `/api/rooms/${room}/still?number=${still}` : sceneOf(task);
+    node.alt = still ? `${title} in ${room}, now` : "";
+  }
+
+  return { node, update };
+}
+
+/** @type {(task: string) => string} */
 const sceneOf = (task) => `/static/tasks/${task}.jpg`;
 
-/** For a room that nobody needs: pressed twice, and only while it is empty. */
-function closing(attempt) {
+/**
+ * For a room that nobody needs: pressed twice, and only while it is empty.
+ * @param {Attempt} attempt
+ * @returns {Part<[Api.Room]>}
+ */
+function closeButton(attempt) {
   let room = "";
   let sure = false;
   const press = () => {
@@ -73,10 +103,12 @@ function closing(attempt) {
   };
   const node = element("button", { type: "button", class: "quiet close", on: { click: press } }, "Close room");
 
+  /** @param {Api.Room} latest */
   function update(latest) {
     room = latest.room;
     node.setAttribute("aria-label", `Close ${room}`);
-    const busy = latest.seats.some((seat) => seat.operator === "human") || ["countdown", "recording"].includes(latest.episode.phase);
+    const records = ["countdown", "recording"].includes(latest.episode.phase);
+    const busy = records || latest.seats.some((seat) => seat.operator === "human");
     setShown(node, !busy);
     if (busy) sure = false;
   }
@@ -84,55 +116,71 @@ function closing(attempt) {
   return { node, update };
 }
 
+/** @param {Api.Room} room */
 function savedText({ episodes_saved: saved, episodes_good: good }) {
-  if (saved === 0) return "No episode yet";
-  return `${saved} ${saved === 1 ? "episode" : "episodes"} saved, ${good} good`;
+  return saved === 0 ? "No episode yet" : `${plural(saved, "episode")} saved, ${good} good`;
 }
 
+/**
+ * @param {string} room
+ * @param {string} arm
+ * @param {Attempt} attempt
+ * @returns {Part<[SeatNews]>}
+ */
 function seatRow(room, arm, attempt) {
   const who = element("span", { class: "soft" });
-  const press = (text, deed, kind = "") => {
-    const label = `${text}: ${armName(arm)} in ${room}`;
-    const on = { click: () => attempt(deed) };
-    return element("button", { type: "button", class: kind, "aria-label": label, on }, text);
-  };
-  const path = `/rooms/${room}/arms/${arm}`;
-  const drive = async () => {
-    await api.takeSeat(room, arm);
-    location.assign(path);
-  };
-  const machine = machineSelect(`Who drives the ${armName(arm).toLowerCase()} in ${room}`, attempt);
-  const deeds = {
-    watch: element("a", { class: "button quiet", href: path, "aria-label": `Watch: ${armName(arm)} in ${room}` }, "Watch"),
-    leave: press("Leave", () => api.leaveSeat(room, arm), "quiet"),
-    back: press("Hand back", () => api.handBack(room, arm)),
-    go: element("a", { class: "button", href: path }, "Drive"),
-    over: press("Take over", drive),
-    take: press("Take seat", drive),
-  };
+  const machine = machineSelect(`Who drives ${theArm(arm)} in ${room}`, attempt);
+  const actions = seatActions(room, arm, attempt);
   const name = element("span", { class: "arm-name" }, armName(arm));
   const node = element(
     "li",
     { class: "seat", dataset: { arm } },
     badge(arm),
     element("span", { class: "who" }, name, who, machine.node),
-    element("span", { class: "deeds" }, ...Object.values(deeds)),
+    element("span", { class: "deeds" }, ...Object.values(actions)),
   );
 
-  function update(seat, { room: where, holdsOne, machines }) {
-    setText(who, seatText(seat));
-    machine.update(seat, where, machines);
+  /** @param {SeatNews} news */
+  function update({ seat, room: where, policies, holdsOne }) {
+    setText(who, seat.ready ? `${holderName(seat)}, ready` : holderName(seat));
+    machine.update({ seat, room: where, policies });
     setShown(who, seat.operator === "human");
     setShown(machine.node, seat.operator !== "human");
-    setShown(deeds.watch, isSeen(seat) && !seat.mine);
-    setShown(deeds.leave, seat.mine && !seat.relieved);
-    setShown(deeds.back, seat.mine && Boolean(seat.relieved));
-    setShown(deeds.go, seat.mine);
-    setShown(deeds.over, isMachine(seat) && !holdsOne);
-    setShown(deeds.take, seat.operator === "hold" && !holdsOne);
+    setShown(actions.watch, hasPicture(seat) && !seat.mine);
+    setShown(actions.leave, seat.mine && !seat.relieved);
+    setShown(actions.back, seat.mine && Boolean(seat.relieved));
+    setShown(actions.go, seat.mine);
+    setShown(actions.over, isMachine(seat) && !holdsOne);
+    setShown(actions.take, seat.operator === "hold" && !holdsOne);
   }
 
   return { node, update };
 }
 
-const seatText = (seat) => (seat.ready ? `${holder(seat)}, ready` : holder(seat));
+/**
+ * Everything that can be done with a seat, each a button or a link.
+ * @param {string} room
+ * @param {string} arm
+ * @param {Attempt} attempt
+ */
+function seatActions(room, arm, attempt) {
+  const path = `/rooms/${room}/arms/${arm}`;
+  const where = `${armName(arm)} in ${room}`;
+  /** @type {(text: string, action: () => unknown, kind?: string) => HTMLElement} */
+  const button = (text, action, kind = "") => {
+    const on = { click: () => attempt(action) };
+    return element("button", { type: "button", class: kind, "aria-label": `${text}: ${where}`, on }, text);
+  };
+  const drive = async () => {
+    await api.takeSeat(room, arm);
+    location.assign(path);
+  };
+  return {
+    watch: element("a", { class: "button quiet", href: path, "aria-label": `Watch: ${where}` }, "Watch"),
+    leave: button("Leave", () => api.leaveSeat(room, arm), "quiet"),
+    back: button("Hand back", () => api.handBack(room, arm)),
+    go: element("a", { class: "button", href: path }, "Drive"),
+    over: button("Take over", drive),
+    take: button("Take seat", drive),
+  };
+}

@@ -12,17 +12,17 @@ import { RunList } from "./training/run-list.js";
 import { RunView } from "./training/run-view.js";
 
 const REFRESH_MS = 2000;
+const WIDE = "(min-width: 64rem)";
 
 const refresh = repeating(lookAgain, REFRESH_MS);
 
 const form = new OrderForm(byId("order"), new URLSearchParams(location.search).get("dataset"), submit);
 const comparison = new Comparison();
-const runs = new RunList(comparison, { onSelect: refresh, onAct: act });
+const runs = new RunList(comparison, refresh);
 const view = new RunView({ onAct: act, onPromote: promote });
 const policies = new PolicyList({ onSeat: seat, onWithdraw: withdraw });
+const newTraining = byId("new", HTMLDetailsElement);
 
-let choices = null;
-let jobs = [];
 let first = true;
 
 if (await isMember()) start();
@@ -34,29 +34,32 @@ function start() {
 
 async function lookAgain() {
   try {
-    ({ choices } = await api.trainingChoices());
+    const { choices } = await api.trainingChoices();
     setShown(byId("absent"), choices === null);
     setShown(byId("bench"), choices !== null);
-    if (choices !== null) {
-      await load();
-      show();
-    }
+    if (choices) show(choices, await load());
   } catch (error) {
-    say(error.message);
+    say(api.messageOf(error));
   }
 }
 
+/** Everything that is shown, the choices left out. */
 async function load() {
-  ({ jobs } = await api.trainingJobs());
+  const { jobs } = await api.trainingJobs();
   comparison.keep(jobs);
   await comparison.load(async (id) => (await api.trainingJob(id)).details);
   policies.show((await api.policies()).policies);
+  return jobs;
 }
 
-function show() {
+/**
+ * @param {Api.TrainingChoices} choices
+ * @param {Api.Job[]} jobs
+ */
+function show(choices, jobs) {
   say("");
   setText(byId("page-text"), choices.device === "cpu" ? "Trains on the processor." : `Trains on ${choices.device}.`);
-  if (first) byId("new").open = jobs.length === 0 || matchMedia("(min-width: 64rem)").matches;
+  if (first) newTraining.open = jobs.length === 0 || matchMedia(WIDE).matches;
   first = false;
   form.show(choices);
   runs.show(jobs);
@@ -64,39 +67,49 @@ function show() {
   view.show(comparison.current);
 }
 
+/** @param {Api.TrainingOrder} order */
 async function submit(order) {
   await attempt(async () => {
-    const { jobs: submitted } = await api.train(order);
-    comparison.select(submitted.slice(0, comparison.most).map((job) => job.id));
-    if (!matchMedia("(min-width: 64rem)").matches) byId("new").open = false;
+    const { jobs } = await api.train(order);
+    comparison.select(jobs.slice(0, comparison.most).map((job) => job.id));
+    if (!matchMedia(WIDE).matches) newTraining.open = false;
   });
 }
 
+/** @type {(job: string, action: "cancel" | "retry") => Promise<boolean>} */
 function act(job, action) {
   return attempt(() => api.actOnJob(job, action));
 }
 
+/** @type {(promotion: Api.Promotion) => Promise<boolean>} */
 function promote(promotion) {
   return attempt(() => api.promote(promotion));
 }
 
+/** @type {(policy: string) => Promise<boolean>} */
 function withdraw(policy) {
   return attempt(() => api.withdraw(policy));
 }
 
-/** At one arm; a joint policy drives all its arms that no person holds. */
+/**
+ * At one arm; a joint policy drives all its arms that no person holds.
+ * @type {(policy: string, room: string, arms: string[]) => Promise<boolean>}
+ */
 function seat(policy, room, arms) {
   return attempt(async () => {
     for (const arm of arms) await api.takeSeat(room, arm, "policy", policy);
   });
 }
 
-/** Runs what a press asked for, shows its failure, and then what holds; true where it worked. */
-async function attempt(deed) {
+/**
+ * Runs what a press asked for, shows its failure, and then what holds; true where it worked.
+ * @type {api.Attempt}
+ */
+async function attempt(action) {
   try {
-    await deed();
+    await action();
   } catch (error) {
-    say(error.message);
+    say(api.messageOf(error));
     byId("page-message").scrollIntoView({ block: "nearest" });
     return false;
   }
@@ -104,6 +117,7 @@ async function attempt(deed) {
   return true;
 }
 
+/** @param {string} text */
 function say(text) {
   setText(byId("page-message"), text);
 }

@@ -2,65 +2,91 @@
 
 import { commandOf, directionOf, isMotion } from "./keys.js";
 
+/** @import { Command } from "./keys.js" */
+
 const AFTER_RELEASE_MS = 500; // a key that was meant to move must not end the episode
 const CLUTCH = "Space";
 
+/** Which keys are held, and a call for each that commands. */
 export class Keyboard {
   toggles = false; // space switches instead of being held
+  /** @type {Set<string>} */
   #held = new Set();
   #clutch = false;
   #releasedMs = -Infinity;
+  #onCommand;
 
-  /** `onCommand(name)` is called for what keys.js names. */
+  /** @param {(command: Command) => void} onCommand */
   constructor(onCommand) {
-    this.onCommand = onCommand;
+    this.#onCommand = onCommand;
     addEventListener("keydown", (event) => this.#down(event));
     addEventListener("keyup", (event) => this.#up(event));
     addEventListener("blur", () => this.release());
     document.addEventListener("visibilitychange", () => document.hidden && this.release());
   }
 
-  /** What is asked for now: `{ engaged, move, turn, slow }`. */
+  /** What is asked for now. */
   sample() {
     const slow = this.#held.has("ShiftLeft") || this.#held.has("ShiftRight");
     return { engaged: this.#clutch, slow, ...directionOf(this.#held) };
   }
 
+  /** Lets go of every key. */
   release() {
     this.#held.clear();
     this.#setClutch(false);
   }
 
+  /** @param {KeyboardEvent} event */
   #down(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey || belongsToControl(event)) return;
-    const { code } = event;
-    const known = code === CLUTCH || isMotion(code) || commandOf(code);
-    if (known) event.preventDefault();
-    if (event.repeat) return;
-    this.#held.add(code);
-    if (code === CLUTCH) this.#setClutch(this.toggles ? !this.#clutch : true);
-    else if (known && !this.#moves(code, event.timeStamp)) this.onCommand(commandOf(code));
+    if (isShortcut(event) || belongsToControl(event)) return;
+    const { code, repeat, timeStamp } = event;
+    if (code === CLUTCH || isMotion(code) || commandOf(code)) event.preventDefault();
+    if (!repeat) this.#press(code, timeStamp);
   }
 
+  /**
+   * @param {string} code
+   * @param {number} nowMs
+   */
+  #press(code, nowMs) {
+    this.#held.add(code);
+    const command = commandOf(code);
+    if (code === CLUTCH) this.#setClutch(this.toggles ? !this.#clutch : true);
+    else if (command && !this.#moves(code, nowMs)) this.#onCommand(command);
+  }
+
+  /** @param {KeyboardEvent} event */
   #up({ code }) {
     this.#held.delete(code);
     if (code === CLUTCH && !this.toggles) this.#setClutch(false);
   }
 
+  /**
+   * A key that both moves and commands moves while one drives.
+   * @param {string} code
+   * @param {number} nowMs
+   */
   #moves(code, nowMs) {
-    const driving = this.#clutch || nowMs - this.#releasedMs < AFTER_RELEASE_MS;
-    return !commandOf(code) || (isMotion(code) && driving);
+    return isMotion(code) && (this.#clutch || nowMs - this.#releasedMs < AFTER_RELEASE_MS);
   }
 
+  /** @param {boolean} held */
   #setClutch(held) {
     if (this.#clutch && !held) this.#releasedMs = performance.now();
     this.#clutch = held;
   }
 }
 
-/** A focused button or field keeps its own keys; with nothing focused the keys drive. */
+/** The browser's own keys. @param {KeyboardEvent} event */
+const isShortcut = ({ ctrlKey, metaKey, altKey }) => ctrlKey || metaKey || altKey;
+
+/**
+ * A focused button or field keeps its own keys; with nothing focused the keys drive.
+ * @param {KeyboardEvent} event
+ */
 function belongsToControl({ target, code }) {
   if (!(target instanceof Element)) return false;
   if (target.closest("input, select, textarea")) return true;
-  return target.closest("button, a, summary") && (code === CLUTCH || code === "Enter");
+  return target.closest("button, a, summary") !== null && (code === CLUTCH || code === "Enter");
 }

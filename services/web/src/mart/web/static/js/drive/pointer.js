@@ -1,16 +1,24 @@
-// Mouse, pen or finger on the picture: dragging holds the clutch and moves the hand in the picture's plane.
+// Mouse, pen or finger on the picture: dragging holds the clutch and moves the phone in the picture's plane.
+
+/** @import { VirtualPhone } from "./virtual-phone.js" */
 
 const METRES_ACROSS = 1.4; // about what the picture's width shows at the middle of the table
 const RADIANS_ACROSS = 5;
 const WHEEL_M_PER_PX = 0.0004;
 
-/** Feeds `hand` (a VirtualHand) from pointer events on `surface`. Shift or the right button turns instead of moving. */
+/** Moves a virtual phone by pointer events on `surface`. Shift or the right button turns instead of moving. */
 export class Pointer {
   held = false;
+  #surface;
+  #phone;
 
-  constructor(surface, hand) {
-    this.surface = surface;
-    this.hand = hand;
+  /**
+   * @param {HTMLElement} surface
+   * @param {VirtualPhone} phone
+   */
+  constructor(surface, phone) {
+    this.#surface = surface;
+    this.#phone = phone;
     surface.addEventListener("pointerdown", (event) => this.#down(event));
     surface.addEventListener("pointermove", (event) => this.#move(event));
     for (const type of ["pointerup", "pointercancel", "lostpointercapture"]) {
@@ -20,27 +28,30 @@ export class Pointer {
     surface.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
   }
 
+  /** @param {PointerEvent} event */
   #down(event) {
     event.preventDefault();
-    document.activeElement?.blur();
-    this.surface.setPointerCapture(event.pointerId);
+    if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
+    this.#surface.setPointerCapture(event.pointerId);
     this.held = true;
   }
 
+  /** @param {PointerEvent} event */
   #move({ movementX, movementY, shiftKey, buttons }) {
     if (!this.held) return;
-    const width = this.surface.clientWidth;
+    const width = this.#surface.clientWidth;
     if (shiftKey || buttons & 2) {
       const perPx = RADIANS_ACROSS / width;
-      this.hand.drag([0, 0, 0], [movementY * perPx, movementX * perPx, 0]);
+      this.#phone.drag([0, 0, 0], [movementY * perPx, movementX * perPx, 0]);
     } else {
       const perPx = METRES_ACROSS / width;
-      this.hand.drag([movementX * perPx, -movementY * perPx, 0]);
+      this.#phone.drag([movementX * perPx, -movementY * perPx, 0]);
     }
   }
 
+  /** @param {WheelEvent} event */
   #wheel(event) {
     event.preventDefault();
-    this.hand.drag([0, 0, event.deltaY * WHEEL_M_PER_PX]);
+    this.#phone.drag([0, 0, event.deltaY * WHEEL_M_PER_PX]);
   }
 }

@@ -1,7 +1,10 @@
 // Sixty times a second, also in a tab that is hidden: timers of a hidden page are slowed down, those of a worker are
 // not, and a seat that falls silent makes everybody wait.
 
-/** Calls `onTick(nowMs)` until the returned function is called. */
+/**
+ * Calls `onTick(nowMs)` until the returned function is called.
+ * @param {(nowMs: number) => void} onTick
+ */
 export function everyFrame(onTick) {
   const worker = new Worker("/static/js/drive/ticker-worker.js");
   worker.addEventListener("message", () => onTick(performance.now()));

@@ -3,68 +3,107 @@
 import * as api from "../api.js";
 import { armName, badge } from "../arms.js";
 import { element, setText } from "../dom.js";
-import { lengthText } from "./words.js";
+import { lengthText } from "./formatting.js";
+
+/** @typedef {Messages.RecordedView & { video: HTMLVideoElement }} View */
 
 const DRIFT_S = 0.12; // more than two pictures apart is seen
 const STEP_S = 1;
 
+/** Plays all cameras of an episode. `ready` is fulfilled when their videos are here. */
 export class Player {
+  /** Called with where it is, as a share of 1. @type {(share: number) => void} */
+  onMove = () => {};
   #atS = 0;
   #playing = false;
   #sinceMs = 0;
   #frame = 0;
+  /** @type {string[]} */
   #urls = [];
+  #wallS;
+  #views;
+  #button;
+  #figure;
+  #slider;
 
-  constructor({ path, views, wallS }) {
-    this.wallS = wallS;
-    this.views = views.map((view) => ({ ...view, video: element("video", { muted: true, playsinline: true, preload: "auto" }) }));
-    this.button = element("button", { type: "button", class: "primary", on: { click: () => this.toggle() } }, "Play");
-    this.figure = element("span", { class: "figures" });
-    this.slider = element("input", { type: "range", min: 0, max: wallS, step: 0.05, value: 0, "aria-label": "Where in the episode" });
-    this.slider.addEventListener("input", () => this.seek(Number(this.slider.value)));
-    this.videos = element("div", { class: "videos" }, ...this.views.map((view) => seen(view)));
-    this.controls = element("div", { class: "controls" }, element("span", {}, this.button, this.figure), this.slider);
+  /**
+   * @param {string} path of the episode
+   * @param {Messages.RecordedView[]} views
+   * @param {number} wallS how long it lasted
+   */
+  constructor(path, views, wallS) {
+    this.#wallS = wallS;
+    this.#views = views.map((view) => ({
+      ...view,
+      video: element("video", { muted: true, playsinline: true, preload: "auto" }),
+    }));
+    this.#button = element("button", { type: "button", class: "primary", on: { click: () => this.toggle() } }, "Play");
+    this.#figure = element("span", { class: "figures" });
+    this.#slider = slider(wallS, (seconds) => this.seek(seconds));
+    this.videos = element("div", { class: "videos" }, ...this.#views.map(figure));
+    this.controls = element(
+      "div",
+      { class: "controls" },
+      element("span", {}, this.#button, this.#figure),
+      this.#slider,
+    );
     this.#show();
-    this.ready = Promise.all(this.views.map((view) => this.#load(path, view)));
+    this.ready = Promise.all(this.#views.map((view) => this.#load(path, view)));
   }
 
+  /** Plays, or pauses. */
   toggle() {
     if (this.#playing) this.pause();
     else this.play();
   }
 
+  /** Goes on, from the beginning where it has ended. */
   play() {
-    if (this.#atS >= this.wallS) this.#atS = 0;
+    if (this.#atS >= this.#wallS) this.#atS = 0;
     this.#playing = true;
     this.#sinceMs = performance.now() - 1000 * this.#atS;
-    setText(this.button, "Pause");
+    setText(this.#button, "Pause");
     this.#frame = requestAnimationFrame((nowMs) => this.#advance(nowMs));
   }
 
+  /** Stops where it is. */
   pause() {
     this.#playing = false;
     cancelAnimationFrame(this.#frame);
-    for (const { video } of this.views) video.pause();
-    setText(this.button, "Play");
+    for (const { video } of this.#views) video.pause();
+    setText(this.#button, "Play");
   }
 
+  /**
+   * Goes on by some seconds, or back.
+   * @param {number} steps
+   */
   step(steps) {
     this.seek(this.#atS + steps * STEP_S);
   }
 
+  /**
+   * Goes to a moment.
+   * @param {number} seconds
+   */
   seek(seconds) {
-    this.#atS = Math.min(this.wallS, Math.max(0, seconds));
+    this.#atS = Math.min(this.#wallS, Math.max(0, seconds));
     this.#sinceMs = performance.now() - 1000 * this.#atS;
-    for (const view of this.views) view.video.currentTime = this.#atS - view.start_s;
+    for (const view of this.#views) view.video.currentTime = this.#atS - view.start_s;
     this.#show();
   }
 
+  /** Stops, and lets go of the videos. */
   close() {
     this.pause();
     for (const url of this.#urls) URL.revokeObjectURL(url);
   }
 
-  /** Whole, so that any moment can be shown at once. */
+  /**
+   * Whole, so that any moment can be shown at once.
+   * @param {string} path
+   * @param {View} view
+   */
   async #load(path, view) {
     const url = URL.createObjectURL(await api.video(path, view.camera));
     this.#urls.push(url);
@@ -72,27 +111,46 @@ export class Player {
     view.video.currentTime = this.#atS - view.start_s;
   }
 
+  /** @param {number} nowMs */
   #advance(nowMs) {
     if (!this.#playing) return;
-    this.#atS = Math.min(this.wallS, (nowMs - this.#sinceMs) / 1000);
-    for (const view of this.views) keepUp(view, this.#atS - view.start_s);
+    this.#atS = Math.min(this.#wallS, (nowMs - this.#sinceMs) / 1000);
+    for (const view of this.#views) keepUp(view.video, this.#atS - view.start_s);
     this.#show();
-    if (this.#atS >= this.wallS) this.pause();
+    if (this.#atS >= this.#wallS) this.pause();
     else this.#frame = requestAnimationFrame((next) => this.#advance(next));
   }
 
   #show() {
-    this.slider.value = String(this.#atS);
-    setText(this.figure, `${lengthText(this.#atS)} / ${lengthText(this.wallS)}`);
-    this.onMove?.(this.#atS / (this.wallS || 1));
+    this.#slider.value = String(this.#atS);
+    setText(this.#figure, `${lengthText(this.#atS)} / ${lengthText(this.#wallS)}`);
+    this.onMove(this.#atS / (this.#wallS || 1));
   }
 }
 
-function keepUp({ video }, wantedS) {
+/**
+ * @param {HTMLVideoElement} video
+ * @param {number} wantedS
+ */
+function keepUp(video, wantedS) {
   if (wantedS < 0 || wantedS >= video.duration) return;
   if (Math.abs(video.currentTime - wantedS) > DRIFT_S) video.currentTime = wantedS;
   if (video.paused) video.play().catch(() => video.pause()); // not loaded yet: tried again with the next picture
 }
 
-const seen = ({ camera, video }) =>
-  element("figure", {}, element("div", { class: "picture" }, video), element("figcaption", {}, badge(camera), armName(camera)));
+/**
+ * @param {number} wallS
+ * @param {(seconds: number) => void} onInput
+ */
+function slider(wallS, onInput) {
+  const label = "Where in the episode";
+  const node = element("input", { type: "range", min: 0, max: wallS, step: 0.05, value: 0, "aria-label": label });
+  node.addEventListener("input", () => onInput(Number(node.value)));
+  return node;
+}
+
+/** @param {View} view */
+function figure({ camera, video }) {
+  const caption = element("figcaption", {}, badge(camera), armName(camera));
+  return element("figure", {}, element("div", { class: "picture" }, video), caption);
+}

@@ -3,25 +3,32 @@
 const WITHIN_MS = 2000;
 const TWICE = new Set(["success", "failure", "discard", "leave"]);
 
+/** Knows which command waits for its second press (`pending`, empty for none). */
 export class Confirm {
   pending = "";
   #timer = 0;
+  #onChange;
 
+  /** @param {() => void} onChange */
   constructor(onChange) {
-    this.onChange = onChange;
+    this.#onChange = onChange;
   }
 
-  /** True where `command` may be done now. */
+  /**
+   * True where `command` may be done now.
+   * @param {string} command
+   */
   press(command) {
     const confirmed = !TWICE.has(command) || this.pending === command;
     this.#set(confirmed ? "" : command);
     return confirmed;
   }
 
+  /** @param {string} command */
   #set(command) {
     clearTimeout(this.#timer);
     this.pending = command;
     if (command) this.#timer = setTimeout(() => this.#set(""), WITHIN_MS);
-    this.onChange();
+    this.#onChange();
   }
 }

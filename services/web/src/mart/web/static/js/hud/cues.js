@@ -1,58 +1,92 @@
 // Words to one's partners: a button each, and what was said, for a few seconds.
 
-import { armName, holder } from "../arms.js";
-import { CUES, cueText } from "../cues.js";
+import { armName, holderName } from "../arms.js";
+import { cueText } from "../cues.js";
 import { byId, element, setShown, setText } from "../dom.js";
+import { CUES } from "../facts.js";
 import { nowUs } from "../link/seat-link.js";
 
 const SHOWN_MS = 4000;
 const SENT_AT_MS = [0, 80, 160]; // the channel may lose a message; the gateway counts a press once
 
+/** The buttons for cues, and the newest cue of each arm. */
 export class Cues {
+  #ownArm;
+  #send;
+  #onChange;
+  /** @type {Map<Messages.Cue, HTMLButtonElement>} */
   #buttons = new Map();
-  #said = new Map(); // arm → { cue, timer }
+  /** By arm. @type {Map<string, { cue: Messages.Cue, timer: number }>} */
+  #said = new Map();
 
-  /** `tell(message)` sends to the gateway; `onChange()` is called when something else is to be shown. */
-  constructor(ownArm, tell, onChange) {
-    Object.assign(this, { ownArm, tell, onChange });
+  /**
+   * @param {string} ownArm
+   * @param {(message: StatusChannel.ToGateway) => void} send
+   * @param {() => void} onChange called when something else is to be shown
+   */
+  constructor(ownArm, send, onChange) {
+    this.#ownArm = ownArm;
+    this.#send = send;
+    this.#onChange = onChange;
     CUES.forEach((cue, index) => this.#buttons.set(cue, this.#button(cue, String(index + 1))));
     byId("cues").append(...this.#buttons.values());
   }
 
+  /**
+   * Says it to the partners, where there are any.
+   * @param {Messages.Cue} cue
+   */
   give(cue) {
     if (byId("cues").hidden) return;
-    const message = { type: "cue", cue, t_us: nowUs() };
-    for (const afterMs of SENT_AT_MS) setTimeout(() => this.tell(message), afterMs);
+    const message = /** @type {const} */ ({ type: "cue", cue, t_us: nowUs() });
+    for (const afterMs of SENT_AT_MS) setTimeout(() => this.#send(message), afterMs);
   }
 
-  /** Somebody said something in `room`; also oneself, which is how one knows that the partners see it. */
-  heard({ arm, cue }, room) {
+  /**
+   * Takes in what somebody said in `room`; also oneself, which is how one knows that the partners see it.
+   * @param {Api.CueGiven} given
+   * @param {Api.Room | null} room
+   */
+  onGiven({ arm, cue }, room) {
     clearTimeout(this.#said.get(arm)?.timer);
     const timer = setTimeout(() => this.#forget(arm), SHOWN_MS);
     this.#said.set(arm, { cue, timer });
     const seat = room?.seats.find((one) => one.arm === arm);
-    if (arm !== this.ownArm) setText(byId("cue-heard"), `${seat ? holder(seat) : armName(arm)}: ${cueText(cue)}`);
+    if (arm !== this.#ownArm) setText(byId("cue-heard"), `${seat ? holderName(seat) : armName(arm)}: ${cueText(cue)}`);
   }
 
-  /** What the driver of an arm says now, in words; nothing most of the time. */
+  /**
+   * What the driver of an arm says now, in words; nothing most of the time.
+   * @param {string} arm
+   */
   of(arm) {
-    return this.#said.has(arm) ? cueText(this.#said.get(arm).cue) : "";
+    const said = this.#said.get(arm);
+    return said ? cueText(said.cue) : "";
   }
 
-  /** There is something to say where one drives and somebody else does, too. */
+  /**
+   * There is something to say where one drives and somebody else does, too.
+   * @param {Api.Room | null} room
+   * @param {boolean} drives
+   */
   update(room, drives) {
-    const partners = room?.seats.some((seat) => seat.operator === "human" && !seat.mine);
-    setShown(byId("cues"), Boolean(drives && partners));
-    const mine = this.#said.get(this.ownArm)?.cue;
+    const partners = room?.seats.some((seat) => seat.operator === "human" && !seat.mine) ?? false;
+    setShown(byId("cues"), drives && partners);
+    const mine = this.#said.get(this.#ownArm)?.cue;
     for (const [cue, button] of this.#buttons) button.classList.toggle("said", cue === mine);
   }
 
+  /** @param {string} arm */
   #forget(arm) {
     this.#said.delete(arm);
-    if (arm !== this.ownArm) setText(byId("cue-heard"), "");
-    this.onChange();
+    if (arm !== this.#ownArm) setText(byId("cue-heard"), "");
+    this.#onChange();
   }
 
+  /**
+   * @param {Messages.Cue} cue
+   * @param {string} key
+   */
   #button(cue, key) {
     const on = { click: () => this.give(cue) };
     return element("button", { type: "button", on }, cueText(cue), element("kbd", { "aria-hidden": "true" }, key));

@@ -1,42 +1,72 @@
 // The other arms, along the left edge: who drives, whether they move, who is late.
 
-import { armName, badge, holder } from "../arms.js";
+import { badge, holderName, theArm } from "../arms.js";
 import { byId, element, keepChildren, setShown, setText } from "../dom.js";
-import { seconds } from "../words.js";
+import { seconds } from "../formatting.js";
 
+/** @import { Part } from "../dom.js" */
+/** @import { Cues } from "./cues.js" */
+
+/**
+ * @typedef {object} Partner
+ * @property {Api.Seat} seat
+ * @property {Api.Waiting | undefined} late
+ * @property {Messages.EpisodePhase} phase
+ * @property {string} said
+ */
+
+/** @type {Map<string, Part<[Partner]>>} */
 const rows = new Map();
 
-/** `onScript(arm)` is called when an idle arm should be driven by a script; `cues` know what partners say. */
+/**
+ * Shows every seat but one's own. `onScript` is called when an idle arm should be driven by a script.
+ * @param {Api.Room} room
+ * @param {string} ownArm
+ * @param {(arm: string) => void} onScript
+ * @param {Cues} cues
+ */
 export function showPartners(room, ownArm, onScript, cues) {
   const others = room.seats.filter((seat) => seat.arm !== ownArm);
   const arms = others.map((seat) => seat.arm);
+  const { phase } = room.episode;
   keepChildren(byId("partners"), arms, rows, (arm) => partnerRow(arm, onScript));
   for (const seat of others) {
     const late = room.waiting_for.find((one) => one.arm === seat.arm);
-    rows.get(seat.arm).update(seat, late, room.episode.phase, cues.of(seat.arm));
+    rows.get(seat.arm)?.update({ seat, late, phase, said: cues.of(seat.arm) });
   }
 }
 
+/**
+ * @param {string} arm
+ * @param {(arm: string) => void} onScript
+ * @returns {Part<[Partner]>}
+ */
 function partnerRow(arm, onScript) {
   const name = element("strong");
   const state = element("span", { class: "soft figures" });
   const on = { click: () => onScript(arm) };
-  const label = `Use a script for the ${armName(arm).toLowerCase()}`;
+  const label = `Use a script for ${theArm(arm)}`;
   const script = element("button", { type: "button", class: "quiet", "aria-label": label, on }, "Use a script");
   const who = element("span", { class: "who" }, name, state);
   const node = element("li", { class: "partner glass", dataset: { arm } }, badge(arm), who, script);
 
-  function update(seat, late, phase, said) {
-    setText(name, holder(seat));
+  /** @param {Partner} partner */
+  function update({ seat, late, phase, said }) {
+    setText(name, holderName(seat));
     setText(state, said || stateText(seat, late, phase));
     node.classList.toggle("says", said !== "");
-    node.classList.toggle("late", Boolean(late));
+    node.classList.toggle("late", late !== undefined);
     setShown(script, seat.operator === "hold" && phase === "practice");
   }
 
   return { node, update };
 }
 
+/**
+ * @param {Api.Seat} seat
+ * @param {Api.Waiting | undefined} late
+ * @param {Messages.EpisodePhase} phase
+ */
 function stateText(seat, late, phase) {
   if (late) return `Late, ${seconds(late.since_s)}`;
   if (seat.operator === "hold") return "Holds still";

@@ -2,14 +2,20 @@
 
 const KEPT = 10;
 
+/** Knows the gateway's clock from the newest pongs. */
 export class ClockOffset {
-  #samples = []; // { roundTripUs, offsetNs }
+  /** @type {{ roundTripUs: number, offsetNs: number }[]} */
+  #samples = [];
 
-  /** Takes a pong in; returns the offset in nanoseconds. */
+  /**
+   * Takes a pong in; returns the gateway's clock minus this page's, nanoseconds.
+   * @param {Omit<StatusChannel.Pong, "type">} pong
+   * @param {number} nowUs
+   */
   pong({ t_us: sentUs, gateway_ns: gatewayNs }, nowUs) {
     const roundTripUs = nowUs - sentUs;
-    const offsetNs = gatewayNs - (sentUs + roundTripUs / 2) * 1000;
-    this.#samples = [...this.#samples, { roundTripUs, offsetNs }].slice(-KEPT);
+    const sample = { roundTripUs, offsetNs: gatewayNs - (sentUs + roundTripUs / 2) * 1000 };
+    this.#samples = [...this.#samples, sample].slice(-KEPT);
     return this.#samples.reduce((best, one) => (one.roundTripUs < best.roundTripUs ? one : best)).offsetNs;
   }
 }

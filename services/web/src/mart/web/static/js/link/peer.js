@@ -1,15 +1,29 @@
 // One WebRTC connection to a seat's gateway: video in, two data channels that may lose messages.
 
+/**
+ * @typedef {object} PeerOptions
+ * @property {boolean} wantsVideo
+ * @property {boolean} drives frames are sent
+ * @property {(sdp: string) => Promise<string>} exchange takes the offer to the gateway and returns its answer
+ * @property {(stream: MediaStream) => void} onTrack
+ * @property {(message: StatusChannel.FromGateway) => void} onMessage
+ * @property {() => void} onClosed
+ */
+
 const CHANNEL = { ordered: false, maxRetransmits: 0 };
 const GATHERING_MS = 1000;
 const MOST_BUFFERED_BYTES = 4096; // what waits longer is older than what comes next
 
+/** A connection, from its making until `close`. */
 export class Peer {
-  /** `exchange(sdp)` takes the offer to the gateway and returns its answer's SDP. */
-  static async connect({ wantsVideo, drives, exchange, onTrack, onMessage, onClosed }) {
+  /**
+   * Raises what the exchange raises.
+   * @param {PeerOptions} options
+   */
+  static async connect(options) {
     const peer = new Peer();
     try {
-      await peer.#connect({ wantsVideo, drives, exchange, onTrack, onMessage, onClosed });
+      await peer.#connect(options);
     } catch (error) {
       peer.close();
       throw error;
@@ -19,8 +33,10 @@ export class Peer {
 
   #connection = new RTCPeerConnection({ iceServers: [] });
   #status = this.#connection.createDataChannel("status", CHANNEL);
+  /** @type {RTCDataChannel | null} */
   #pose = null;
 
+  /** @param {PeerOptions} options */
   async #connect({ wantsVideo, drives, exchange, onTrack, onMessage, onClosed }) {
     const connection = this.#connection;
     this.#status.addEventListener("message", ({ data }) => onMessage(JSON.parse(data)));
@@ -34,49 +50,68 @@ export class Peer {
     });
     await connection.setLocalDescription();
     await gathered(connection);
-    const sdp = await exchange(connection.localDescription.sdp);
+    const sdp = await exchange(connection.localDescription?.sdp ?? "");
     await connection.setRemoteDescription({ type: "answer", sdp });
   }
 
-  tell(message) {
+  /**
+   * Sends to the gateway, which may not get it.
+   * @param {StatusChannel.ToGateway} message
+   */
+  send(message) {
     if (this.#status.readyState === "open") this.#status.send(JSON.stringify(message));
   }
 
-  sendFrame(buffer) {
+  /**
+   * Sends a phone frame, unless older ones still wait to be sent.
+   * @param {ArrayBuffer} frame
+   */
+  sendFrame(frame) {
     const channel = this.#pose;
-    if (channel?.readyState === "open" && channel.bufferedAmount < MOST_BUFFERED_BYTES) channel.send(buffer);
+    if (channel?.readyState === "open" && channel.bufferedAmount < MOST_BUFFERED_BYTES) channel.send(frame);
   }
 
+  /** Ends the connection. */
   close() {
     this.#connection.close();
   }
 }
 
+/** @param {RTCPeerConnection} connection */
 function receiveVideo(connection) {
   const transceiver = connection.addTransceiver("video", { direction: "recvonly" });
-  const { codecs } = RTCRtpReceiver.getCapabilities("video");
-  transceiver.setCodecPreferences(h264First(codecs));
+  const codecs = RTCRtpReceiver.getCapabilities("video")?.codecs;
+  if (codecs) transceiver.setCodecPreferences(h264First(codecs));
   if ("jitterBufferTarget" in transceiver.receiver) transceiver.receiver.jitterBufferTarget = 0;
 }
 
-/** H.264 constrained baseline with packetization mode 1 is sent as it was encoded for the recording. */
+/**
+ * The same codecs, best first: H.264 constrained baseline with packetization mode 1 is sent as it was encoded for the
+ * recording.
+ * @param {RTCRtpCodec[]} codecs
+ */
 export function h264First(codecs) {
-  const rank = ({ mimeType, sdpFmtpLine = "" }) => {
-    const baseline = /profile-level-id=42[0-9a-f]{4}/i.test(sdpFmtpLine) && sdpFmtpLine.includes("packetization-mode=1");
-    if (mimeType === "video/H264" && baseline) return sdpFmtpLine.includes("=42e0") ? 0 : 1;
-    return mimeType === "video/VP8" ? 2 : 3;
-  };
   return codecs.toSorted((a, b) => rank(a) - rank(b));
 }
 
-/** The offer goes out whole: without ICE servers gathering takes milliseconds. */
+/** @param {RTCRtpCodec} codec */
+function rank({ mimeType, sdpFmtpLine = "" }) {
+  const baseline = /profile-level-id=42[0-9a-f]{4}/i.test(sdpFmtpLine) && sdpFmtpLine.includes("packetization-mode=1");
+  if (mimeType === "video/H264" && baseline) return sdpFmtpLine.includes("=42e0") ? 0 : 1;
+  return mimeType === "video/VP8" ? 2 : 3;
+}
+
+/**
+ * The offer goes out whole: without ICE servers gathering takes milliseconds.
+ * @param {RTCPeerConnection} connection
+ */
 async function gathered(connection) {
   if (connection.iceGatheringState === "complete") return;
   const timeout = AbortSignal.timeout(GATHERING_MS);
   await new Promise((resolve) => {
     timeout.addEventListener("abort", resolve);
-    connection.addEventListener("icegatheringstatechange", () => {
-      if (connection.iceGatheringState === "complete") resolve();
+    connection.addEventListener("icegatheringstatechange", (event) => {
+      if (connection.iceGatheringState === "complete") resolve(event);
     });
   });
 }

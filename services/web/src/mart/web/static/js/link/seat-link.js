@@ -1,6 +1,6 @@
 // A page's lasting connection to its seat: connects, watches the gateway's heartbeat, connects again when it is lost.
 
-import { sendOffer } from "../api.js";
+import { messageOf, sendOffer, statusOf } from "../api.js";
 import { ClockOffset } from "./clock-offset.js";
 import { Peer } from "./peer.js";
 
@@ -14,6 +14,7 @@ const LONGEST_RETRY_MS = 4000;
 const CONFLICT = 409; // somebody else has the seat: it may be ours again at any moment
 const AWAY_RETRY_MS = 1000;
 
+/** How a connection does. */
 export const LinkState = Object.freeze({
   CONNECTING: "connecting",
   LIVE: "live",
@@ -21,11 +22,32 @@ export const LinkState = Object.freeze({
   REPLACED: "replaced", // another peer of the same role has come: two that take turns would help nobody
 });
 
+/** @typedef {(typeof LinkState)[keyof typeof LinkState]} State */
+
+/**
+ * What a gateway is told to let this page in, and where it is.
+ * @typedef {Api.SeatToken & { room: string, arm: string }} Ticket
+ */
+
+/**
+ * @typedef {object} LinkOptions
+ * @property {() => Promise<Ticket>} fetchToken
+ * @property {boolean} wantsVideo
+ * @property {() => void} onState
+ * @property {(status: StatusChannel.Tick) => void} onStatus
+ * @property {(stream: MediaStream) => void} [onTrack]
+ */
+
+/** Keeps a page connected to a seat. `problem`: why it does not connect, in words; `epoch`, `role`: the token's. */
 export class SeatLink {
+  /** @type {State} */
   state = LinkState.CONNECTING;
-  problem = ""; // why it does not connect, in words
+  problem = "";
   epoch = 0;
+  /** @type {Api.PeerRole | ""} */
   role = "";
+  #options;
+  /** @type {Peer | null} */
   #peer = null;
   #clock = new ClockOffset();
   #heardMs = 0;
@@ -34,14 +56,11 @@ export class SeatLink {
   #retry = 0;
   #closed = true;
 
-  /**
-   * `fetchToken()` gives `{ room, arm, token, epoch, role }`. Listeners: `onState()`, `onStatus(message)`,
-   * `onTrack(stream)`.
-   */
-  constructor({ fetchToken, wantsVideo, onState, onStatus, onTrack = () => {} }) {
-    Object.assign(this, { fetchToken, wantsVideo, onState, onStatus, onTrack });
+  /** @param {LinkOptions} options */
+  constructor(options) {
+    this.#options = options;
     setInterval(() => this.#watch(performance.now()), WATCH_MS);
-    setInterval(() => this.tell({ type: "ping", t_us: nowUs() }), PING_MS);
+    setInterval(() => this.send({ type: "ping", t_us: nowUs() }), PING_MS);
   }
 
   /** Connects, anew where it is connected already, and from then on whenever the connection is lost. */
@@ -50,14 +69,26 @@ export class SeatLink {
     this.#connect();
   }
 
-  tell(message) {
-    this.#peer?.tell(message);
+  /**
+   * Sends to the gateway, which may not get it.
+   * @param {StatusChannel.ToGateway} message
+   */
+  send(message) {
+    this.#peer?.send(message);
   }
 
-  sendFrame(buffer) {
-    this.#peer?.sendFrame(buffer);
+  /**
+   * Sends a phone frame, which may be lost.
+   * @param {ArrayBuffer} frame
+   */
+  sendFrame(frame) {
+    this.#peer?.sendFrame(frame);
   }
 
+  /**
+   * Ends the connection until `connect` is called.
+   * @param {State} [state] what it is then
+   */
   close(state = LinkState.CONNECTING) {
     this.#closed = true;
     this.#drop();
@@ -71,30 +102,42 @@ export class SeatLink {
     this.#setState(LinkState.CONNECTING);
     this.#heardMs = performance.now() + CONNECT_MS - LOST_MS;
     try {
-      const { room, arm, token, epoch, role } = await this.fetchToken();
-      const peer = await Peer.connect({
-        wantsVideo: this.wantsVideo,
-        drives: role !== "viewer",
-        exchange: async (sdp) => (await sendOffer(room, arm, token, sdp)).sdp,
-        onTrack: this.onTrack,
-        onMessage: (message) => attempt === this.#attempt && this.#onMessage(message),
-        onClosed: () => attempt === this.#attempt && this.#lose(),
-      });
+      const ticket = await this.#options.fetchToken();
+      const peer = await this.#reach(ticket, attempt);
       if (attempt !== this.#attempt) {
         peer.close();
         return;
       }
-      Object.assign(this, { epoch, role, problem: "" });
+      this.epoch = ticket.epoch;
+      this.role = ticket.role;
+      this.problem = "";
       this.#peer = peer;
-      this.onState();
+      this.#options.onState();
     } catch (error) {
       if (attempt !== this.#attempt) return;
-      this.problem = error.message;
-      if (error.status === CONFLICT) this.#retryMs = AWAY_RETRY_MS;
+      this.problem = messageOf(error);
+      if (statusOf(error) === CONFLICT) this.#retryMs = AWAY_RETRY_MS;
       this.#lose();
     }
   }
 
+  /**
+   * @param {Ticket} ticket
+   * @param {number} attempt
+   */
+  #reach({ room, arm, token, role }, attempt) {
+    const { wantsVideo, onTrack = () => {} } = this.#options;
+    return Peer.connect({
+      wantsVideo,
+      drives: role !== "viewer",
+      exchange: async (sdp) => (await sendOffer(room, arm, token, sdp)).sdp,
+      onTrack,
+      onMessage: (message) => attempt === this.#attempt && this.#onMessage(message),
+      onClosed: () => attempt === this.#attempt && this.#lose(),
+    });
+  }
+
+  /** @param {StatusChannel.FromGateway} message */
   #onMessage(message) {
     if (message.type === "replaced") {
       this.close(LinkState.REPLACED);
@@ -104,12 +147,13 @@ export class SeatLink {
     this.#retryMs = FIRST_RETRY_MS;
     this.#setState(LinkState.LIVE);
     if (message.type === "pong") {
-      this.tell({ type: "clock", offset_ns: Math.round(this.#clock.pong(message, nowUs())) });
-    } else {
-      this.onStatus(message);
+      this.send({ type: "clock", offset_ns: Math.round(this.#clock.pong(message, nowUs())) });
+    } else if (message.type === "tick") {
+      this.#options.onStatus(message);
     }
   }
 
+  /** @param {number} nowMs */
   #watch(nowMs) {
     if (this.#closed || !this.#heardMs) return;
     const silentMs = nowMs - this.#heardMs;
@@ -133,11 +177,13 @@ export class SeatLink {
     this.#peer = null;
   }
 
+  /** @param {State} state */
   #setState(state) {
     const changed = this.state !== state;
     this.state = state;
-    if (changed || this.problem) this.onState();
+    if (changed || this.problem) this.#options.onState();
   }
 }
 
+/** This page's own clock, microseconds. */
 export const nowUs = () => performance.now() * 1000;

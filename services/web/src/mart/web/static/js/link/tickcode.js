@@ -1,30 +1,36 @@
 // The tick that a displayed picture shows, read from the squares below the view (docs/protocol.md).
 
-export const SQUARES = 40;
+const SQUARES = 40;
 const VIEW_ROWS = 480;
 const STRIP_ROWS = 16;
 const FRAME_ROWS = VIEW_ROWS + STRIP_ROWS;
 const READ_EVERY_MS = 200; // reading pixels back disturbs the display: five times a second is enough
 
-/** `luma`: 40 values 0 … 255, one a square. The tick, or null where the check does not hold. */
+/**
+ * The tick, or null where the check does not hold.
+ * @param {number[]} luma 40 values 0 … 255, one a square
+ */
 export function decodeTick(luma) {
-  const bits = Array.from(luma, (value) => (value >= 128 ? 1 : 0));
-  const bytes = [0, 8, 16, 24, 32].map((start) =>
-    bits.slice(start, start + 8).reduce((byte, bit) => (byte << 1) | bit, 0),
-  );
-  const check = bytes[4];
-  if ((bytes[0] ^ bytes[1] ^ bytes[2] ^ bytes[3] ^ 0xa5) !== check) return null;
-  return ((bytes[0] << 24) | (bytes[1] << 16) | (bytes[2] << 8) | bytes[3]) >>> 0;
+  /** @param {number} start */
+  const byteAt = (start) => luma.slice(start, start + 8).reduce((byte, value) => (byte << 1) | Number(value >= 128), 0);
+  const [a, b, c, d, check] = [byteAt(0), byteAt(8), byteAt(16), byteAt(24), byteAt(32)];
+  if ((a ^ b ^ c ^ d ^ 0xa5) !== check) return null;
+  return ((a << 24) | (b << 16) | (c << 8) | d) >>> 0;
 }
 
-/** Calls `onTick(tick, displayedMs)` for displayed frames of `video`, at most five times a second. */
+/**
+ * Calls `onTick` for displayed frames of a video, at most five times a second.
+ * @param {HTMLVideoElement} video
+ * @param {(tick: number, displayedMs: number) => void} onTick
+ */
 export function watchTicks(video, onTick) {
   const canvas = new OffscreenCanvas(SQUARES, 1);
   const context = canvas.getContext("2d", { willReadFrequently: true });
+  if (!context) throw new Error("This browser cannot read pixels back.");
   context.imageSmoothingEnabled = false; // each pixel is then the centre of one square
   let lastMs = -Infinity;
 
-  function onFrame() {
+  const onFrame = () => {
     const nowMs = performance.now();
     if (nowMs - lastMs >= READ_EVERY_MS && video.videoHeight > 0) {
       lastMs = nowMs;
@@ -32,15 +38,22 @@ export function watchTicks(video, onTick) {
       if (tick !== null) onTick(tick, nowMs);
     }
     video.requestVideoFrameCallback(onFrame);
-  }
+  };
 
   video.requestVideoFrameCallback(onFrame);
 }
 
+/**
+ * @param {HTMLVideoElement} video
+ * @param {OffscreenCanvasRenderingContext2D} context
+ */
 function readStrip(video, context) {
   const { videoWidth: width, videoHeight: height } = video;
   const top = (height * VIEW_ROWS) / FRAME_ROWS;
   context.drawImage(video, 0, top, width, height - top, 0, 0, SQUARES, 1);
-  const { data } = context.getImageData(0, 0, SQUARES, 1);
-  return Array.from({ length: SQUARES }, (_, i) => (data[4 * i] + data[4 * i + 1] + data[4 * i + 2]) / 3);
+  const pixels = context.getImageData(0, 0, SQUARES, 1).data;
+  return Array.from({ length: SQUARES }, (_, square) => mean(pixels.slice(4 * square, 4 * square + 3)));
 }
+
+/** @param {Uint8ClampedArray} values */
+const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;

@@ -7,16 +7,31 @@ const TAP_MS = 250;
 const TAP_PX = 12;
 const GRIPPER_STEP = 0.1;
 
-/** Held while at least one finger is on `node`. After `release()` the fingers must be put down anew. */
-export class Hold {
+/** Held while at least one finger is on it. After `release()` the fingers must be put down anew. */
+export class ClutchPad {
+  /**
+   * Called with how far a finger has gone, pixels, and whether it is on the height pad.
+   * @type {(right: number, down: number, onHeightPad: boolean) => void}
+   */
   onDrag = () => {};
-  #fingers = new Map(); // pointer id → { x, y, onStrip }
+  #node;
+  #heightPad;
+  #onChange;
+  /** By pointer. @type {Map<number, { x: number, y: number, onHeightPad: boolean }>} */
+  #fingers = new Map();
 
-  constructor(node, strip, onChange) {
-    Object.assign(this, { node, strip, onChange });
+  /**
+   * @param {HTMLElement} node
+   * @param {HTMLElement} heightPad the part of it that lifts
+   * @param {(held: boolean) => void} onChange
+   */
+  constructor(node, heightPad, onChange) {
+    this.#node = node;
+    this.#heightPad = heightPad;
+    this.#onChange = onChange;
     node.addEventListener("pointerdown", (event) => this.#down(event));
     node.addEventListener("pointermove", (event) => this.#move(event));
-    for (const type of ["pointerup", "pointercancel", "lostpointercapture"]) {
+    for (const type of /** @type {const} */ (["pointerup", "pointercancel", "lostpointercapture"])) {
       node.addEventListener(type, ({ pointerId }) => this.#up(pointerId));
     }
     node.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -26,43 +41,50 @@ export class Hold {
     return this.#fingers.size > 0;
   }
 
+  /** Lets go, whatever the fingers do. */
   release() {
     this.#fingers.clear();
     this.#tell();
   }
 
+  /** @param {PointerEvent} event */
   #down(event) {
     event.preventDefault();
-    this.node.setPointerCapture(event.pointerId);
-    const onStrip = this.strip.contains(event.target);
-    this.#fingers.set(event.pointerId, { x: event.clientX, y: event.clientY, onStrip });
+    this.#node.setPointerCapture(event.pointerId);
+    const onHeightPad = event.target instanceof Node && this.#heightPad.contains(event.target);
+    this.#fingers.set(event.pointerId, { x: event.clientX, y: event.clientY, onHeightPad });
     this.#tell();
   }
 
+  /** @param {PointerEvent} event */
   #move({ pointerId, clientX, clientY }) {
     const finger = this.#fingers.get(pointerId);
     if (!finger) return;
-    this.onDrag(clientX - finger.x, clientY - finger.y, finger.onStrip);
+    this.onDrag(clientX - finger.x, clientY - finger.y, finger.onHeightPad);
     Object.assign(finger, { x: clientX, y: clientY });
   }
 
+  /** @param {number} pointerId */
   #up(pointerId) {
     if (this.#fingers.delete(pointerId)) this.#tell();
   }
 
   #tell() {
-    this.node.setAttribute("aria-pressed", String(this.held));
-    this.onChange(this.held);
+    this.#node.setAttribute("aria-pressed", String(this.held));
+    this.#onChange(this.held);
   }
 }
 
 /** A bar to slide from open (0) to closed (1); a tap switches between the two. */
 export class GripperBar {
   value = 0;
+  #node;
+  /** @type {{ x: number, atMs: number, before: number } | null} */
   #pressed = null;
 
+  /** @param {HTMLElement} node */
   constructor(node) {
-    this.node = node;
+    this.#node = node;
     node.addEventListener("pointerdown", (event) => this.#down(event));
     node.addEventListener("pointermove", (event) => this.#move(event));
     node.addEventListener("pointerup", (event) => this.#up(event));
@@ -70,49 +92,75 @@ export class GripperBar {
     this.set(0);
   }
 
+  /**
+   * Slides the bar.
+   * @param {number} value
+   */
   set(value) {
     this.value = Math.min(1, Math.max(0, value));
-    this.node.style.setProperty("--closed", String(this.value));
-    this.node.setAttribute("aria-valuenow", String(Math.round(100 * this.value)));
+    this.#node.style.setProperty("--closed", String(this.value));
+    this.#node.setAttribute("aria-valuenow", String(Math.round(100 * this.value)));
   }
 
+  /** @param {PointerEvent} event */
   #down(event) {
     event.preventDefault();
-    this.node.setPointerCapture(event.pointerId);
+    this.#node.setPointerCapture(event.pointerId);
     this.#pressed = { x: event.clientX, atMs: event.timeStamp, before: this.value };
   }
 
+  /** @param {PointerEvent} event */
   #move({ clientX }) {
     if (this.#pressed && Math.abs(clientX - this.#pressed.x) > TAP_PX) this.#follow(clientX);
   }
 
+  /** @param {PointerEvent} event */
   #up({ clientX, timeStamp }) {
     const { x, atMs, before } = this.#pressed ?? { x: clientX, atMs: -Infinity, before: this.value };
     if (timeStamp - atMs < TAP_MS && Math.abs(clientX - x) <= TAP_PX) this.set(before > 0.5 ? 0 : 1);
     this.#pressed = null;
   }
 
+  /** @param {number} clientX */
   #follow(clientX) {
-    const { left, width } = this.node.getBoundingClientRect();
+    const { left, width } = this.#node.getBoundingClientRect();
     const margin = 0.1 * width; // the ends are reached before the finger leaves the bar
     this.set((clientX - left - margin) / (width - 2 * margin));
   }
 
+  /** @param {KeyboardEvent} event */
   #key(event) {
-    const step = { ArrowRight: GRIPPER_STEP, ArrowUp: GRIPPER_STEP, ArrowLeft: -GRIPPER_STEP, ArrowDown: -GRIPPER_STEP };
-    if (!(event.key in step)) return;
+    const step = STEPS.get(event.key);
+    if (step === undefined) return;
     event.preventDefault();
-    this.set(this.value + step[event.key]);
+    this.set(this.value + step);
   }
 }
+
+const STEPS = new Map([
+  ["ArrowRight", GRIPPER_STEP],
+  ["ArrowUp", GRIPPER_STEP],
+  ["ArrowLeft", -GRIPPER_STEP],
+  ["ArrowDown", -GRIPPER_STEP],
+]);
 
 /** Held for half a second it stops everything; held again it lets go on. */
 export class StopButton {
   stopped = false;
+  #node;
+  #text;
+  #onChange;
   #timer = 0;
 
+  /**
+   * @param {HTMLElement} node
+   * @param {HTMLElement} text the part of it that says what it does
+   * @param {(stopped: boolean) => void} onChange
+   */
   constructor(node, text, onChange) {
-    Object.assign(this, { node, text, onChange });
+    this.#node = node;
+    this.#text = text;
+    this.#onChange = onChange;
     node.addEventListener("pointerdown", (event) => this.#press(event));
     for (const type of ["pointerup", "pointercancel", "pointerleave"]) {
       node.addEventListener(type, () => this.#letGo());
@@ -121,22 +169,23 @@ export class StopButton {
     node.addEventListener("keyup", () => this.#letGo());
   }
 
+  /** @param {Event} event */
   #press(event) {
     event.preventDefault();
-    this.node.classList.add("pressing");
+    this.#node.classList.add("pressing");
     this.#timer = setTimeout(() => this.#switch(), STOP_HOLD_MS);
   }
 
   #letGo() {
     clearTimeout(this.#timer);
-    this.node.classList.remove("pressing");
+    this.#node.classList.remove("pressing");
   }
 
   #switch() {
     this.#letGo();
     this.stopped = !this.stopped;
-    this.node.setAttribute("aria-pressed", String(this.stopped));
-    setText(this.text, this.stopped ? "Go on" : "Stop");
-    this.onChange(this.stopped);
+    this.#node.setAttribute("aria-pressed", String(this.stopped));
+    setText(this.#text, this.stopped ? "Go on" : "Stop");
+    this.#onChange(this.stopped);
   }
 }

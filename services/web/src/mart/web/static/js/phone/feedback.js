@@ -1,6 +1,7 @@
 // What the hand feels, and a screen that stays on.
 
-const PATTERNS = {
+/** @satisfies {Record<string, number[]>} */
+const PATTERNS_MS = {
   engaged: [15],
   grasped: [45],
   step: [15, 60, 15],
@@ -9,22 +10,31 @@ const PATTERNS = {
   stopped: [200],
 };
 
-/** Buzzes where the phone can; iPhones cannot. */
-export function feel(what) {
-  navigator.vibrate?.(PATTERNS[what]);
+/** @typedef {keyof typeof PATTERNS_MS} Vibration */
+
+/** Buzzes where the phone can; iPhones cannot. @type {(what: Vibration) => void} */
+export function vibrate(what) {
+  navigator.vibrate?.(PATTERNS_MS[what]);
 }
 
-/** What a hand that drives `arm` should feel of a new status. `before`: the one that it had, or null. */
-export function newsIn(status, before, arm) {
-  const late = (one) => Boolean(one?.waiting.some((waiting) => waiting.arm === arm));
-  const news = [];
-  if (late(status) && !late(before)) news.push("late");
-  if (status.input === "phone" && status.holding && before && !before.holding) news.push("grasped");
-  return news;
+/**
+ * What a hand that drives `arm` should feel of a new status.
+ * @param {StatusChannel.Tick} status
+ * @param {StatusChannel.Tick | null} before the one that it had
+ * @param {string} arm
+ */
+export function vibrationsFor(status, before, arm) {
+  /** @param {StatusChannel.Tick | null} one */
+  const isLate = (one) => one?.waiting.some((waiting) => waiting.arm === arm) ?? false;
+  /** @type {Vibration[]} */
+  const vibrations = [];
+  if (isLate(status) && !isLate(before)) vibrations.push("late");
+  if (status.input === "phone" && status.holding && before && !before.holding) vibrations.push("grasped");
+  return vibrations;
 }
 
 /** Keeps the screen on while the page is visible. */
-export function stayAwake() {
+export function keepScreenOn() {
   const request = () => {
     // Refused where the battery is low: the person's own setting then decides.
     if (!document.hidden) navigator.wakeLock?.request("screen").catch(() => {});

@@ -2,10 +2,17 @@
 
 import { fromRotationVector, multiply } from "../drive/quaternion.js";
 
+/** @import { Quaternion } from "../drive/quaternion.js" */
+
 const RAD = Math.PI / 180;
 const STALE_MS = 1000;
 
-/** W3C DeviceOrientation angles, degrees (intrinsic Z-X'-Y''), as a quaternion in the session frame. */
+/**
+ * W3C DeviceOrientation angles, degrees (intrinsic Z-X'-Y''), as a rotation in the session frame.
+ * @param {number} alpha
+ * @param {number} beta
+ * @param {number} gamma
+ */
 export function fromDeviceAngles(alpha, beta, gamma) {
   const inEarth = multiply(
     multiply(fromRotationVector([0, 0, alpha * RAD]), fromRotationVector([beta * RAD, 0, 0])),
@@ -15,27 +22,37 @@ export function fromDeviceAngles(alpha, beta, gamma) {
   return multiply(fromRotationVector([-Math.PI / 2, 0, 0]), inEarth);
 }
 
+/** The newest turn that the sensor told. */
 export class Orientation {
+  /** @type {Quaternion | null} */
   #quaternionWxyz = null;
   #seenMs = -Infinity;
 
   /** Must be called from a press: iPhones ask for permission then. */
   static async start() {
     const orientation = new Orientation();
-    const ask = globalThis.DeviceOrientationEvent?.requestPermission;
-    const granted = ask ? (await ask.call(DeviceOrientationEvent)) === "granted" : true;
-    if (granted) addEventListener("deviceorientation", (event) => orientation.#take(event));
+    if (await isPermitted()) addEventListener("deviceorientation", (event) => orientation.#take(event));
     return orientation;
   }
 
-  /** The phone's turn in the session frame, or null where no sensor speaks. */
+  /**
+   * The phone's turn in the session frame, or null where no sensor speaks.
+   * @param {number} nowMs
+   */
   sample(nowMs) {
     return nowMs - this.#seenMs < STALE_MS ? this.#quaternionWxyz : null;
   }
 
+  /** @param {DeviceOrientationEvent} event */
   #take({ alpha, beta, gamma }) {
     if (alpha === null || beta === null || gamma === null) return;
     this.#quaternionWxyz = fromDeviceAngles(alpha, beta, gamma);
     this.#seenMs = performance.now();
   }
+}
+
+async function isPermitted() {
+  /** @type {(typeof DeviceOrientationEvent & DeviceOrientationPermission) | undefined} */
+  const sensor = globalThis.DeviceOrientationEvent;
+  return sensor?.requestPermission ? (await sensor.requestPermission()) === "granted" : true;
 }

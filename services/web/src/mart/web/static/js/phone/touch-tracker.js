@@ -1,36 +1,56 @@
-// Without WebXR: the touch pad moves the hand, its strip lifts it, the orientation sensor turns it.
+// Without WebXR: the touch pad moves the hand, its height pad lifts it, the orientation sensor turns it.
 
 import { Flag } from "../drive/frame.js";
 import { IDENTITY } from "../drive/quaternion.js";
-import { VirtualHand } from "../drive/virtual-hand.js";
+import { VirtualPhone } from "../drive/virtual-phone.js";
 import { Orientation } from "./orientation.js";
 
+/** @import { Vector } from "../drive/quaternion.js" */
+/** @import { ClutchPad } from "./controls.js" */
+/** @import { Sample } from "./xr.js" */
+
 const METRES_PER_PX = 0.0012;
+/** @type {{ move: Vector, turn: Vector }} */
 const STILL = { move: [0, 0, 0], turn: [0, 0, 0] };
 
+/** A hand that is moved by drags on the clutch pad. */
 export class TouchTracker {
-  #hand = new VirtualHand();
+  #phone = new VirtualPhone();
   #lastMs = performance.now();
+  #clutch;
+  #orientation;
 
-  /** Must be called from a press. `hold` is the Hold whose drags move the hand. */
-  static async start(hold) {
-    return new TouchTracker(hold, await Orientation.start());
+  /**
+   * Must be called from a press.
+   * @param {ClutchPad} clutch
+   */
+  static async start(clutch) {
+    return new TouchTracker(clutch, await Orientation.start());
   }
 
-  constructor(hold, orientation) {
-    this.hold = hold;
-    this.orientation = orientation;
-    hold.onDrag = (right, down, onStrip) => {
+  /**
+   * @param {ClutchPad} clutch
+   * @param {Orientation} orientation
+   */
+  constructor(clutch, orientation) {
+    this.#clutch = clutch;
+    this.#orientation = orientation;
+    clutch.onDrag = (right, down, onHeightPad) => {
       const [x, y] = [right * METRES_PER_PX, down * METRES_PER_PX];
-      this.#hand.drag(onStrip ? [0, -y, 0] : [x, 0, y]);
+      this.#phone.drag(onHeightPad ? [0, -y, 0] : [x, 0, y]);
     };
   }
 
+  /**
+   * Where the hand is now.
+   * @param {number} nowMs
+   * @returns {Sample}
+   */
   sample(nowMs) {
-    this.#hand.step({ engaged: this.hold.held, ...STILL }, (nowMs - this.#lastMs) / 1000);
+    this.#phone.step({ engaged: this.#clutch.held, ...STILL }, (nowMs - this.#lastMs) / 1000);
     this.#lastMs = nowMs;
-    const turned = this.orientation.sample(nowMs);
+    const turned = this.#orientation.sample(nowMs);
     const flags = turned ? Flag.ORIENTATION_ONLY : Flag.SCREEN_ALIGNED;
-    return { position: this.#hand.position, quaternionWxyz: turned ?? IDENTITY, tracking: true, flags };
+    return { position: this.#phone.position, quaternionWxyz: turned ?? IDENTITY, tracking: true, flags };
   }
 }

@@ -1,166 +1,142 @@
-// Line charts in SVG: a few series over updates, with intervals where they are known. Scales are pure; drawing is below.
+// Line charts in SVG: a few series over updates, with intervals where they are known.
 
-import { short } from "./words.js";
+import { element, svgElement } from "../dom.js";
+import { logTicks, MARGIN, pathOf, scales, ticks } from "./chart-scales.js";
+import { percent, short } from "./formatting.js";
 
-const MARGIN = { top: 12, right: 24, bottom: 28, left: 56 };
-const NAMESPACE = "http://www.w3.org/2000/svg";
+/** @import { Point, Scale, Series } from "./chart-scales.js" */
 
-/** About `count` round numbers that lie in low … high. */
-export function ticks(low, high, count) {
-  if (!(high > low)) return [low];
-  const raw = (high - low) / count;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = power * ([1, 2, 5].find((one) => one * power >= raw) ?? 10);
-  const first = Math.ceil(low / step - 1e-9) * step;
-  const numbers = Array.from({ length: Math.floor((high - first) / step + 1e-9) + 1 }, (_, index) => first + index * step);
-  return numbers.map((value) => Number(value.toPrecision(12)));
-}
-
-/** Powers of ten in low … high, with 2 and 5 between them where they are few. */
-export function logTicks(low, high) {
-  const exponents = ticks(Math.floor(Math.log10(low)), Math.ceil(Math.log10(high)), 4).filter(Number.isInteger);
-  const between = exponents.length <= 3 ? [1, 2, 5] : [1];
-  const all = exponents.flatMap((exponent) => between.map((one) => one * 10 ** exponent));
-  return all.map((value) => Number(value.toPrecision(6))).filter((value) => value >= low * 0.999 && value <= high * 1.001);
-}
-
-/** Where numbers go: `{ x, y }` functions to pixels and the bounds they cover. A loss is drawn on a logarithmic scale. */
-export function scales(series, { width, height, percent }) {
-  const points = series.flatMap((one) => one.points);
-  const xs = points.map((point) => point.x);
-  const ys = points.map((point) => point.y).filter((value) => percent || value > 0);
-  const right = Math.max(1, ...xs);
-  const [low, high] = percent ? [0, 1] : padded(ys);
-  const onY = percent ? (value) => value : Math.log10;
-  const across = width - MARGIN.left - MARGIN.right;
-  const down = height - MARGIN.top - MARGIN.bottom;
-  return {
-    x: (value) => MARGIN.left + (across * value) / right,
-    y: (value) => MARGIN.top + down * (1 - (onY(value) - onY(low)) / (onY(high) - onY(low))),
-    right,
-    low,
-    high,
-  };
-}
-
-function padded(values) {
-  if (values.length === 0) return [0.1, 1];
-  const [low, high] = [Math.min(...values), Math.max(...values)];
-  return low === high ? [low / 2, high * 2] : [low * 0.9, high * 1.1];
-}
-
-/** The path through points; what cannot be drawn (not finite, or not positive on a logarithmic scale) parts the line. */
-export function pathOf(points, { x, y }, percent) {
-  let pen = "M";
-  const parts = [];
-  for (const point of points) {
-    const drawable = Number.isFinite(point.y) && (percent || point.y > 0);
-    if (drawable) parts.push(`${pen}${x(point.x).toFixed(1)},${y(point.y).toFixed(1)}`);
-    pen = drawable ? "L" : "M";
-  }
-  return parts.join("");
-}
-
+/** Draws series, and reads out what is at the pointer. */
 export class Chart {
+  #node;
+  /** @type {Series[]} */
   #series = [];
-  #options = {};
+  #percent = false;
+  #empty = "";
+  /** @type {number | null} */
   #pointedX = null;
 
-  /** Draws into `node`, which it fills. */
+  /** @param {HTMLElement} node what it fills */
   constructor(node) {
-    this.node = node;
+    this.#node = node;
     new ResizeObserver(() => this.#draw()).observe(node);
     node.addEventListener("pointermove", ({ offsetX }) => this.#pointTo(offsetX));
     node.addEventListener("pointerleave", () => this.#pointTo(null));
   }
 
-  /** `series`: `{ name, line, points: [{ x, y, low, high }] }`, `line` the number of its look. `percent`: of 0 … 1. */
-  show(series, { percent = false, empty = "" } = {}) {
+  /**
+   * Draws series. `percent`: they are shares of 0 … 1; `empty`: what is said where there is nothing to draw.
+   * @param {Series[]} series
+   * @param {{ percent?: boolean, empty: string }} options
+   */
+  show(series, { percent: isPercent = false, empty }) {
     this.#series = series.filter((one) => one.points.length > 0);
-    this.#options = { percent, empty };
+    this.#percent = isPercent;
+    this.#empty = empty;
     this.#draw();
   }
 
   #draw() {
-    const { clientWidth: width, clientHeight: height } = this.node;
+    const { clientWidth: width, clientHeight: height } = this.#node;
     if (width === 0) return;
     if (this.#series.length === 0) {
-      this.node.replaceChildren(emptyText(this.#options.empty));
+      this.#node.replaceChildren(element("p", { class: "soft" }, this.#empty));
       return;
     }
-    const scale = scales(this.#series, { width, height, ...this.#options });
-    const root = svg("svg", { width, height, role: "img", "aria-label": this.#summary() });
+    const scale = scales(this.#series, { width, height, percent: this.#percent });
+    const root = svgElement("svg", { width, height, role: "img", "aria-label": this.#summary() });
     root.append(...this.#axes(scale, width, height), ...this.#series.flatMap((one) => this.#line(one, scale)));
-    this.node.replaceChildren(root);
-    if (this.#pointedX !== null) root.append(...this.#readout(scale, width, height));
+    this.#node.replaceChildren(root);
+    if (this.#pointedX !== null) root.append(...this.#readout(this.#pointedX, scale, width, height));
   }
 
+  /** @param {number | null} offsetX */
   #pointTo(offsetX) {
     this.#pointedX = offsetX;
     this.#draw();
   }
 
+  /**
+   * @param {Scale} scale
+   * @param {number} width
+   * @param {number} height
+   */
   #axes(scale, width, height) {
-    const { percent } = this.#options;
-    const ys = percent ? [0, 0.25, 0.5, 0.75, 1] : logTicks(scale.low, scale.high);
-    const text = percent ? (value) => `${100 * value} %` : short;
-    const rows = ys.flatMap((value) => [
-      svg("line", { class: "grid", x1: MARGIN.left, x2: width - MARGIN.right, y1: scale.y(value), y2: scale.y(value) }),
-      label(text(value), MARGIN.left - 8, scale.y(value) + 4, "end"),
-    ]);
-    const xs = ticks(0, scale.right, Math.max(2, Math.floor(width / 120)));
-    return [...rows, ...xs.map((value) => label(short(value), scale.x(value), height - 8, value === 0 ? "start" : "middle"))];
+    const text = this.#percent ? (/** @type {number} */ value) => `${100 * value} %` : short;
+    const values = this.#percent ? [0, 0.25, 0.5, 0.75, 1] : logTicks(scale.low, scale.high);
+    const rows = values.flatMap((value) => {
+      const y = scale.y(value);
+      return [
+        svgElement("line", { class: "grid", x1: MARGIN.left, x2: width - MARGIN.right, y1: y, y2: y }),
+        label(text(value), MARGIN.left - 8, y + 4, "end"),
+      ];
+    });
+    const columns = ticks(0, scale.right, Math.max(2, Math.floor(width / 120)));
+    const below = columns.map((value) =>
+      label(short(value), scale.x(value), height - 8, value === 0 ? "start" : "middle"),
+    );
+    return [...rows, ...below];
   }
 
+  /**
+   * @param {Series} series
+   * @param {Scale} scale
+   */
   #line({ line, points }, scale) {
-    const { percent } = this.#options;
-    const intervals = points
-      .filter((point) => point.low !== undefined)
-      .map(({ x, low, high }) => svg("path", { class: `interval line${line}`, d: `M${scale.x(x)},${scale.y(low)}V${scale.y(high)}` }));
-    const dots = percent || points.length === 1 ? points.map((point) => dot(point, line, scale)) : [];
-    return [...intervals, svg("path", { class: `curve line${line}`, d: pathOf(points, scale, percent) }), ...dots];
+    const curve = svgElement("path", { class: `curve line${line}`, d: pathOf(points, scale, this.#percent) });
+    const dots = this.#percent || points.length === 1 ? points.map((point) => dot(point, line, scale)) : [];
+    return [...points.flatMap((point) => interval(point, line, scale)), curve, ...dots];
   }
 
-  /** What is drawn at the pointer, in words. */
-  #readout(scale, width, height) {
-    const found = this.#series.map((one) => ({ ...one, at: nearest(one.points, this.#pointedX, scale) }));
-    const x = scale.x(found[0].at.x);
-    const text = this.#options.percent ? (value) => `${Math.round(100 * value)} %` : short;
-    const lines = [`after ${short(found[0].at.x)} updates`, ...found.map(({ name, at }) => `${name}  ${text(at.y)}`)];
-    const onLeft = x > width / 2;
+  /**
+   * What is drawn at the pointer, in words.
+   * @param {number} pointedX
+   * @param {Scale} scale
+   * @param {number} width
+   * @param {number} height
+   */
+  #readout(pointedX, scale, width, height) {
+    const found = this.#series.map(({ name, line, points }) => ({ name, line, at: nearest(points, pointedX, scale) }));
+    const updates = found[0]?.at.x ?? 0;
+    const x = scale.x(updates);
+    const text = this.#percent ? percent : short;
+    const lines = [`after ${short(updates)} updates`, ...found.map(({ name, at }) => `${name}  ${text(at.y)}`)];
+    const [aside, anchor] = x > width / 2 ? [-8, "end"] : [8, "start"];
     return [
-      svg("line", { class: "cursor", x1: x, x2: x, y1: MARGIN.top, y2: height - MARGIN.bottom }),
+      svgElement("line", { class: "cursor", x1: x, x2: x, y1: MARGIN.top, y2: height - MARGIN.bottom }),
       ...found.map(({ at, line }) => dot(at, line, scale)),
-      ...lines.map((one, index) => label(one, x + (onLeft ? -8 : 8), MARGIN.top + 12 + 18 * index, onLeft ? "end" : "start", "readout")),
+      ...lines.map((one, index) => label(one, x + aside, MARGIN.top + 12 + 18 * index, anchor, "readout")),
     ];
   }
 
   #summary() {
-    const text = this.#options.percent ? (value) => `${Math.round(100 * value)} percent` : short;
-    return this.#series.map(({ name, points }) => `${name}: ${text(points.at(-1).y)} after ${points.at(-1).x} updates`).join("; ");
+    const text = this.#percent ? (/** @type {number} */ value) => `${Math.round(100 * value)} percent` : short;
+    const texts = this.#series.map(({ name, points }) => {
+      const last = points.at(-1);
+      return last ? `${name}: ${text(last.y)} after ${last.x} updates` : name;
+    });
+    return texts.join("; ");
   }
 }
 
+/** @type {(points: Point[], offsetX: number, scale: Scale) => Point} */
 const nearest = (points, offsetX, { x }) =>
   points.reduce((best, point) => (Math.abs(x(point.x) - offsetX) < Math.abs(x(best.x) - offsetX) ? point : best));
 
-const dot = ({ x, y }, line, scale) => svg("circle", { class: `dot line${line}`, cx: scale.x(x), cy: scale.y(y), r: 3.5 });
+/** @type {(point: Point, line: number, scale: Scale) => SVGElement} */
+const dot = ({ x, y }, line, scale) =>
+  svgElement("circle", { class: `dot line${line}`, cx: scale.x(x), cy: scale.y(y), r: 3.5 });
 
+/** @type {(point: Point, line: number, scale: Scale) => SVGElement[]} */
+function interval({ x, low, high }, line, scale) {
+  if (low === undefined || high === undefined) return [];
+  const d = `M${scale.x(x)},${scale.y(low)}V${scale.y(high)}`;
+  return [svgElement("path", { class: `interval line${line}`, d })];
+}
+
+/** @type {(text: string, x: number, y: number, anchor: string, kind?: string) => SVGElement} */
 function label(text, x, y, anchor, kind = "tick") {
-  const node = svg("text", { class: kind, x, y, "text-anchor": anchor });
+  const node = svgElement("text", { class: kind, x, y, "text-anchor": anchor });
   node.textContent = text;
-  return node;
-}
-
-function emptyText(text) {
-  const node = document.createElement("p");
-  node.className = "soft";
-  node.textContent = text;
-  return node;
-}
-
-function svg(tag, attributes) {
-  const node = document.createElementNS(NAMESPACE, tag);
-  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
   return node;
 }

@@ -1,165 +1,157 @@
-// What to train: data, a point of the grid planner × actor × residual, and how much of it.
+// What to train: data, a model, and how much of it.
 
 import { element, setShown, setText } from "../dom.js";
-import { dataText, takenText, taskText } from "./words.js";
+import { MAX_ROLLOUTS, MAX_SEEDS } from "../facts.js";
+import { dataText, takenText, taskText } from "./formatting.js";
+import { ModelChoice } from "./model-choice.js";
+import { choose, chosen, segments } from "./segments.js";
 
-const AXES = [
-  ["planner", "Planner", [["none", "None"], ["joint", "Joint"], ["per-arm", "Per arm"]]],
-  ["actor", "Actor", [["joint", "Joint"], ["per-arm", "Per arm"]]],
-  ["residual", "Residual", [["none", "None"], ["joint", "Joint"], ["per-arm", "Per arm"]]],
-];
-const PAPER = ["BC-RNN", "HBC", "d-HBC", "dh-HBC", "dl-HBC", "r-HBC", "rd-HBC"];
-const PRESETS = { debug: "Seconds, to try it out", fast: "Minutes on two cores", paper: "The published sizes: hours" };
+/** @import { PRESETS } from "../facts.js" */
 
+/** @typedef {(typeof PRESETS)[number]} Preset */
+
+/** @type {Record<Preset, string>} */
+const SIZES = { debug: "Seconds, to try it out", fast: "Minutes on two cores", paper: "The published sizes: hours" };
+
+const NO_EPISODES = "There are no episodes yet. Record some in the lobby, or let scripts: mart collect";
+
+/** A form that orders trainings. */
 export class OrderForm {
+  #form;
+  #wanted;
+  #onSubmit;
+  /** @type {Api.TrainingChoices | null} */
   #choices = null;
-  #model = ""; // a name, or the grid's point itself
+  /** @type {ModelChoice | null} */
+  #models = null;
   #known = "";
+  #data = element("select", { required: true });
+  #dataText = element("p", { class: "soft" });
+  #task = element("select", { required: true });
+  #seeds = element("input", { type: "number", min: 1, max: MAX_SEEDS, inputmode: "numeric" });
+  #episodes = element("input", { type: "number", min: 0, max: MAX_ROLLOUTS, inputmode: "numeric" });
+  #presetText = element("p", { class: "soft" });
+  #executor = element("select");
+  #button = element("button", { type: "submit", class: "primary" });
+  #hint = element("p", { class: "soft" });
 
-  /** `onSubmit(order)` gets the body of POST /api/training/jobs; `wanted`: the data set to begin with. */
+  /**
+   * @param {HTMLElement} form what it fills
+   * @param {string | null} wanted the data set to begin with
+   * @param {(order: Api.TrainingOrder) => void} onSubmit
+   */
   constructor(form, wanted, onSubmit) {
-    Object.assign(this, { form, wanted, onSubmit });
+    this.#form = form;
+    this.#wanted = wanted;
+    this.#onSubmit = onSubmit;
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       this.#submit();
     });
     form.addEventListener("change", ({ target }) => {
-      if (target === this.data) this.#followData();
+      if (target === this.#data) this.#followData();
       this.#render();
     });
   }
 
+  /**
+   * Shows what can be ordered; what has been filled in stays, where it still can be had.
+   * @param {Api.TrainingChoices} choices
+   */
   show(choices) {
     this.#choices = choices;
     const known = JSON.stringify([choices.models, choices.presets, choices.executors]);
     if (known !== this.#known) {
       this.#known = known;
-      this.#build();
+      this.#build(choices);
     }
-    const wanted = choices.data.find(({ name }) => name && name === this.wanted);
-    fill(this.data, choices.data, keyOf, dataText, wanted ? keyOf(wanted) : choices.order.data);
-    fill(this.task, choices.tasks, (task) => task, taskText, wanted?.tasks[0] ?? choices.order.task);
+    const { data, tasks, order } = choices;
+    const wanted = data.find(({ name }) => name && name === this.#wanted);
+    fill(this.#data, data.map((one) => [keyOf(one), dataText(one)]), wanted ? keyOf(wanted) : order.data);
+    fill(this.#task, tasks.map((task) => [task, taskText(task)]), wanted?.tasks[0] ?? order.task);
     this.#render();
   }
 
-  #build() {
-    const { models, presets, executors, order } = this.#choices;
-    this.data = element("select", { required: true });
-    this.dataText = element("p", { class: "soft" });
-    this.task = element("select", { required: true });
-    this.name = element("output", { class: "model-name" });
-    this.about = element("p", { class: "soft" });
-    this.seeds = element("input", { type: "number", min: 1, max: 64, value: Math.max(1, order.seeds.length), inputmode: "numeric" });
-    this.episodes = element("input", { type: "number", min: 0, max: 1000, value: order.evaluation_episodes, inputmode: "numeric" });
-    this.all = element("input", { type: "checkbox" });
-    this.presetText = element("p", { class: "soft" });
-    this.executor = element("select", {}, ...executors.map((name) => element("option", { value: name }, name)));
-    this.button = element("button", { type: "submit", class: "primary" });
-    this.hint = element("p", { class: "soft" });
-    const executor = element("label", {}, "Runs on", this.executor);
+  /** @param {Api.TrainingChoices} choices */
+  #build({ models, presets, executors, order }) {
+    this.#models = new ModelChoice(models, order.model, () => this.#render());
+    this.#seeds.value = String(Math.max(1, order.seeds.length));
+    this.#episodes.value = String(order.evaluation_episodes);
+    this.#executor.replaceChildren(...executors.map((name) => element("option", { value: name }, name)));
+    const executor = element("label", {}, "Runs on", this.#executor);
     setShown(executor, executors.length > 1);
-    this.form.replaceChildren(
-      element("div", { class: "data" }, element("label", {}, "Episodes", this.data), this.dataText),
-      element("label", {}, "Task", this.task),
+    const sizes = segments("preset", "", presets.map((name) => [name, name]));
+    this.#form.replaceChildren(
+      element("div", { class: "data" }, element("label", {}, "Episodes", this.#data), this.#dataText),
+      element("label", {}, "Task", this.#task),
+      this.#models.node,
+      element("fieldset", {}, element("legend", {}, "Size"), sizes, this.#presetText),
       element(
-        "fieldset",
-        { class: "grid-of-models" },
-        element("legend", {}, "Model"),
-        element("p", { class: "chosen", "aria-live": "polite" }, this.name),
-        this.about,
-        ...AXES.map((axis) => segmented(...axis)),
-        element("div", { class: "names", role: "group", "aria-label": "Named models" }, ...models.map((model) => this.#chip(model))),
-        element("label", { class: "inline" }, this.all, "Compare all seven of the paper"),
+        "div",
+        { class: "pair" },
+        element("label", {}, "Seeds", this.#seeds),
+        element("label", {}, "Rollouts each", this.#episodes),
       ),
-      element("fieldset", {}, element("legend", {}, "Size"), segmented("preset", "", presets.map((name) => [name, name])), this.presetText),
-      element("div", { class: "pair" }, element("label", {}, "Seeds", this.seeds), element("label", {}, "Rollouts each", this.episodes)),
       executor,
-      this.button,
-      this.hint,
+      this.#button,
+      this.#hint,
     );
-    check(this.form, "preset", order.preset || presets[0]);
-    this.#choose(models.find((model) => model.name === order.model) ?? models[0]);
-  }
-
-  #chip(model) {
-    const choose = () => {
-      this.#choose(model);
-      this.#render();
-    };
-    return element("button", { type: "button", class: "chip", dataset: { model: model.name }, title: model.about, on: { click: choose } }, model.name);
-  }
-
-  /** A named model sets the grid. */
-  #choose(model) {
-    for (const [axis] of AXES) check(this.form, axis, model[axis]);
-    this.#model = model.name;
+    choose(this.#form, "preset", order.preset || (presets[0] ?? ""));
   }
 
   /** Episodes of one task are learned from: the one that this data set has most of. */
   #followData() {
-    const [task] = this.#chosen.tasks;
-    if (task) this.task.value = task;
+    const task = this.#chosenData?.tasks[0];
+    if (task) this.#task.value = task;
   }
 
-  get #chosen() {
-    return this.#choices.data.find((one) => keyOf(one) === this.data.value);
+  get #chosenData() {
+    return this.#choices?.data.find((one) => keyOf(one) === this.#data.value);
   }
 
   #render() {
-    const point = AXES.map(([axis]) => this.form.elements[axis].value);
-    const named = this.#modelAt(point);
-    this.#model = named?.name ?? point.join("/");
-    setText(this.name, this.all.checked ? "All seven" : this.#model);
-    setText(this.about, this.all.checked ? PAPER.join(", ") : (named?.about ?? "A point of the grid that the paper does not name."));
-    for (const chip of this.form.querySelectorAll(".chip")) {
-      chip.setAttribute("aria-pressed", String(this.all.checked ? PAPER.includes(chip.dataset.model) : chip.dataset.model === this.#model));
-    }
-    setText(this.dataText, this.#chosen ? takenText(this.#chosen) : "");
-    setText(this.presetText, PRESETS[this.form.elements.preset.value] ?? "");
-    setText(this.button, this.all.checked ? "Train all seven" : `Train ${this.#model}`);
-    this.button.disabled = this.#choices.data.length === 0;
-    setText(this.hint, this.#choices.data.length ? "" : "There are no episodes yet. Record some in the lobby, or let scripts: mart collect");
-  }
-
-  /** Several models may share a point: the one chosen by name, else the first. */
-  #modelAt(point) {
-    const here = this.#choices.models.filter((model) => AXES.every(([axis], index) => model[axis] === point[index]));
-    return here.find((model) => model.name === this.#model) ?? here[0];
+    const data = this.#chosenData;
+    const preset = chosen(this.#form, "preset");
+    setText(this.#dataText, data ? takenText(data) : "");
+    setText(this.#presetText, isPreset(preset) ? SIZES[preset] : "");
+    setText(this.#button, `Train ${this.#models?.text ?? ""}`);
+    this.#button.disabled = !data;
+    setText(this.#hint, data ? "" : NO_EPISODES);
   }
 
   #submit() {
-    this.onSubmit({
-      models: this.all.checked ? PAPER : [this.#model],
-      tasks: [this.task.value],
-      data: this.#chosen.path,
-      dataset: this.#chosen.name,
-      preset: this.form.elements.preset.value,
-      seeds: Array.from({ length: Number(this.seeds.value) }, (_, seed) => seed),
-      evaluation_episodes: Number(this.episodes.value),
+    const data = this.#chosenData;
+    if (!this.#choices || !this.#models || !data) return;
+    this.#onSubmit({
+      models: this.#models.names,
+      tasks: [this.#task.value],
+      data: data.path,
+      dataset: data.name,
+      preset: chosen(this.#form, "preset"),
+      seeds: Array.from({ length: Number(this.#seeds.value) }, (_, seed) => seed),
+      evaluation_episodes: Number(this.#episodes.value),
       score_episodes: this.#choices.order.score_episodes,
-      executor: this.executor.value,
+      executor: this.#executor.value,
     });
   }
 }
 
+/**
+ * @param {string} name
+ * @returns {name is Preset}
+ */
+const isPreset = (name) => name in SIZES;
+
+/** A folder, or a data set in it. @type {(data: Messages.DataSet) => string} */
 const keyOf = ({ path, name }) => (name ? `${path}#${name}` : path);
 
-function segmented(name, title, options) {
-  const radios = options.map(([value, text]) =>
-    element("label", {}, element("input", { type: "radio", name, value, required: true }), element("span", {}, text)),
-  );
-  const group = element("div", { class: "segments", role: "radiogroup", "aria-label": title || name }, ...radios);
-  return title ? element("div", { class: "axis" }, element("span", { "aria-hidden": "true" }, title), group) : group;
-}
-
-function check(form, name, value) {
-  const radio = form.querySelector(`input[name="${name}"][value="${value}"]`);
-  if (radio) radio.checked = true;
-}
-
-/** Options that changed, with the choice kept where it still exists. */
-function fill(select, items, keyOf, textOf, preferred) {
-  const wanted = items.map((item) => [keyOf(item), textOf(item)]);
+/**
+ * Options that changed, with the choice kept where it still exists.
+ * @param {HTMLSelectElement} select
+ * @param {[value: string, text: string][]} wanted
+ * @param {string} preferred
+ */
+function fill(select, wanted, preferred) {
   const shown = [...select.options].map((option) => [option.value, option.textContent]);
   if (JSON.stringify(wanted) === JSON.stringify(shown)) return;
   const before = select.value;

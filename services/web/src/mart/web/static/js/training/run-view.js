@@ -2,30 +2,52 @@
 
 import * as api from "../api.js";
 import { byId, element, setShown } from "../dom.js";
-import { failuresText, learnedText, orderText, policyName, short, stateText, successText, taskText } from "./words.js";
+import { evaluationRow } from "./evaluation-row.js";
+import { learnedText, orderText, stateText, taskText } from "./formatting.js";
 
 const RUNNING = ["queued", "running"];
 const FEW = 3;
 
+/**
+ * `onPromote` tells whether it worked.
+ * @typedef {object} RunListeners
+ * @property {(job: string, action: "cancel" | "retry") => void} onAct
+ * @property {(promotion: Api.Promotion) => Promise<boolean>} onPromote
+ */
+
+/** Shows the run that is looked at. */
 export class RunView {
+  #listeners;
   #shown = "";
-  #promoting = null; // the evaluation whose checkpoint is being given a name
+  #promoting = ""; // the evaluation whose checkpoint is being given a name
+  /** @type {string | null} */
   #log = null;
   #job = "";
   #all = false;
+  /** @type {Api.JobDetails | null} */
   #details = null;
 
-  constructor({ onAct, onPromote }) {
-    Object.assign(this, { onAct, onPromote });
+  /** @param {RunListeners} listeners */
+  constructor(listeners) {
+    this.#listeners = listeners;
   }
 
-  /** `details`: of the run that is looked at, or null. Drawn anew only where something changed. */
+  /**
+   * Shows a run, or none; drawn anew only where something changed.
+   * @param {Api.JobDetails | null} details
+   */
   show(details) {
     setShown(byId("run"), details !== null);
     if (!details) return;
-    if (details.job.id !== this.#job) [this.#job, this.#promoting, this.#log, this.#all] = [details.job.id, null, null, false];
     const { job, evaluations, checkpoints, learned } = details;
-    const wanted = JSON.stringify([job.id, job.state, job.detail, evaluations, checkpoints.length, Boolean(learned), this.#promoting, this.#log]);
+    if (job.id !== this.#job) {
+      this.#job = job.id;
+      this.#promoting = "";
+      this.#log = null;
+      this.#all = false;
+    }
+    const told = [job.id, job.state, job.detail, evaluations, checkpoints.length, Boolean(learned)];
+    const wanted = JSON.stringify([...told, this.#promoting, this.#log]);
     if (wanted === this.#shown) return;
     this.#shown = wanted;
     this.#details = details;
@@ -37,136 +59,107 @@ export class RunView {
     this.show(this.#details);
   }
 
+  /** @param {Api.JobDetails} details */
   #content({ job, evaluations, learned }) {
     const facts = [job.id, taskText(job.order.task), job.order.data, orderText(job.order), stateText(job.state)];
     const title = element("h2", { id: "run-title" }, job.order.model);
-    const parts = [
-      element("header", {}, element("div", {}, title, element("p", { class: "soft" }, facts.filter(Boolean).join(" · "))), this.#deeds(job)),
-    ];
-    if (job.detail) parts.push(element("p", { class: job.state === "failed" ? "message" : "message calm" }, job.detail));
+    const subtitle = element("p", { class: "soft" }, facts.filter(Boolean).join(" · "));
+    const parts = [element("header", {}, element("div", {}, title, subtitle), this.#actions(job))];
+    if (job.detail) {
+      parts.push(element("p", { class: job.state === "failed" ? "message" : "message calm" }, job.detail));
+    }
     if (learned) parts.push(element("p", { class: "soft figures" }, learnedText(learned)));
-    parts.push(this.#judged(job, evaluations));
-    if (this.#log !== null) parts.push(element("pre", { class: "log", tabindex: "0", "aria-label": `Log of ${job.id}` }, this.#log || "Nothing yet."));
+    parts.push(this.#evaluations(job, evaluations));
+    if (this.#log !== null) {
+      const properties = { class: "log", tabindex: "0", "aria-label": `Log of ${job.id}` };
+      parts.push(element("pre", properties, this.#log || "Nothing yet."));
+    }
     return parts;
   }
 
-  #deeds(job) {
-    const press = (text, deed) => element("button", { type: "button", class: "quiet", on: { click: deed } }, text);
-    const deeds = [press(this.#log === null ? "Log" : "Hide log", () => this.#toggleLog(job.id))];
-    if (RUNNING.includes(job.state)) deeds.push(press("Cancel", () => this.onAct(job.id, "cancel")));
-    if (["failed", "cancelled"].includes(job.state)) deeds.push(press("Try again", () => this.onAct(job.id, "retry")));
-    return element("span", { class: "deeds" }, ...deeds);
+  /** @param {Api.Job} job */
+  #actions({ id, state }) {
+    const { onAct } = this.#listeners;
+    const buttons = [quietButton(this.#log === null ? "Log" : "Hide log", () => this.#toggleLog(id))];
+    if (RUNNING.includes(state)) buttons.push(quietButton("Cancel", () => onAct(id, "cancel")));
+    if (["failed", "cancelled"].includes(state)) buttons.push(quietButton("Try again", () => onAct(id, "retry")));
+    return element("span", { class: "deeds" }, ...buttons);
   }
 
-  #judged(job, evaluations) {
+  /**
+   * @param {Api.Job} job
+   * @param {Messages.Evaluation[]} evaluations
+   */
+  #evaluations(job, evaluations) {
     const known = evaluations.filter((one) => one.episodes > 0);
     if (known.length === 0) {
-      return element("p", { class: "soft" }, RUNNING.includes(job.state) ? "The first checkpoint is judged by rollouts as soon as it is there." : "No checkpoint was judged.");
+      return element("p", { class: "soft" }, RUNNING.includes(job.state) ? JUDGED_SOON : "No checkpoint was judged.");
     }
-    const order = (one) => (one.purpose === "score" ? Infinity : one.successes / one.episodes);
-    const sorted = known.toSorted((a, b) => order(b) - order(a) || b.updates - a.updates);
+    const sorted = known.toSorted((a, b) => rankOf(b) - rankOf(a) || b.updates - a.updates);
     const shown = this.#all ? sorted : sorted.slice(0, FEW);
-    const list = element("ul", { class: "judged" }, ...shown.map((one, index) => this.#evaluation(job, one, index === 0)));
+    const rows = shown.map((one, index) => this.#evaluation(job, one, index === 0));
+    const list = element("ul", { class: "judged" }, ...rows);
     if (sorted.length <= FEW) return list;
-    const toggle = () => {
-      this.#all = !this.#all;
-      this.#redraw();
-    };
     const text = this.#all ? "Show the best only" : `Show all ${sorted.length} evaluations`;
-    return element("div", {}, list, element("button", { type: "button", class: "quiet", on: { click: toggle } }, text));
+    return element("div", {}, list, quietButton(text, () => this.#toggleAll()));
   }
 
-  #evaluation(job, one, best) {
-    const { rate, of } = successText(one);
-    const what = one.purpose === "score" ? "Best, on fresh worlds" : `After ${short(one.updates)} updates`;
-    const failures = failuresText(one);
-    const promote = element(
-      "button",
-      { type: "button", class: best ? "primary" : "", "aria-label": `Promote the checkpoint after ${one.updates} updates, seed ${one.seed}`, on: { click: () => this.#ask(keyOf(one)) } },
-      "Promote",
-    );
-    const node = element(
-      "li",
-      { class: "evaluation" },
-      element("span", { class: "rate figures" }, rate),
-      element(
-        "span",
-        {},
-        element("strong", {}, what),
-        element("span", { class: "soft figures" }, ` seed ${one.seed}, ${of}`),
-        element("span", { class: "videos" }, failures && `Fails at: ${failures}`, ...one.rollouts.map((rollout) => videoButton(job.id, rollout))),
-      ),
-      promote,
-    );
-    if (this.#promoting === keyOf(one)) node.append(this.#namingForm(job, one.checkpoint));
-    return node;
+  /**
+   * @param {Api.Job} job
+   * @param {Messages.Evaluation} evaluation
+   * @param {boolean} isBest
+   */
+  #evaluation(job, evaluation, isBest) {
+    const key = keyOf(evaluation);
+    return evaluationRow(job, evaluation, {
+      isBest,
+      isPromoting: this.#promoting === key,
+      onAsk: () => this.#ask(key),
+      onPromote: (name) => this.#promote({ job: job.id, checkpoint: evaluation.checkpoint, name }),
+      onCancel: () => this.#setPromoting(""),
+    });
   }
 
+  /** @param {string} key */
   #ask(key) {
+    this.#setPromoting(key);
+    byId("policy-name", HTMLInputElement).select();
+  }
+
+  /** @param {Api.Promotion} promotion */
+  async #promote(promotion) {
+    if (await this.#listeners.onPromote(promotion)) this.#setPromoting("");
+  }
+
+  /** @param {string} key */
+  #setPromoting(key) {
     this.#promoting = key;
     this.#redraw();
-    byId("policy-name").select();
   }
 
-  #namingForm(job, checkpoint) {
-    const name = element("input", { id: "policy-name", value: policyName(job.order.model, job.order.task), maxlength: 64, required: true, pattern: "[a-z0-9][a-z0-9_\\-]*", title: "Lower-case letters, digits, - and _", autocomplete: "off" });
-    const submit = async (event) => {
-      event.preventDefault();
-      if (!(await this.onPromote({ job: job.id, checkpoint, name: name.value }))) return;
-      this.#promoting = null;
-      this.#redraw();
-    };
-    const cancel = () => {
-      this.#promoting = null;
-      this.#redraw();
-    };
-    return element(
-      "form",
-      { class: "naming", on: { submit } },
-      element("label", {}, "Its name as a policy", name),
-      element("button", { type: "submit", class: "primary" }, "Promote it"),
-      element("button", { type: "button", class: "quiet", on: { click: cancel } }, "Not now"),
-    );
+  #toggleAll() {
+    this.#all = !this.#all;
+    this.#redraw();
   }
 
+  /** @param {string} id */
   async #toggleLog(id) {
-    this.#log = this.#log === null ? (await api.trainingLog(id).catch((error) => ({ log: error.message }))).log : null;
+    this.#log = this.#log === null ? await logOf(id) : null;
     this.#redraw();
   }
 }
 
+const JUDGED_SOON = "The first checkpoint is judged by rollouts as soon as it is there.";
+
+/** The score first, then the most successful. @type {(evaluation: Messages.Evaluation) => number} */
+const rankOf = ({ purpose, successes, episodes }) => (purpose === "score" ? Infinity : successes / episodes);
+
+/** @type {(evaluation: Messages.Evaluation) => string} */
 const keyOf = ({ purpose, checkpoint }) => `${purpose} ${checkpoint}`;
 
-const RENDERING_MS = 1500;
+/** @type {(text: string, action: () => void) => HTMLElement} */
+const quietButton = (text, action) =>
+  element("button", { type: "button", class: "quiet", on: { click: action } }, text);
 
-/** Shows the video in the button's place, as soon as it is rendered. */
-function videoButton(job, rollout) {
-  const text = `${rollout.outcome === "success" ? "Success" : "Failure"}, ${rollout.time_s.toFixed(0)} s`;
-  const button = element("button", { type: "button", class: "quiet", title: rollout.detail, on: { click: play } }, `▶ ${text}`);
-
-  async function play() {
-    button.disabled = true;
-    button.textContent = "Rendering…";
-    try {
-      const src = URL.createObjectURL(await rendered(api.videoOf(job, rollout.name)));
-      const video = element("video", { src, controls: true, autoplay: true, loop: true, "aria-label": `${text}. ${rollout.detail}` });
-      video.muted = true;
-      button.replaceWith(video);
-    } catch (error) {
-      button.disabled = false;
-      button.textContent = `${text}: ${error.message}`;
-    }
-  }
-
-  return button;
-}
-
-/** The video's bytes, however long its rendering takes. */
-async function rendered(url) {
-  for (;;) {
-    const response = await fetch(url);
-    if (response.status === 200) return response.blob();
-    if (response.status !== 202) throw new Error((await response.json()).error.message);
-    await new Promise((resolve) => setTimeout(resolve, RENDERING_MS));
-  }
-}
+/** What a job printed, or why that cannot be had. @type {(id: string) => Promise<string>} */
+const logOf = (id) => api.trainingLog(id).then(({ log }) => log, api.messageOf);

@@ -1,29 +1,36 @@
 // What the training page says. Pure.
 
+import { plural, sentence } from "../formatting.js";
+import { nameFrom } from "../names.js";
+
 const FEW = 3;
 
+/** 0.256 → "26 %" @type {(share: number) => string} */
 export const percent = (share) => `${Math.round(100 * share)} %`;
 
-export const stateText = (state) =>
-  ({ queued: "Waits", running: "Training", done: "Done", failed: "Failed", cancelled: "Cancelled" })[state] ?? state;
+/** @type {Record<Messages.JobState, string>} */
+const STATES = { queued: "Waits", running: "Training", done: "Done", failed: "Failed", cancelled: "Cancelled" };
 
-export const taskText = (task) => {
-  const words = task.replace(/^(two|three|four)_arm_/, "").replaceAll("_", " ");
-  return words.charAt(0).toUpperCase() + words.slice(1);
-};
+/** How a job does. @type {(state: Messages.JobState) => string} */
+export const stateText = (state) => STATES[state] ?? state;
 
-export const plural = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
+/** "two_arm_drink_tray_lifting" → "Drink tray lifting" @type {(task: string) => string} */
+export const taskText = (task) => sentence(task.replace(/^(two|three|four)_arm_/, ""));
 
-/** "fast, 3 seeds", with the data set where it has a name */
-export const orderText = ({ preset, seeds, dataset }) => [dataset, preset, plural(seeds.length, "seed")].filter(Boolean).join(", ");
+/** "fast, 3 seeds", with the data set where it has a name @type {(order: Messages.Order) => string} */
+export const orderText = ({ preset, seeds, dataset }) =>
+  [dataset, preset, plural(seeds.length, "seed")].filter(Boolean).join(", ");
 
-/** A folder of episodes, or a named data set of one: its folder is told where it is not the usual one. */
+/**
+ * A folder of episodes, or a named data set of one: its folder is told where it is not the usual one.
+ * @type {(data: Messages.DataSet) => string}
+ */
 export function dataText({ path, name, episodes }) {
   const where = name && path !== "episodes" ? ` in ${path}` : "";
   return `${name || path}${where} (${plural(episodes, "episode")})`;
 }
 
-/** What a run learned from, and what of a data set it did not. */
+/** What a run learned from, and what of a data set it did not. @type {(learned: Messages.Learned) => string} */
 export function learnedText({ episodes, dataset, dataset_episodes: held, sha256, left_out: leftOut }) {
   const whole = dataset ? ` of the ${held} in “${dataset}”` : "";
   const more = leftOut.length > FEW ? ` and ${leftOut.length - FEW} more` : "";
@@ -31,14 +38,15 @@ export function learnedText({ episodes, dataset, dataset_episodes: held, sha256,
   return `Episodes learned from: ${episodes}${whole}; digest ${sha256.slice(0, 12)}.${rest}`;
 }
 
-/** What a training takes of it. */
+/** What a training takes of a data set. @type {(data: Messages.DataSet) => string} */
 export function takenText({ name, left_out: leftOut }) {
   if (!name) return "The successful and verified ones are learned from.";
   if (leftOut === 0) return "A data set is learned from whole, failures too.";
-  return `${plural(leftOut, "episode")} of it ${leftOut === 1 ? "is" : "are"} left out: dropped, discarded or deleted since.`;
+  const are = leftOut === 1 ? "is" : "are";
+  return `${plural(leftOut, "episode")} of it ${are} left out: dropped, discarded or deleted since.`;
 }
 
-/** 0.00123 → "0.0012", 12345 → "12 345" */
+/** 0.00123 → "0.0012", 12345 → "12 345" @type {(value: number) => string} */
 export function short(value) {
   if (value === 0 || !Number.isFinite(value)) return String(value);
   const size = Math.abs(value);
@@ -47,7 +55,10 @@ export function short(value) {
   return value.toExponential(1);
 }
 
-/** How far a job has come: a share of 1 and the words for it. */
+/**
+ * How far a job has come: a share of 1 and the words for it.
+ * @type {(job: Api.Job) => { share: number, text: string }}
+ */
 export function progressOf({ state, progress, detail }) {
   if (!progress || progress.updates_in_all === 0) return { share: state === "done" ? 1 : 0, text: detail };
   const { updates, updates_in_all: all, updates_per_s: pace, stage } = progress;
@@ -56,23 +67,29 @@ export function progressOf({ state, progress, detail }) {
   return { share: updates / all, text: detail || `${doing}${short(updates)} of ${short(all)} updates${left}` };
 }
 
+/** @type {(seconds: number) => string} */
 function remaining(seconds) {
   if (seconds < 90) return `${Math.max(1, Math.round(seconds))} s`;
   return seconds < 5400 ? `${Math.round(seconds / 60)} min` : `${(seconds / 3600).toFixed(1)} h`;
 }
 
-/** The share and what it is worth: "26 of 30, likely 70–95 %". */
+/**
+ * The share that succeeded and what it is worth: "26 of 30, likely 70–95 %".
+ * @type {(evaluation: Messages.Evaluation) => { rate: string, of: string }}
+ */
 export function successText({ episodes, successes, low, high }) {
   const interval = `${Math.round(100 * low)}–${percent(high)}`;
   return { rate: percent(successes / episodes), of: `${successes} of ${episodes}, likely ${interval}` };
 }
 
-/** Where the failures were: the first subtask that was not done, most frequent first. */
+/**
+ * Where the failures were: the first subtask that was not done, most frequent first.
+ * @type {(evaluation: Messages.Evaluation) => string}
+ */
 export function failuresText({ failures }) {
   const sorted = failures.filter((one) => one.episodes > 0).sort((a, b) => b.episodes - a.episodes);
   return sorted.map((one) => `${one.name.replaceAll("_", " ")} ${one.episodes}×`).join(", ");
 }
 
-/** A name that a policy may have: lower-case letters, digits, '-' and '_'. */
-export const policyName = (model, task) =>
-  `${taskText(task)}-${model}`.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "").slice(0, 64);
+/** A name that a policy may have, to begin with. @type {(order: Messages.Order) => string} */
+export const policyName = ({ model, task }) => nameFrom(`${taskText(task)}-${model}`);

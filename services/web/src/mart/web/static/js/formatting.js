@@ -1,22 +1,35 @@
-// What the pages say: states in the words of the people who use them.
+// What the pages say: states in the words of the people who use them. Pure.
 
 import { lateName } from "./arms.js";
 
+/** 2.34 → "2.3 s" @type {(value: number) => string} */
 export const seconds = (value) => `${value.toFixed(1)} s`;
 
-/** 42 → "0:42" */
+/** 42 → "0:42" @type {(elapsedS: number) => string} */
 export function clockTime(elapsedS) {
   const whole = Math.floor(elapsedS);
   return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
 }
 
+/** 2345678 → "2.3 MB" @type {(bytes: number) => string} */
 export function fileSize(bytes) {
   return bytes < 1e6 ? `${Math.max(1, Math.round(bytes / 1e3))} kB` : `${(bytes / 1e6).toFixed(1)} MB`;
 }
 
-export const outcomeText = (outcome) =>
-  ({ success: "Success", failure: "Failed", discarded: "Discarded" })[outcome] ?? "";
+/** 3, "run" → "3 runs" @type {(count: number, one: string) => string} */
+export const plural = (count, one) => `${count} ${count === 1 ? one : `${one}s`}`;
 
+/** "success_rate" → "Success rate" @type {(name: string) => string} */
+export function sentence(name) {
+  const words = name.replaceAll("_", " ");
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/** How an episode ended; nothing while it has not. @type {(outcome: Messages.Outcome | "unspecified") => string} */
+export const outcomeText = (outcome) =>
+  ({ success: "Success", failure: "Failed", discarded: "Discarded", unspecified: "" })[outcome] ?? "";
+
+/** What a room's episode does now. @type {(episode: Api.RoomEpisode) => string} */
 export function phaseText(episode) {
   switch (episode.phase) {
     case "countdown":
@@ -30,7 +43,10 @@ export function phaseText(episode) {
   }
 }
 
-/** "Episode 3 of 50": the one that is being tried, until it is a good one. Nothing where nobody planned. */
+/**
+ * "Episode 3 of 50": the one that is being tried, until it is a good one. Nothing where nobody planned.
+ * @param {Api.Plan | null | undefined} plan
+ */
 export function planText(plan) {
   if (!plan) return "";
   const { episodes, good } = plan;
@@ -38,7 +54,7 @@ export function planText(plan) {
   return episodes === 1 ? "Planned episode recorded" : `All ${episodes} episodes recorded`;
 }
 
-/** "Waiting for Ana, 0.8 s", or nothing. */
+/** "Waiting for Ana, 0.8 s", or nothing. @type {(room: Api.Room) => string} */
 export function waitingText(room) {
   if (room.barrier === "stopped") return "Emergency stop";
   if (!["stalled", "paused"].includes(room.barrier) || room.waiting_for.length === 0) return "";

@@ -1,4 +1,4 @@
-"""What the state strip says and offers in every state: the pages' one clear next action."""
+"""What the status bar says and offers in every state: the pages' one clear next action."""
 
 from __future__ import annotations
 
@@ -28,7 +28,9 @@ def room(*seats: dict[str, Any], phase: str = "practice", **episode: Any) -> dic
 
 def view(run: Run, the_room: dict[str, Any] | None, **more: Any) -> dict[str, Any]:
     known = {"room": the_room, "seat": the_room and the_room["seats"][0], "link": LIVE, "saved": None, **more}
-    shown: dict[str, Any] = run("hud/strip-view.js", "({ stripView }, known) => stripView(known)", known)
+    shown: dict[str, Any] = run(
+        "hud/status-bar-view.js", "({ statusBarView }, known) => statusBarView(known)", known
+    )
     shown["actions"] = [action["command"] for action in shown["actions"]]
     return shown
 

@@ -1,0 +1,177 @@
+// One episode: what was seen, what happened when, how it ended, and what to do with it.
+
+import * as api from "../api.js";
+import { byId, element, setText } from "../dom.js";
+import { fileSize } from "../formatting.js";
+import { factsCard } from "./episode-facts.js";
+import { dateText, remarks } from "./formatting.js";
+import { LabelForm } from "./label-form.js";
+import { Player } from "./player.js";
+import { laneRows, traceRows } from "./timeline.js";
+
+/** @typedef {(action: () => Promise<void>) => Promise<void>} AttemptChange runs a change and shows its failure */
+
+/** Shows one episode at a time, and takes what people say about it. */
+export class EpisodeView {
+  #attempt;
+  #onBack;
+  /** @type {Player | null} */
+  #player = null;
+  #path = "";
+  /** As it was last told. @type {Api.Episode | null} */
+  #known = null;
+  #asked = 0;
+  #said = Promise.resolve();
+  #labels = new LabelForm((labels) => this.#say(labels));
+  #subtitle = element("p", { class: "soft" });
+
+  /**
+   * @param {AttemptChange} attempt
+   * @param {() => void} onBack returns to the list
+   */
+  constructor(attempt, onBack) {
+    this.#attempt = attempt;
+    this.#onBack = onBack;
+    document.addEventListener("keydown", (event) => this.#onKey(event));
+  }
+
+  get isOpen() {
+    return this.#path !== "";
+  }
+
+  /**
+   * Asks for an episode and shows it.
+   * @param {string} path
+   */
+  async open(path) {
+    this.close();
+    this.#path = path;
+    const { details } = await api.episode(path);
+    if (this.#path === path) this.#show(details);
+  }
+
+  /** Shows none. */
+  close() {
+    this.#path = "";
+    this.#player?.close();
+    this.#player = null;
+    byId("one").replaceChildren();
+  }
+
+  /** @param {Api.EpisodeDetails} details */
+  #show(details) {
+    const { episode } = details;
+    const title = element("h1", { id: "one-title", class: "title" }, episode.title);
+    byId("one").replaceChildren(
+      element("p", {}, this.#backLink()),
+      element("header", { class: "one-head" }, element("div", {}, title, this.#subtitle), download(episode)),
+      this.#labels.node,
+      this.#seen(details),
+      factsCard(details),
+    );
+    this.#known = episode;
+    this.#update(episode);
+    document.title = `${episode.title}, episode ${episode.number} · MART`;
+  }
+
+  /** @param {Api.Episode} episode */
+  #update(episode) {
+    const facts = [`${episode.room}, episode ${episode.number}`, dateText(episode.started_ms), ...remarks(episode)];
+    setText(this.#subtitle, facts.filter(Boolean).join(" · "));
+    this.#labels.update(episode);
+  }
+
+  #backLink() {
+    /** @param {MouseEvent} event */
+    const click = (event) => {
+      event.preventDefault();
+      this.#onBack();
+    };
+    return element("a", { class: "back", href: "/episodes", on: { click } }, "← All episodes");
+  }
+
+  /** @param {Api.EpisodeDetails} details */
+  #seen(details) {
+    const { episode, views, wall_s: wallS } = details;
+    const card = element("section", { class: "card seen", "aria-label": "What happened" });
+    if (wallS === 0) {
+      card.append(element("p", { class: "soft" }, "This file holds no states."));
+      return card;
+    }
+    const player = new Player(episode.path, views, wallS);
+    const cursor = element("span", { class: "cursor" });
+    player.onMove = (share) => cursor.style.setProperty("--at", String(share));
+    player.ready.catch((error) => this.#attempt(() => Promise.reject(error)));
+    this.#player = player;
+    const lanes = element("div", { class: "lanes" }, ...laneRows(details), ...traceRows(details), cursor);
+    card.append(views.length ? player.videos : noPicture(episode), player.controls, lanes);
+    return card;
+  }
+
+  /**
+   * One after the other, and only the last answer is shown: an earlier one does not know what was pressed since.
+   * @param {Api.EpisodeLabels} labels
+   */
+  #say(labels) {
+    const path = this.#path;
+    const mine = ++this.#asked;
+    const label = async () => {
+      const { episode } = await api.labelEpisode(path, labels);
+      if (path === this.#path) this.#known = episode;
+    };
+    this.#said = this.#said
+      .then(() => this.#attempt(label))
+      .then(() => {
+        if (mine === this.#asked && path === this.#path && this.#known) this.#update(this.#known);
+      });
+  }
+
+  /** @param {KeyboardEvent} event */
+  #onKey(event) {
+    const { ctrlKey, metaKey, altKey, target } = event;
+    if (!this.isOpen || ctrlKey || metaKey || altKey || !(target instanceof Element)) return;
+    if (target.matches("input:not([type=range], [type=radio], [type=checkbox]), select")) return;
+    const action = this.#actionOf(event.key, target);
+    if (!action) return;
+    event.preventDefault();
+    action();
+  }
+
+  /**
+   * @param {string} key
+   * @param {Element} target
+   * @returns {(() => void) | null}
+   */
+  #actionOf(key, target) {
+    const outcome = OUTCOME_KEYS.get(key);
+    if (outcome) return () => this.#say({ outcome });
+    if (key === "Escape") return () => this.#onBack();
+    if (key === " " && !target.matches("button, input, a")) return () => this.#player?.toggle();
+    const step = STEP_KEYS.get(key);
+    return step && !target.matches("input") ? () => this.#player?.step(step) : null;
+  }
+}
+
+/** @type {Map<string, Messages.Outcome>} */
+const OUTCOME_KEYS = new Map([
+  ["s", "success"],
+  ["f", "failure"],
+  ["d", "discarded"],
+]);
+
+const STEP_KEYS = new Map([
+  ["ArrowLeft", -1],
+  ["ArrowRight", 1],
+]);
+
+/** @param {Api.Episode} episode */
+function download({ path, size_bytes: size }) {
+  const text = `Download MCAP, ${fileSize(Number(size))}`;
+  return element("a", { class: "button", href: api.fileOf(path), download: "" }, text);
+}
+
+/** @param {Api.Episode} episode */
+function noPicture({ path }) {
+  const command = element("code", {}, `mart episodes render data/episodes/${path}`);
+  return element("p", { class: "soft" }, "No picture was recorded. Draw one with ", command);
+}

@@ -1,0 +1,139 @@
+// The right edge: what one drives with, and the phone's pairing code.
+
+import { pairPhone } from "../api.js";
+import { cueText } from "../cues.js";
+import { byId, element, setShown, setText } from "../dom.js";
+import { CUES } from "../facts.js";
+
+/** @type {[keys: string, text: string][]} */
+const KEYS = [
+  ["Space", "Hold to move; let go and the arm holds still"],
+  ["W S", "Away, towards you"],
+  ["A D", "Left, right"],
+  ["Q E", "Up, down"],
+  ["↑ ↓ ← → Z X", "Turn"],
+  ["Shift", "Slowly"],
+  ["G", "Close or open the gripper"],
+  ["N", "Next: ready, again"],
+  ["S F R", "With space let go, twice: success, failed, discard"],
+  ["B", "Hand the arm back to the policy or script"],
+  ["P", "Stop everything, and go on"],
+  ["Q", "With space let go, twice: leave the seat"],
+  [CUES.map((_, index) => index + 1).join(" "), `To your partners: ${CUES.map(cueText).join(", ")}`],
+  ["?", "These keys"],
+];
+
+/** Shows the input of one's own arm, pairs phones, and lists the keys. */
+export class InputPanel {
+  #room;
+  #arm;
+  #onFailure;
+  #countdown = 0; // the timer of the code that is shown
+
+  /**
+   * @param {string} room
+   * @param {string} arm
+   * @param {(error: unknown) => void} onFailure
+   */
+  constructor(room, arm, onFailure) {
+    this.#room = room;
+    this.#arm = arm;
+    this.#onFailure = onFailure;
+    byId("pair").addEventListener("click", () => this.#pair());
+    byId("pairing-close").addEventListener("click", () => this.#closePairing());
+    byId("help").addEventListener("click", () => this.toggleHelp());
+    const rows = KEYS.flatMap(([keys, text]) => [element("dt", {}, ...caps(keys)), element("dd", {}, text)]);
+    byId("keys").append(element("dl", {}, ...rows));
+  }
+
+  /**
+   * Shows the newest status, and what keyboard and mouse ask for now.
+   * @param {StatusChannel.Tick | null} status
+   * @param {{ gripper: number, stopped: boolean, engaged: boolean }} hand
+   */
+  update(status, hand) {
+    const phone = status?.phone ?? null;
+    const byPhone = status?.input === "phone";
+    showInput(phone, byPhone);
+    showHand(hand, byPhone);
+    if (phone && this.#countdown && byPhone) this.#closePairing();
+  }
+
+  /** Shows the keys, or hides them. */
+  toggleHelp() {
+    const shown = Boolean(byId("keys").hidden);
+    setShown(byId("keys"), shown);
+    byId("help").setAttribute("aria-expanded", String(shown));
+  }
+
+  async #pair() {
+    try {
+      const { url, qr_svg: svg, expires_s: expiresS, hint } = await pairPhone(this.#room, this.#arm);
+      const image = byId("qr", HTMLImageElement);
+      image.src = `data:image/svg+xml,${encodeURIComponent(withNamespace(svg))}`;
+      image.title = url;
+      setText(byId("pairing-hint"), hint);
+      setShown(byId("pairing"), true);
+      byId("health", HTMLDetailsElement).open = false; // it would cover the code
+      clearInterval(this.#countdown);
+      this.#countDown(performance.now() + 1000 * expiresS);
+    } catch (error) {
+      this.#onFailure(error);
+    }
+  }
+
+  /** @param {number} untilMs */
+  #countDown(untilMs) {
+    const show = () => {
+      const leftS = Math.ceil((untilMs - performance.now()) / 1000);
+      if (leftS <= 0) this.#closePairing();
+      const how = `Scan with the phone's camera within ${leftS} s.`;
+      setText(byId("pairing-text"), `${how} The phone may warn once that this site vouches for itself: go on.`);
+    };
+    show();
+    this.#countdown = setInterval(show, 1000);
+  }
+
+  #closePairing() {
+    clearInterval(this.#countdown);
+    this.#countdown = 0;
+    setShown(byId("pairing"), false);
+  }
+}
+
+/**
+ * What drives, and the buttons that change it.
+ * @param {StatusChannel.Tick["phone"]} phone
+ * @param {boolean} byPhone
+ */
+function showInput(phone, byPhone) {
+  setText(byId("input"), byPhone ? phoneText(phone) : "Keyboard and mouse");
+  setText(byId("switch"), byPhone ? "Use the keyboard" : "Use the phone");
+  setText(byId("pair"), phone ? "Pair another phone" : "Pair a phone");
+  setShown(byId("switch"), phone !== null || byPhone);
+  setShown(byId("gripper"), !byPhone);
+  setShown(byId("toggle"), !byPhone);
+}
+
+/**
+ * What the hand does, and what it can be told.
+ * @param {{ gripper: number, stopped: boolean, engaged: boolean }} hand
+ * @param {boolean} byPhone
+ */
+function showHand({ gripper, stopped, engaged }, byPhone) {
+  const how = byPhone ? "Hold the phone's lower part to move." : "Hold space or drag the picture to move.";
+  setText(byId("clutch"), engaged ? "Moving" : how);
+  setText(byId("gripper"), `${gripper > 0.5 ? "Open" : "Close"} gripper`);
+  setText(byId("stop"), stopped ? "Go on" : "Stop everything");
+  byId("stop").setAttribute("aria-pressed", String(stopped));
+}
+
+/** @param {StatusChannel.Tick["phone"]} phone */
+const phoneText = (phone) => (phone ? `Phone, tracking ${phone.tracking ? "good" : "lost"}` : "Phone, not connected");
+
+/** @param {string} keys */
+const caps = (keys) => keys.split(" ").flatMap((key) => [element("kbd", {}, key), " "]);
+
+/** @param {string} svg */
+const withNamespace = (svg) =>
+  svg.includes("xmlns=") ? svg : svg.replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"');

@@ -1,0 +1,10 @@
+// Names that rooms, data sets and policies may have: lower-case letters, digits, '-' and '_'. Pure.
+
+import { MAX_NAME_LENGTH } from "./facts.js";
+
+/** For the `pattern` of an input. */
+export const NAME_PATTERN = "[a-z0-9][a-z0-9_\\-]*";
+
+/** A text as a name, also while it is being typed: "Cubes, good" → "cubes-good" @type {(text: string) => string} */
+export const nameFrom = (text) =>
+  text.toLowerCase().replace(/[^a-z0-9_]+/g, "-").replace(/^[-_]+/, "").slice(0, MAX_NAME_LENGTH);

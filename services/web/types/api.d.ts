@@ -1,0 +1,221 @@
+// The HTTP API and the live socket as docs/protocol.md describes them, section 2; what is protobuf there is Messages.
+
+declare namespace Api {
+  interface Person {
+    holder_id: string;
+    name: string;
+  }
+
+  interface TaskOption {
+    name: string;
+    title: string;
+    instruction: string;
+    arms: number;
+  }
+
+  interface NewRoom {
+    task: string;
+    room: string;
+    control_hz: number;
+    episodes: number;
+  }
+
+  interface Finding {
+    area: "services" | "rooms" | "delays" | "machine";
+    name: string;
+    found: string;
+    mend: string;
+  }
+
+  // Rooms
+
+  interface Seat {
+    arm: string;
+    operator: Messages.Operator;
+    epoch: number;
+    holder_id: string;
+    name: string;
+    ready: boolean;
+    engaged: boolean;
+    mine: boolean;
+    policy: string;
+    relieved: string;
+  }
+
+  interface Waiting {
+    arm: string;
+    name: string;
+    since_s: number;
+  }
+
+  interface RoomEpisode {
+    number: number;
+    phase: Messages.EpisodePhase;
+    remaining_s: number;
+    ticks: number;
+    elapsed_s: number;
+    outcome: Messages.Outcome | "unspecified";
+    reason: string;
+  }
+
+  interface Subtask {
+    name: string;
+    title: string;
+    done: boolean;
+  }
+
+  interface Plan {
+    episodes: number;
+    good: number;
+  }
+
+  interface Room {
+    room: string;
+    task: string;
+    title: string;
+    instruction: string;
+    time_limit_s: number | null;
+    stale: boolean;
+    control_hz: number;
+    tick: number;
+    real_time_factor: number;
+    barrier: Messages.BarrierPhase;
+    waiting_for: Waiting[];
+    seats: Seat[];
+    episode: RoomEpisode;
+    progress: { subtasks: Subtask[]; success: boolean; failed: boolean };
+    episodes_saved: number;
+    episodes_good: number;
+    plan: Plan | null;
+    still: number;
+  }
+
+  type EpisodeAction = "ready" | "unready" | "success" | "failure" | "discard" | "reset";
+
+  interface Notice {
+    room: string;
+    kind: "notice";
+    level: string;
+    text: string;
+    from: string;
+  }
+
+  interface CueGiven {
+    room: string;
+    kind: "cue_given";
+    arm: string;
+    cue: Messages.Cue;
+  }
+
+  interface EpisodeSaved {
+    room: string;
+    kind: "episode_saved";
+    number: number;
+    path: string;
+    verified: boolean;
+    verdict: string;
+    size_bytes: number;
+    outcome: Messages.Outcome | "unspecified";
+  }
+
+  type RoomEvent = Notice | CueGiven | EpisodeSaved;
+
+  interface LiveMessage {
+    rooms?: Room[];
+    event?: RoomEvent;
+  }
+
+  // Peers
+
+  type PeerRole = "browser" | "viewer" | "phone";
+
+  interface SeatToken {
+    token: string;
+    role: PeerRole;
+    epoch: number;
+  }
+
+  interface Pairing {
+    code: string;
+    url: string;
+    expires_s: number;
+    qr_svg: string;
+    hint: string;
+  }
+
+  interface PairedPhone extends SeatToken {
+    room: string;
+    arm: string;
+    name: string;
+  }
+
+  // Recorded episodes
+
+  interface Episode extends Omit<Messages.RecordedEpisode, "real_time_factor"> {
+    title: string;
+    started_ms: number;
+    real_time_factor: number | null;
+  }
+
+  interface EpisodeListing extends Omit<Messages.CatalogueReplyListing, "episodes" | "tasks"> {
+    episodes: Episode[];
+    tasks: Record<string, string>;
+  }
+
+  type LaneKind = "subtask" | "driver" | "engaged" | "waiting" | "cue" | "notice";
+
+  interface Lane extends Messages.Lane {
+    kind: LaneKind;
+    title: string;
+  }
+
+  interface EpisodeDetails extends Omit<Messages.CatalogueReplyDetails, "episode" | "lanes"> {
+    episode: Episode;
+    lanes: Lane[];
+  }
+
+  interface EpisodeLabels {
+    outcome?: Messages.Outcome;
+    note?: string;
+    dropped?: boolean;
+  }
+
+  interface EpisodeFilter {
+    task?: string;
+    outcome?: string;
+    verdict?: string;
+    operator?: string;
+    room?: string;
+    skill?: string;
+    dataset?: string;
+  }
+
+  type Curation = { action: "add" | "remove" } & ({ paths: string[] } | { all: EpisodeFilter });
+
+  // Training
+
+  interface TrainingOrder extends Omit<Messages.Order, "model" | "task" | "score_episodes"> {
+    models: string[];
+    tasks: string[];
+    score_episodes: number | undefined;
+    executor: string;
+  }
+
+  interface TrainingChoices extends Messages.TrainerReplyChoices {
+    order: Messages.Order;
+  }
+
+  interface Job extends Messages.Job {
+    order: Messages.Order;
+  }
+
+  interface JobDetails extends Messages.TrainerReplyDetails {
+    job: Job;
+  }
+
+  interface Promotion {
+    job: string;
+    checkpoint: string;
+    name: string;
+  }
+}

@@ -1,0 +1,47 @@
+// The status channel between a gateway and its peers: docs/protocol.md, section "Status channel".
+
+declare namespace StatusChannel {
+  type Input = "keyboard" | "phone";
+
+  interface Latency {
+    p50_ms: number;
+    p95_ms: number;
+    stages: Record<string, number>;
+  }
+
+  interface Tick {
+    type: "tick";
+    tick: number;
+    sequence: number;
+    rtf: number;
+    engaged: boolean;
+    gripper: number;
+    holding: boolean;
+    barrier: Messages.BarrierPhase;
+    waiting: { arm: string; since_s: number }[];
+    input: Input;
+    phone: { age_ms: number; tracking: boolean } | null;
+    rejected: Record<string, number>;
+    fps: number;
+    latency: Latency | null;
+  }
+
+  interface Pong {
+    type: "pong";
+    t_us: number;
+    gateway_ns: number;
+  }
+
+  interface Replaced {
+    type: "replaced";
+  }
+
+  type FromGateway = Tick | Pong | Replaced;
+
+  type ToGateway =
+    | { type: "ping"; t_us: number }
+    | { type: "clock"; offset_ns: number }
+    | { type: "seen"; tick: number; t_us: number }
+    | { type: "input"; input: Input }
+    | { type: "cue"; cue: Messages.Cue; t_us: number };
+}
