@@ -39,7 +39,7 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.rollouts.client import RolloutClient
 from mart.runtime.bus import Bus
 from mart.runtime.bus.zenoh_bus import ZenohBus
-from mart.sim.lockstep import Lockstep
+from mart.sim.rollout.rollout_server import Lockstep
 from mart.sim.world import World, osc
 
 ENDPOINT = "tcp/127.0.0.1:17561"

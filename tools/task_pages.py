@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from mart.protocol.tasks import SHARED_VIEWPOINT, Task, arm_counts, get_task, task_names
 from mart.sim.envs import gymnasium_id
-from mart.sim.experts.rehearsal import rehearse
+from mart.sim.experts.run_experts import rehearse
 from mart.sim.renderer import Renderer
 from mart.sim.world import World
 

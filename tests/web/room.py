@@ -19,8 +19,8 @@ from mart.protocol.messages import (
 from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.base import Bus, Request
-from mart.sim.episode import EpisodeCourse
-from mart.sim.seats import SeatHolder, SeatTable
+from mart.sim.room.episode_state_machine import EpisodeCourse
+from mart.sim.room.seats import SeatHolder, SeatTable
 
 TASK = "two_arm_multi_cube_lifting"
 

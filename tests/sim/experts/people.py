@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from mart.sim.experts import get_skill
-from mart.sim.experts.person import Person
+from mart.sim.experts.human_error import Person
 
 
 def person(skill: str = "expert", seed: int = 0, **changes: Any) -> Person:

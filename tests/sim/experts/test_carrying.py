@@ -5,7 +5,7 @@ import pytest
 
 from mart.protocol.pose import Pose
 from mart.sim.experts import Expert, get_skill
-from mart.sim.experts.rehearsal import rehearse
+from mart.sim.experts.run_experts import rehearse
 from mart.sim.world import World
 
 TRAY, WIPING = "two_arm_drink_tray_lifting", "three_arm_lift_wiping"

@@ -11,9 +11,9 @@ import pytest
 from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
-from mart.sim.experts.rehearsal import rehearse
-from mart.sim.experts.seeing import upright
-from mart.sim.tasks.scene import Judgement
+from mart.sim.experts.perception import upright
+from mart.sim.experts.run_experts import rehearse
+from mart.sim.scene.scene import Judgement
 from mart.sim.world import Progress, World
 
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mart.protocol.pose import Pose
-from mart.sim.experts.rehearsal import rehearse
+from mart.sim.experts.run_experts import rehearse
 from mart.sim.world import World
 from tests.sim.tasks.driving import (
     drive,

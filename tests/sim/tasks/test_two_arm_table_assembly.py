@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mart.protocol.pose import quaternion_exp, quaternion_multiply
-from mart.sim.experts.rehearsal import rehearse
+from mart.sim.experts.run_experts import rehearse
 from mart.sim.world import World
 from tests.sim.tasks.driving import (
     LYING,

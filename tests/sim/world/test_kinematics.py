@@ -6,7 +6,8 @@ import pytest
 
 from mart.protocol.errors import InvalidInput
 from mart.protocol.pose import Pose
-from mart.sim.world import World, kinematics, panda
+from mart.sim.scene import panda
+from mart.sim.world import World, kinematics
 
 
 def test_joints_put_the_tool_where_it_should_be() -> None:

@@ -22,7 +22,7 @@ from mart.protocol.messages import (
 )
 from mart.sim.world import World
 from mart.trainer.operate.operator import PolicyOperator, parts_of, target_of
-from tests.sim.stage import ARMS, PERIOD_S, Stage
+from tests.sim.room.room_harness import ARMS, PERIOD_S, Stage
 from tests.trainer.operate.toys import TASK, Wanderer, one_action
 
 

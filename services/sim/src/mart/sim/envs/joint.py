@@ -8,7 +8,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from mart.sim.envs.course import (
+from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
     Course,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
 from mart.protocol.errors import Conflict, InvalidInput
-from mart.sim.envs.course import (
+from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
     Course,

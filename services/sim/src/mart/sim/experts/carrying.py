@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
 from mart.protocol.tasks.tray import handle_of, partner_of
-from mart.sim.experts.person import Person
+from mart.sim.experts.human_error import Person
+from mart.sim.experts.perception import apart_m, seen, seen_tool, upright
 from mart.sim.experts.plan import CLOSED, OPEN, Sight, Step, Waypoint, go, pick, stay, wait
-from mart.sim.experts.seeing import apart_m, seen, seen_tool, upright
 
 _AWAY_M = 0.05  # a tool further than this from a handle does not hold it
 _MISSED = 0.92  # of the gripper: fingers that have closed on nothing

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Task
-from mart.sim.experts.hand import Hand
-from mart.sim.experts.person import Person
+from mart.sim.experts.hand_motion import Hand
+from mart.sim.experts.human_error import Person
 from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Waypoint
 from mart.sim.experts.plans import plan_of
 from mart.sim.experts.skill import Skill

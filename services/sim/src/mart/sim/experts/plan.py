@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
-from mart.sim.experts.person import Person
+from mart.sim.experts.human_error import Person
 
 OPEN, CLOSED = 0.0, 1.0
 _CAREFUL = 0.6  # the pace of going down onto something

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 
 from mart.protocol.errors import NotFound
 from mart.protocol.tasks import Arm, Task
-from mart.sim.experts.person import Person
+from mart.sim.experts.human_error import Person
 from mart.sim.experts.plan import Plan, Sight
 
 PlanOf = Callable[[Arm, Person, Sight], Plan]

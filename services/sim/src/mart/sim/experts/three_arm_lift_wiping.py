@@ -9,9 +9,9 @@ from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
 from mart.protocol.tasks.three_arm_lift_wiping import ASIDE_Y_M, RACK_TOP_M, SPOTS_M, WIPER
 from mart.sim.experts.carrying import Carrier, raised
-from mart.sim.experts.person import Person
+from mart.sim.experts.human_error import Person
+from mart.sim.experts.perception import apart_m, at, seen
 from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, pick, stay, wait
-from mart.sim.experts.seeing import apart_m, at, seen
 
 _RACK_TRAY_M = np.add(RACK_TOP_M, (0.0, 0.0, 0.002))  # of the tray on it, put down with a little force
 _CARRY_Z_M = 0.105  # of the tray, on its way: not higher than the rack asks for, in case somebody lets go

@@ -6,7 +6,7 @@ import numpy as np
 
 from mart.protocol.tasks import Arm
 from mart.sim.experts.carrying import Carrier
-from mart.sim.experts.person import Person
+from mart.sim.experts.human_error import Person
 from mart.sim.experts.plan import Plan, Sight
 
 _LIFT_M = 0.14  # 10 cm would do; a loaded arm sags by 1 cm

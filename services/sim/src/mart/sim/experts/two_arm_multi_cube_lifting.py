@@ -8,7 +8,7 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.sim.experts.person import Person
+from mart.sim.experts.human_error import Person
 from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Waypoint, pick, stay, wait
 
 _LIFT_Z_M = 0.17  # of the cube's centre; 12 cm would do

@@ -13,10 +13,10 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.sim.experts.grip import Grip
-from mart.sim.experts.person import Person
+from mart.sim.experts.human_error import Person
+from mart.sim.experts.perception import Still, across, apart_m, at, level, seen, seen_tool, standing, upright
+from mart.sim.experts.pick_and_place import Grip
 from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, go, wait
-from mart.sim.experts.seeing import Still, across, apart_m, at, level, seen, seen_tool, standing, upright
 
 _LID_KNOB = at(0.0, 0.0, 0.024)
 _HEAD_END, _FREE_END = at(-0.055, 0.0, 0.0), at(0.075, 0.0, 0.0)  # where a hammer's handle is gripped

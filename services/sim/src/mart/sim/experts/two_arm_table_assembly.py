@@ -12,10 +12,20 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.sim.experts.grip import Grip
-from mart.sim.experts.person import Person
+from mart.sim.experts.human_error import Person
+from mart.sim.experts.perception import (
+    See,
+    Still,
+    across,
+    apart_m,
+    at,
+    seen,
+    seen_tool,
+    standing,
+    uprightness,
+)
+from mart.sim.experts.pick_and_place import Grip
 from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Until, Waypoint, go, wait
-from mart.sim.experts.seeing import See, Still, across, apart_m, at, seen, seen_tool, standing, uprightness
 
 _SOCKET_X_M, _KNOB_X_M = 0.12, 0.205
 _SEATED_Z_M, _TOP_SEATED_Z_M = 0.01, 0.16  # over the base

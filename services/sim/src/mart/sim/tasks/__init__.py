@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING
 
 from mart.protocol.tasks import Task
-
-if TYPE_CHECKING:  # scenes are built from parts of mart.sim.world, which asks here for scenes
-    from mart.sim.tasks.scene import Scene
+from mart.sim.scene.scene import Scene
 
 
 def scene_of(task: Task) -> Scene:

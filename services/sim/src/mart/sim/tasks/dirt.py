@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.tasks.three_arm_lift_wiping import SPOTS_M
-from mart.sim.world.data import Array, Data, Flags, into_frame, within
-from mart.sim.world.palette import MATERIALS, rgba
+from mart.sim.scene.data import Array, Data, Flags, into_frame, within
+from mart.sim.scene.palette import MATERIALS, rgba
 
 _RADIUS_M = 0.046  # of what is painted
 _PIXELS = 64

@@ -11,14 +11,14 @@ from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
 from mart.protocol.tasks.three_arm_lift_wiping import ASIDE_Y_M, RACK_TOP_M, SPOTS_M, WIPER
 from mart.protocol.tasks.tray import CARRIERS
+from mart.sim.scene.data import Array, Data
+from mart.sim.scene.gripper import GRASPABLE
+from mart.sim.scene.palette import rgba
+from mart.sim.scene.scene import Judgement, Scene, any_of
+from mart.sim.scene.shadows import add_shadow
+from mart.sim.scene.symbols import add_tile
 from mart.sim.tasks.dirt import Dirt, add_dirt
-from mart.sim.tasks.scene import Judgement, Scene, any_of
 from mart.sim.tasks.tray import Tray, across, add_tray
-from mart.sim.world.data import Array, Data
-from mart.sim.world.gripper import GRASPABLE
-from mart.sim.world.palette import rgba
-from mart.sim.world.shadows import add_shadow
-from mart.sim.world.symbols import add_tile
 
 _RACK_HALF_M = (0.13, 0.07, RACK_TOP_M[2] / 2)
 LIFTED_M = 0.04  # of the tray's lowest corner: a tray that is dragged over the table stays under it

@@ -15,11 +15,11 @@ import numpy as np
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
 from mart.protocol.tasks.tray import DRINKS, handle_of
-from mart.sim.world.data import Array, Data, Flags, into_frame
-from mart.sim.world.gripper import GRASPABLE
-from mart.sim.world.palette import rgba
-from mart.sim.world.shadows import add_shadow
-from mart.sim.world.symbols import add_tile
+from mart.sim.scene.data import Array, Data, Flags, into_frame
+from mart.sim.scene.gripper import GRASPABLE
+from mart.sim.scene.palette import rgba
+from mart.sim.scene.shadows import add_shadow
+from mart.sim.scene.symbols import add_tile
 
 HALF_M = (0.17, 0.13, 0.005)  # of the plate, about the tray's origin
 HANDLE_M = (0.235, 0.0, 0.045)  # of the middle of a bar, in the tray's frame, or with -x

@@ -7,9 +7,9 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.sim.tasks.scene import Judgement, Scene, any_of
+from mart.sim.scene.data import Array, Data
+from mart.sim.scene.scene import Judgement, Scene, any_of
 from mart.sim.tasks.tray import Tray, across, add_tray
-from mart.sim.world.data import Array, Data
 
 LIFTED_M = 0.10  # of the tray's lowest corner over the table
 _SPREAD_M, _SPREAD_RAD = 0.06, 0.25

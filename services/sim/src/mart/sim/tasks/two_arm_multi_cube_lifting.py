@@ -8,12 +8,12 @@ import mujoco
 import numpy as np
 
 from mart.protocol.tasks import Arm, Task
-from mart.sim.tasks.scene import Judgement, Scene
-from mart.sim.world.data import Array, Data, evenly
-from mart.sim.world.gripper import GRASPABLE
-from mart.sim.world.palette import rgba
-from mart.sim.world.shadows import add_shadow
-from mart.sim.world.symbols import add_tile
+from mart.sim.scene.data import Array, Data, evenly
+from mart.sim.scene.gripper import GRASPABLE
+from mart.sim.scene.palette import rgba
+from mart.sim.scene.scene import Judgement, Scene
+from mart.sim.scene.shadows import add_shadow
+from mart.sim.scene.symbols import add_tile
 
 CUBE_HALF_M = 0.02
 CUBE_MASS_KG = 0.1

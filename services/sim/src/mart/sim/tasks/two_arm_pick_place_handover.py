@@ -8,13 +8,13 @@ import mujoco
 import numpy as np
 
 from mart.protocol.tasks import MAX_ARMS
-from mart.sim.tasks.scene import Judgement, Scene, all_of
-from mart.sim.tasks.things import Thing, Tool
-from mart.sim.world.data import Array, Data, Flags, length, within
-from mart.sim.world.gripper import GRASPABLE
-from mart.sim.world.palette import rgba
-from mart.sim.world.shadows import add_shadow
-from mart.sim.world.symbols import add_tile
+from mart.sim.scene.data import Array, Data, Flags, length, within
+from mart.sim.scene.gripper import GRASPABLE
+from mart.sim.scene.palette import rgba
+from mart.sim.scene.scene import Judgement, Scene, all_of
+from mart.sim.scene.shadows import add_shadow
+from mart.sim.scene.symbols import add_tile
+from mart.sim.scene.things import Thing, Tool
 
 SHELF_Z_M = 0.06
 _SHELF_X_M, _SHELF_HALF_M = 0.27, (0.23, 0.36)

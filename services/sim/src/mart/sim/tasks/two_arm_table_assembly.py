@@ -12,13 +12,13 @@ import mujoco
 import numpy as np
 
 from mart.protocol.tasks import Arm
-from mart.sim.tasks.scene import Judgement, Scene, all_of
-from mart.sim.tasks.things import Thing, Tool
-from mart.sim.world.data import Array, Data, Flags, length, within
-from mart.sim.world.palette import rgba
-from mart.sim.world.scenery import TABLE_HALF_M
-from mart.sim.world.shadows import add_shadow
-from mart.sim.world.symbols import add_tile
+from mart.sim.scene.data import Array, Data, Flags, length, within
+from mart.sim.scene.palette import rgba
+from mart.sim.scene.scene import Judgement, Scene, all_of
+from mart.sim.scene.scenery import TABLE_HALF_M
+from mart.sim.scene.shadows import add_shadow
+from mart.sim.scene.symbols import add_tile
+from mart.sim.scene.things import Thing, Tool
 
 BASE_HALF_M = (0.18, 0.06, 0.005)
 SOCKET_X_M = 0.12  # of the sockets in the base, of the columns and of the tabletop's holes

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from mart.sim.world.data import Array, Data, evenly, into_frame
-from mart.sim.world.gripper import STROKE_M
+from mart.sim.scene.data import Array, Data, evenly, into_frame
+from mart.sim.scene.gripper import STROKE_M
 
 
 class MeasuredArms:

@@ -15,11 +15,11 @@ from mujoco.batch import Batch, SimulationError
 from numpy.typing import NDArray
 
 from mart.protocol.batch_state import BatchState
+from mart.sim.scene.data import Array, Flags
 from mart.sim.tasks import scene_of
-from mart.sim.world.data import Array, Flags
+from mart.sim.world.control_interface import Surface
 from mart.sim.world.last_states import KEPT, Diverged
 from mart.sim.world.progress import first_reasons
-from mart.sim.world.surface import Surface
 from mart.sim.world.world import FATAL_WARNINGS, World
 
 _NOTHING, _POSITIONS = int(mujoco.mjtStage.mjSTAGE_NONE), int(mujoco.mjtStage.mjSTAGE_POS)

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from mart.protocol.errors import Corrupt
-from mart.sim.world.data import Array
+from mart.sim.scene.data import Array
 
 KEPT = 5
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)

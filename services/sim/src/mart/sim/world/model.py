@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import mujoco
 
 from mart.protocol.control_rate import require_control_hz
-from mart.sim.world import osc, panda, scenery
-from mart.sim.world.meshes import Detail
-
-if TYPE_CHECKING:  # scenes are built from parts of this package
-    from mart.sim.tasks.scene import Scene
+from mart.sim.scene import panda, scenery
+from mart.sim.scene.meshes import Detail
+from mart.sim.scene.scene import Scene
+from mart.sim.world import osc
 
 _LARGEST_TIMESTEP_S = 0.002
 

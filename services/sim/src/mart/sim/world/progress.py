@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mart.sim.world.data import Flags
+from mart.sim.scene.data import Flags
 
 
 @dataclass(frozen=True)

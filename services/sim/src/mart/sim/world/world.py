@@ -11,7 +11,6 @@ import hashlib
 import logging
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -21,17 +20,16 @@ from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import InvalidInput
 from mart.protocol.pose import Pose, quaternion_conjugate, quaternion_log, quaternion_multiply
 from mart.protocol.tasks import Task, get_task
+from mart.sim.scene import panda
+from mart.sim.scene.data import Array
+from mart.sim.scene.meshes import Detail
+from mart.sim.scene.scene import Judgement, Scene
 from mart.sim.tasks import scene_of
-from mart.sim.world import kinematics, model, osc, panda
+from mart.sim.world import kinematics, model, osc
 from mart.sim.world.arm import MeasuredArm
-from mart.sim.world.data import Array
+from mart.sim.world.control_interface import Surface
 from mart.sim.world.last_states import Diverged, LastStates, Trail
-from mart.sim.world.meshes import Detail
 from mart.sim.world.progress import Progress, first_reasons
-from mart.sim.world.surface import Surface
-
-if TYPE_CHECKING:  # scenes are built from parts of this package
-    from mart.sim.tasks.scene import Judgement, Scene
 
 # As a number: looking an enumeration up takes longer than what is called with it.
 STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)

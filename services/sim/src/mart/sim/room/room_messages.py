@@ -1,0 +1,123 @@
+"""What the sim says: states, the room's status and events, as messages. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.protocol.messages import (
+    BarrierPhase,
+    Episode,
+    Event,
+    Plan,
+    Seat,
+    Waiting,
+)
+from mart.sim.room.command_validation import Arrival
+from mart.sim.room.episode_state_machine import EpisodeCourse
+from mart.sim.room.saved_room import RoomRecord
+from mart.sim.room.seats import SeatHolder
+from mart.sim.world import Progress
+
+# What any operator sees, by name: see mart.protocol.tasks.
+Seen = Mapping[str, NDArray[np.float64]]
+
+# The fields of a message. Protobuf fills a mapping in place, a message it serialises and parses once more; on the way
+# of every tick that is worth 40 %.
+Fields = dict[str, Any]
+
+
+def arm_state(seen: Seen, seat: SeatHolder, arrival: Arrival | None, action: Sequence[float]) -> Fields:
+    """One arm after a tick, an ArmState.
+
+    arrival: the command that moved it, None for a held arm. action: empty after a reset.
+    """
+    x, y, z = seen[f"{seat.arm}/tool_position_in_base"].tolist()
+    qw, qx, qy, qz = seen[f"{seat.arm}/tool_quaternion_in_base"].tolist()
+    (gripper,) = seen[f"{seat.arm}/gripper"].tolist()
+    state: Fields = {
+        "arm": seat.arm,
+        "tool_in_base": {"x": x, "y": y, "z": z, "qw": qw, "qx": qx, "qy": qy, "qz": qz},
+        "gripper": gripper,
+        "action": action,
+        "source": seat.operator,
+        "seat_epoch": seat.epoch,
+    }
+    if arrival is not None:
+        state.update(
+            sequence=arrival.sequence,
+            arrived_ns=arrival.at_wall_ns,
+            stamps=arrival.command.stamps,
+            engaged=arrival.command.engaged,
+            fresh=True,
+        )
+    return state
+
+
+def observations(seen: Seen) -> list[Fields]:
+    """Each one an Observation."""
+    return [{"name": name, "value": value.ravel().tolist()} for name, value in seen.items()]
+
+
+def progress(progress: Progress) -> Fields:
+    """The message of the same name."""
+    return {
+        "subtasks": [{"name": name, "done": done} for name, done in progress.subtasks.items()],
+        "success_now": progress.success_now,
+        "success_ticks": progress.success_ticks,
+        "success": progress.success,
+        "failed": progress.failed or "",
+    }
+
+
+def seat(holder: SeatHolder, ready: bool, newest: Arrival | None) -> Seat:
+    """`newest`: the newest command of this seat's operator."""
+    return Seat(
+        arm=holder.arm,
+        operator=holder.operator,
+        epoch=holder.epoch,
+        holder_id=holder.holder_id,
+        name=holder.name,
+        ready=ready,
+        engaged=newest is not None and newest.command.engaged,
+        policy=holder.driver.policy,
+        relieved=holder.relieved.called if holder.relieved else "",
+    )
+
+
+def episode(course: EpisodeCourse, control_period_s: float, now_s: float) -> Episode:
+    return Episode(
+        number=course.number,
+        phase=course.phase,
+        remaining_s=course.remaining_s(now_s),
+        ticks=course.ticks,
+        elapsed_s=course.ticks * control_period_s,
+        outcome=course.outcome,
+        seed=course.seed,
+        interrupted=course.interrupted,
+        reason=course.reason,
+    )
+
+
+def plan(record: RoomRecord) -> Plan | None:
+    wanted = record.plan
+    return Plan(episodes=wanted.episodes, good=record.good - wanted.good_before) if wanted else None
+
+
+def waiting(arms: Iterable[tuple[str, float]]) -> list[Waiting]:
+    return [Waiting(arm=arm, since_s=since_s) for arm, since_s in arms]
+
+
+def barrier_changed(phase: BarrierPhase, arms: Iterable[tuple[str, float]]) -> Event:
+    return Event(barrier_changed=Event.BarrierChanged(phase=phase, waiting_for=waiting(arms)))
+
+
+def notice(level: str, text: str) -> Event:
+    """`level`: info, warning or error."""
+    event = Event()
+    event.notice.level, event.notice.text = level, text
+    setattr(event.notice, "from", "sim")  # a keyword in Python
+    return event

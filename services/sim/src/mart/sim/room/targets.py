@@ -1,0 +1,57 @@
+"""What every arm is told to do in one tick: its operator's target, or to stay where it was left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.protocol.pose import Pose
+from mart.sim.room.command_validation import Arrival
+from mart.sim.world import World
+
+
+class Targets:
+    """Actions towards absolute targets. Between two ticks the world stands still, so an action is worked out when its
+    command arrives: the command that completes the barrier need not wait for the arithmetic of the others.
+
+    A held arm has one fixed target, the pose in which it was let go: measured anew every tick, it would sink.
+    """
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._gripper = dict.fromkeys(world.arms, 0.0)
+        self._held: dict[str, Pose] = {}
+        self._aimed: dict[str, tuple[Arrival, NDArray[np.float64]]] = {}
+
+    def world_reset(self) -> None:
+        """Arms are somewhere else now, their grippers as the reset left them."""
+        self._held.clear()
+        self._aimed.clear()
+        self._gripper = {arm: self._world.gripper(arm) for arm in self._world.arms}
+
+    def aim(self, arrival: Arrival) -> NDArray[np.float64]:
+        """The action, shape (7,), that this command asks for in the world as it is now."""
+        action = self._world.action_for(arrival.arm, arrival.target_tool_in_base, arrival.command.gripper)
+        self._aimed[arrival.arm] = (arrival, action)
+        return action
+
+    def actions(self, arrivals: Mapping[str, Arrival]) -> NDArray[np.float64]:
+        """What is to be done next, shape (arms, 7).
+
+        arrivals: the commands of the arms that are driven; the others hold, gripper included.
+        """
+        actions = np.array([self._action(arm, arrivals.get(arm)) for arm in self._world.arms])
+        self._aimed.clear()
+        return actions
+
+    def _action(self, arm: str, arrival: Arrival | None) -> NDArray[np.float64]:
+        if arrival is None:
+            if arm not in self._held:
+                self._held[arm] = self._world.tool_pose_in_base(arm)
+            return self._world.action_for(arm, self._held[arm], self._gripper[arm])
+        self._held.pop(arm, None)
+        self._gripper[arm] = arrival.command.gripper
+        known, action = self._aimed.get(arm, (None, None))
+        return action if known is arrival and action is not None else self.aim(arrival)

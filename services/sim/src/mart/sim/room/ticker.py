@@ -1,0 +1,112 @@
+"""Advances the world by one tick, or resets it, and says how it is afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.protocol import clock
+from mart.protocol.messages import State, TickStamps
+from mart.sim.room import room_messages
+from mart.sim.room.barrier import Firing
+from mart.sim.room.command_validation import Arrival
+from mart.sim.room.episode_state_machine import EpisodeCourse
+from mart.sim.room.pacing import RealTimeFactor
+from mart.sim.room.seats import SeatTable
+from mart.sim.room.targets import Targets
+from mart.sim.world import Progress, World
+
+NOBODY: Mapping[str, Arrival] = MappingProxyType({})
+
+
+class Ticker:
+    """`tick` counts the states of this run of the sim, those after resets included."""
+
+    def __init__(self, room: str, world: World, boot_ns: int, now_s: float) -> None:
+        self.tick = 0
+        self.progress: Progress | None = None
+        self._room = room
+        self._world = world
+        self._boot_ns = boot_ns
+        self._targets = Targets(world)
+        self._real_time_factor = RealTimeFactor(world.control_period_s, now_s)
+
+    def real_time_factor(self, now_s: float) -> float:
+        return self._real_time_factor.value(now_s)
+
+    def reset(self, seed: int, seats: SeatTable, course: EpisodeCourse, now_s: float) -> State:
+        """The state of the fresh world."""
+        self._world.reset(seed)
+        self._targets.world_reset()
+        return self.standing(seats, course, now_s)
+
+    def standing(self, seats: SeatTable, course: EpisodeCourse, now_s: float) -> State:
+        """The world as it is, before it begins to run."""
+        self._real_time_factor.restart(now_s)
+        wall_ns = clock.wall_ns()
+        stamps = TickStamps(fired_ns=wall_ns, stepped_ns=wall_ns)
+        return self._state(seats, course, now_s, self._world.progress(), stamps=stamps)
+
+    def aim(self, arrival: Arrival) -> None:
+        """Works out beforehand what an accepted command asks for."""
+        self._targets.aim(arrival)
+
+    def advance(self, firing: Firing, seats: SeatTable, course: EpisodeCourse, now_s: float) -> State:
+        """One control period. Raises Diverged where the physics left its bounds."""
+        fired_ns = clock.wall_ns()
+        actions = self._targets.actions(firing.arrivals)
+        judgement = self._world.step(actions)
+        stamps = TickStamps(
+            due_ns=fired_ns - round((now_s - firing.due_s) * 1e9),
+            fired_ns=fired_ns,
+            stepped_ns=clock.wall_ns(),
+        )
+        self._real_time_factor.ticked(now_s)
+        progress = self._world.progress(judgement)
+        state = self._state(
+            seats, course, now_s, progress, stamps=stamps, arrivals=firing.arrivals, actions=actions
+        )
+        state.straggler = firing.straggler or ""
+        state.straggler_late_s = firing.late_s
+        if course.recording:
+            state.episode_tick = course.ticks + 1
+        return state
+
+    def _state(
+        self,
+        seats: SeatTable,
+        course: EpisodeCourse,
+        now_s: float,
+        progress: Progress,
+        *,
+        stamps: TickStamps,
+        arrivals: Mapping[str, Arrival] = NOBODY,
+        actions: NDArray[np.float64] | None = None,
+    ) -> State:
+        self.tick += 1
+        self.progress = progress
+        seen = self._world.observations()
+        return State(
+            room=self._room,
+            tick=self.tick,
+            sim_time_s=self._world.sim_time_s,
+            stamps=stamps,
+            real_time_factor=self.real_time_factor(now_s),
+            integration_state=self._world.integration_state(),
+            arms=[
+                room_messages.arm_state(
+                    seen,
+                    seat,
+                    arrivals.get(seat.arm),
+                    () if actions is None else actions[index].tolist(),
+                )
+                for index, seat in enumerate(seats)
+            ],
+            observations=room_messages.observations(seen),
+            progress=room_messages.progress(progress),
+            episode=course.number if course.recording else 0,
+            boot=self._boot_ns,
+        )

@@ -1,0 +1,64 @@
+"""All that Python touches between two control periods: commands in; observations, memory and success out.
+
+Written once for one world and for a batch; shapes (...) are () in a world and (worlds,) in a batch. Physics and
+controller lie below, in MuJoCo and osc.c.
+"""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from mart.sim.scene.data import Array, Data
+from mart.sim.scene.gripper import STROKE_M
+from mart.sim.scene.scene import Judgement, Scene
+from mart.sim.scene.shadows import Shadows
+from mart.sim.world import osc
+from mart.sim.world.arm import MeasuredArms
+
+
+class Surface:
+    """The scene must have been made for this data alone: it keeps views of it."""
+
+    def __init__(self, scene: Scene, model: mujoco.MjModel, data: Data) -> None:
+        scene.attach(data)
+        self._scene = scene
+        self._shadows = Shadows(model, data)
+        self._arms = MeasuredArms(model, data, scene.task.arm_names)
+        limits = scene.task.limits
+        self._action_scale = np.array([limits.step_m] * 3 + [limits.step_rad] * 3 + [-STROKE_M])
+        blocks = data.userdata[..., : osc.BLOCK_SIZE * len(scene.task.arms)]
+        blocks = blocks.reshape(*blocks.shape[:-1], len(scene.task.arms), osc.BLOCK_SIZE)
+        self.modes, self.commands = blocks[..., osc.MODE], blocks[..., osc.COMMAND]
+        self.postures = blocks[..., osc.POSTURE]
+        self.success_ticks = data.userdata[..., -1]  # here, so that it is saved and replayed with the state
+
+    def command(self, actions: Array) -> None:
+        """actions: shape (..., arms, 7), clipped to [-1, 1]."""
+        np.multiply(np.minimum(np.maximum(actions, -1.0), 1.0), self._action_scale, out=self.commands)
+        self.modes.fill(osc.NEW_DELTA)
+
+    def settle(self) -> Judgement:
+        """A control period is over: what it did is remembered, judged and counted."""
+        self._scene.remember()
+        judgement = self.judge()
+        np.multiply(self.success_ticks + 1.0, judgement.success_now, out=self.success_ticks)
+        return judgement
+
+    def judge(self) -> Judgement:
+        return self._scene.judge()
+
+    def cast_shadows(self) -> None:
+        self._shadows.follow()
+
+    def observations(self) -> dict[str, Array]:
+        """All that any operator sees, in the catalogue's order, each of shape (..., *its own). Copies."""
+        seen = self._scene.observe()
+        positions, quaternions = self._arms.tools_in_base()
+        grippers = self._arms.grippers()
+        for index, name in enumerate(self._scene.task.arm_names):
+            seen[f"{name}/tool_position_in_base"] = positions[..., index, :]
+            seen[f"{name}/tool_quaternion_in_base"] = quaternions[..., index, :]
+            seen[f"{name}/joint_positions"] = self._arms.joint_positions[index]
+            seen[f"{name}/gripper"] = grippers[..., index : index + 1]
+        return {o.name: np.array(seen[o.name], dtype=np.float64) for o in self._scene.task.observations}
