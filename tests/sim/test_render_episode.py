@@ -17,7 +17,7 @@ from mart.protocol.errors import Corrupt, InvalidInput, MartError, NotFound
 from mart.protocol.messages import State
 from mart.protocol.recording import MODEL_ATTACHMENT, PROFILE, STATE, RoomRecord
 from mart.runtime.cli import cli
-from mart.sim import render_episode
+from mart.sim.render_episode import render_episode
 from mart.sim.world import World
 
 TICKS = 12
@@ -57,7 +57,7 @@ def recorded(path: Path, world: World, **room: object) -> Path:
 
 def test_one_picture_for_each_state_in_real_time(world: World, tmp_path: Path) -> None:
     file, video = recorded(tmp_path / "one.mcap", world), tmp_path / "one.mp4"
-    assert render_episode.film(file, video, "arm0", 160, 120) == TICKS
+    assert render_episode(file, video, "arm0", 160, 120) == TICKS
     with av.open(video) as container:
         (stream,) = container.streams.video
         assert stream.average_rate == 20
@@ -98,6 +98,7 @@ def test_what_cannot_be_drawn_is_named(
     sentence: str,
 ) -> None:
     chosen = {"viewpoint": "front", "width_px": 64, "height_px": 48, **options}
+    file = recorded(tmp_path / "one.mcap", world, **room)
     with pytest.raises(error, match=sentence):
-        render_episode.film(recorded(tmp_path / "one.mcap", world, **room), tmp_path / "one.mp4", **chosen)  # type: ignore[arg-type]
+        render_episode(file, tmp_path / "one.mp4", **chosen)  # type: ignore[arg-type]
     assert not (tmp_path / "one.mp4").exists()

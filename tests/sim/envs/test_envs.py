@@ -114,7 +114,7 @@ def test_success_ends_an_episode(arms: ArmsEnv) -> None:
 
 def test_irrecoverable_failure_ends_an_episode(arms: ArmsEnv) -> None:
     arms.reset(seed=0)
-    arms._course._world.data.joint("cube0").qpos[2] = -0.3
+    arms._runner._world.data.joint("cube0").qpos[2] = -0.3
     _, rewards, terminated, _, infos = arms.step(still(arms))
     assert (rewards["arm0"], terminated["arm0"]) == (0.0, True)
     assert infos["arm0"]["failed"] == "Cube 0 fell off the table."
@@ -126,13 +126,13 @@ def still(arms: ArmsEnv) -> dict[str, NDArray[np.float32]]:
 
 def cubes_up(arms: ArmsEnv) -> None:
     for cube in ("cube0", "cube1"):
-        joint = arms._course._world.data.joint(cube)
+        joint = arms._runner._world.data.joint(cube)
         joint.qpos[2], joint.qvel[:] = 0.3, 0.0
 
 
 def test_a_world_that_breaks_ends_its_episode(joint: JointEnv) -> None:
     first, _ = joint.reset(seed=0)
-    joint._course._world.data.qvel[:] = 1e9
+    joint._runner._world.data.qvel[:] = 1e9
     last, reward, terminated, _, info = joint.step(np.zeros((2, 7), np.float32))
     assert (reward, terminated) == (0.0, True)
     assert "out of numerical bounds" in info["failed"]

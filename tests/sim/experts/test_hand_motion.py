@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from mart.protocol.pose import Pose
 from mart.sim.experts import get_skill, skill_names
-from mart.sim.experts.hand_motion import Hand, difference, moved
-from tests.sim.experts.people import person
+from mart.sim.experts.hand_motion import HandMotion, difference, moved
+from tests.sim.experts.humans import human
 
 TICK_S = 0.05
 START = Pose(np.array([0.45, 0.0, 0.20]), Pose.identity().quaternion_wxyz)
@@ -21,8 +21,8 @@ shifts = st.tuples(*[st.floats(-0.3, 0.3)] * 3).map(np.array)
 turns = st.tuples(*[st.floats(-1.0, 1.0)] * 3).map(np.array)
 
 
-def hand(skill: str, seed: int, **changes: Any) -> Hand:
-    return Hand(person(skill, seed, **changes))
+def hand(skill: str, seed: int, **changes: Any) -> HandMotion:
+    return HandMotion(human(skill, seed, **changes))
 
 
 @given(shifts, turns)

@@ -12,7 +12,7 @@ from mart.protocol.batch_state import BatchState, unpack
 from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest
 from mart.protocol.tasks import get_task
-from mart.sim.rollout.rollout_server import IDLE_S, MAX_SESSIONS, MAX_WORLDS, Lockstep
+from mart.sim.rollout.rollout_server import IDLE_S, MAX_SESSIONS, MAX_WORLDS, RolloutServer
 from mart.sim.world import World
 
 TASK = "two_arm_multi_cube_lifting"
@@ -20,8 +20,8 @@ SEEDS = (11, 12, 13)
 
 
 @pytest.fixture(scope="module")
-def lockstep() -> Lockstep:
-    return Lockstep(threads=2)
+def server() -> RolloutServer:
+    return RolloutServer(threads=2)
 
 
 @pytest.fixture(scope="module")
@@ -29,22 +29,24 @@ def world() -> World:
     return World.build(TASK)
 
 
-def reset(lockstep: Lockstep, seeds: tuple[int, ...] = SEEDS, now_s: float = 0.0) -> RolloutReply:
+def reset(server: RolloutServer, seeds: tuple[int, ...] = SEEDS, now_s: float = 0.0) -> RolloutReply:
     request = RolloutRequest(
         reset=RolloutRequest.Reset(task=TASK, control_hz=20.0, seeds=seeds, integration_states=True)
     )
-    return lockstep.answer(request, now_s)
+    return server.answer(request, now_s)
 
 
-def step(lockstep: Lockstep, session: str, actions: NDArray[np.float64], now_s: float = 0.0) -> RolloutReply:
+def step(
+    server: RolloutServer, session: str, actions: NDArray[np.float64], now_s: float = 0.0
+) -> RolloutReply:
     request = RolloutRequest(
         step=RolloutRequest.Step(session=session, actions=actions.astype("<f8").tobytes())
     )
-    return lockstep.answer(request, now_s)
+    return server.answer(request, now_s)
 
 
-def close(lockstep: Lockstep, session: str, now_s: float = 0.0) -> None:
-    lockstep.answer(RolloutRequest(close=RolloutRequest.Close(session=session)), now_s)
+def close(server: RolloutServer, session: str, now_s: float = 0.0) -> None:
+    server.answer(RolloutRequest(close=RolloutRequest.Close(session=session)), now_s)
 
 
 def some_actions(ticks: int, worlds: int = len(SEEDS)) -> NDArray[np.float64]:
@@ -55,11 +57,11 @@ def worlds_of(reply: RolloutReply) -> BatchState:
     return unpack(get_task(TASK), reply.worlds, len(reply.worlds.failed))
 
 
-def test_a_batch_goes_as_its_worlds_would_alone(lockstep: Lockstep, world: World) -> None:
+def test_a_batch_goes_as_its_worlds_would_alone(server: RolloutServer, world: World) -> None:
     actions = some_actions(15)
-    begun = reset(lockstep)
-    stood = [worlds_of(reply) for reply in (begun, *(step(lockstep, begun.session, a) for a in actions))]
-    close(lockstep, begun.session)
+    begun = reset(server)
+    stood = [worlds_of(reply) for reply in (begun, *(step(server, begun.session, a) for a in actions))]
+    close(server, begun.session)
     for number, seed in enumerate(SEEDS):
         world.reset(seed)
         assert_same(stood[0], number, world)
@@ -82,15 +84,15 @@ def assert_same(worlds: BatchState, number: int, world: World) -> None:
     assert worlds.reasons[number] == (progress.failed or "")
 
 
-def test_worlds_that_do_not_run_stay_as_they_are(lockstep: Lockstep) -> None:
-    begun = reset(lockstep)
+def test_worlds_that_do_not_run_stay_as_they_are(server: RolloutServer) -> None:
+    begun = reset(server)
     actions = some_actions(2)
-    first, both = (step_some(lockstep, begun.session, action, running=[1, 0, 1]) for action in actions)
-    last = worlds_of(step(lockstep, begun.session, actions[0]))
-    close(lockstep, begun.session)
-    alone = reset(lockstep)
-    all_run = [worlds_of(step(lockstep, alone.session, action)) for action in actions]
-    close(lockstep, alone.session)
+    first, both = (step_some(server, begun.session, action, running=[1, 0, 1]) for action in actions)
+    last = worlds_of(step(server, begun.session, actions[0]))
+    close(server, begun.session)
+    alone = reset(server)
+    all_run = [worlds_of(step(server, alone.session, action)) for action in actions]
+    close(server, alone.session)
     for stopped in (first, both):
         assert states(stopped)[1] == states(worlds_of(begun))[1]
     assert states(first)[::2] == states(all_run[0])[::2]
@@ -98,13 +100,13 @@ def test_worlds_that_do_not_run_stay_as_they_are(lockstep: Lockstep) -> None:
     assert states(last)[1] == states(all_run[0])[1]
 
 
-def test_a_step_that_comes_again_is_only_answered(lockstep: Lockstep) -> None:
-    session, actions = reset(lockstep).session, some_actions(2)
+def test_a_step_that_comes_again_is_only_answered(server: RolloutServer) -> None:
+    session, actions = reset(server).session, some_actions(2)
 
     def numbered(number: int) -> RolloutReply:
         payload = actions[number - 1].tobytes()
         message = RolloutRequest.Step(session=session, actions=payload, number=number)
-        return lockstep.answer(RolloutRequest(step=message), 0.0)
+        return server.answer(RolloutRequest(step=message), 0.0)
 
     first = numbered(1)
     assert numbered(1) == first
@@ -113,14 +115,14 @@ def test_a_step_that_comes_again_is_only_answered(lockstep: Lockstep) -> None:
     assert numbered(2) == second
     with pytest.raises(Conflict, match="one by one"):
         numbered(1)
-    close(lockstep, session)
+    close(server, session)
 
 
 def step_some(
-    lockstep: Lockstep, session: str, actions: NDArray[np.float64], running: list[int]
+    server: RolloutServer, session: str, actions: NDArray[np.float64], running: list[int]
 ) -> BatchState:
     message = RolloutRequest.Step(session=session, actions=actions.tobytes(), running=bytes(running))
-    return worlds_of(lockstep.answer(RolloutRequest(step=message), 0.0))
+    return worlds_of(server.answer(RolloutRequest(step=message), 0.0))
 
 
 def states(worlds: BatchState) -> list[bytes]:
@@ -128,28 +130,28 @@ def states(worlds: BatchState) -> list[bytes]:
     return [state.tobytes() for state in worlds.integration_states]
 
 
-def test_states_travel_only_where_asked_for(lockstep: Lockstep) -> None:
+def test_states_travel_only_where_asked_for(server: RolloutServer) -> None:
     request = RolloutRequest(reset=RolloutRequest.Reset(task=TASK, control_hz=20.0, seeds=SEEDS))
-    begun = lockstep.answer(request, 0.0)
-    stepped = step(lockstep, begun.session, some_actions(1)[0])
-    close(lockstep, begun.session)
+    begun = server.answer(request, 0.0)
+    stepped = step(server, begun.session, some_actions(1)[0])
+    close(server, begun.session)
     assert worlds_of(begun).integration_states is None
     assert worlds_of(stepped).integration_states is None
 
 
-def test_sessions_do_not_disturb_each_other(lockstep: Lockstep) -> None:
+def test_sessions_do_not_disturb_each_other(server: RolloutServer) -> None:
     actions = some_actions(4)
-    alone = reset(lockstep)
-    expected = [step(lockstep, alone.session, action).worlds for action in actions]
-    one, other = reset(lockstep), reset(lockstep, (99,))
+    alone = reset(server)
+    expected = [step(server, alone.session, action).worlds for action in actions]
+    one, other = reset(server), reset(server, (99,))
     for action, worlds in zip(actions, expected, strict=True):
-        step(lockstep, other.session, action[:1])
-        assert step(lockstep, one.session, action).worlds == worlds
+        step(server, other.session, action[:1])
+        assert step(server, one.session, action).worlds == worlds
     for reply in (alone, one, other):
-        close(lockstep, reply.session)
+        close(server, reply.session)
 
 
-def test_a_resimulation_digests_every_state(lockstep: Lockstep, world: World) -> None:
+def test_a_resimulation_digests_every_state(server: RolloutServer, world: World) -> None:
     actions = some_actions(10, worlds=1)[:, 0]
     world.reset(4)
     first = world.integration_state()
@@ -158,7 +160,7 @@ def test_a_resimulation_digests_every_state(lockstep: Lockstep, world: World) ->
         world.step(action)
         expected += hashlib.blake2b(world.integration_state(), digest_size=16).digest()
     request = resimulation(world, first, actions)
-    assert lockstep.answer(request, 0.0).state_digests == expected
+    assert server.answer(request, 0.0).state_digests == expected
 
 
 def resimulation(world: World, first_state: bytes, actions: NDArray[np.float64]) -> RolloutRequest:
@@ -173,12 +175,12 @@ def resimulation(world: World, first_state: bytes, actions: NDArray[np.float64])
     )
 
 
-def test_a_recording_of_another_model_is_a_conflict(lockstep: Lockstep, world: World) -> None:
+def test_a_recording_of_another_model_is_a_conflict(server: RolloutServer, world: World) -> None:
     world.reset(4)
     request = resimulation(world, world.integration_state(), some_actions(1, worlds=1)[:, 0])
     request.resimulate.model_sha256 = "0" * 64
     with pytest.raises(Conflict, match="000000"):
-        lockstep.answer(request, 0.0)
+        server.answer(request, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -203,10 +205,10 @@ def test_a_recording_of_another_model_is_a_conflict(lockstep: Lockstep, world: W
     ],
 )
 def test_bad_requests_are_refused(
-    lockstep: Lockstep, request_: RolloutRequest, error: type[MartError]
+    server: RolloutServer, request_: RolloutRequest, error: type[MartError]
 ) -> None:
     with pytest.raises(error):
-        lockstep.answer(request_, 0.0)
+        server.answer(request_, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -219,43 +221,45 @@ def test_bad_requests_are_refused(
         np.full((3, 2, 7), -1.01),
     ],
 )
-def test_bad_actions_are_refused_and_nothing_moves(lockstep: Lockstep, actions: NDArray[np.float64]) -> None:
-    begun = reset(lockstep)
+def test_bad_actions_are_refused_and_nothing_moves(
+    server: RolloutServer, actions: NDArray[np.float64]
+) -> None:
+    begun = reset(server)
     good = some_actions(1)[0]
-    expected = step(lockstep, begun.session, good).worlds
-    again = reset(lockstep)
+    expected = step(server, begun.session, good).worlds
+    again = reset(server)
     with pytest.raises(InvalidInput):
-        step(lockstep, again.session, actions)
-    assert step(lockstep, again.session, good).worlds == expected
+        step(server, again.session, actions)
+    assert step(server, again.session, good).worlds == expected
     for reply in (begun, again):
-        close(lockstep, reply.session)
+        close(server, reply.session)
 
 
-def test_sessions_are_bounded_and_idle_ones_make_room(lockstep: Lockstep) -> None:
-    sessions = [reset(lockstep, (1,)).session for _ in range(MAX_SESSIONS)]
+def test_sessions_are_bounded_and_idle_ones_make_room(server: RolloutServer) -> None:
+    sessions = [reset(server, (1,)).session for _ in range(MAX_SESSIONS)]
     with pytest.raises(Unavailable, match="sessions are open"):
-        reset(lockstep, (1,), now_s=1.0)
+        reset(server, (1,), now_s=1.0)
     later_s = IDLE_S + 1.0
-    kept = reset(lockstep, (1,), now_s=later_s).session
+    kept = reset(server, (1,), now_s=later_s).session
     with pytest.raises(NotFound):
-        close(lockstep, sessions[0], later_s)
-    close(lockstep, kept, later_s)
+        close(server, sessions[0], later_s)
+    close(server, kept, later_s)
 
 
-def test_worlds_are_bounded_over_all_sessions(lockstep: Lockstep, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_worlds_are_bounded_over_all_sessions(server: RolloutServer, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mart.sim.rollout.rollout_server.MAX_WORLDS", 4)
-    held = reset(lockstep)
+    held = reset(server)
     with pytest.raises(Unavailable, match="3 of 4 are held"):
-        reset(lockstep, (1, 2))
-    step(lockstep, held.session, some_actions(1)[0])
-    close(lockstep, held.session)
-    close(lockstep, reset(lockstep, (1, 2)).session)
+        reset(server, (1, 2))
+    step(server, held.session, some_actions(1)[0])
+    close(server, held.session)
+    close(server, reset(server, (1, 2)).session)
 
 
-def test_a_session_of_an_earlier_run_is_told_from_one_that_was_closed(lockstep: Lockstep) -> None:
-    session = reset(lockstep, (1,)).session
-    close(lockstep, session)
+def test_a_session_of_an_earlier_run_is_told_from_one_that_was_closed(server: RolloutServer) -> None:
+    session = reset(server, (1,)).session
+    close(server, session)
     with pytest.raises(NotFound, match="closed, or idle"):
-        close(lockstep, session)
+        close(server, session)
     with pytest.raises(NotFound, match="restarted"):
-        close(Lockstep(threads=1), session)
+        close(RolloutServer(threads=1), session)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mart.protocol import codec
 from mart.protocol.messages import Command, PoseMessage
-from mart.sim.room.command_validation import Arrival, admit
+from mart.sim.room.command_validation import ReceivedCommand, validate_command
 
 SECOND_NS = 1_000_000_000
 
@@ -22,8 +22,8 @@ def command(arm: str = "arm0", epoch: int = 1, sequence: int = 1, stop: bool = F
     )
 
 
-def arrival(
+def received(
     arm: str = "arm0", epoch: int = 1, sequence: int = 1, at_s: float = 0.0, stop: bool = False
-) -> Arrival:
+) -> ReceivedCommand:
     payload = codec.encode(command(arm, epoch, sequence, stop))
-    return admit(payload, arm, at_s, round(at_s * SECOND_NS))
+    return validate_command(payload, arm, at_s, round(at_s * SECOND_NS))

@@ -17,14 +17,14 @@ from mart.protocol.messages import (
     pose_message,
 )
 from mart.sim.room.room import Room
-from mart.sim.room.saved_room import RoomRecord
+from mart.sim.room.saved_room import SavedRoom
 from mart.sim.world import Diverged, World
 
 ARMS = ("arm0", "arm1")
 PERIOD_S = 0.05
 
 
-class Heard:
+class CapturingPublisher:
     """A voice whose words are kept."""
 
     def __init__(self) -> None:
@@ -49,24 +49,24 @@ class Heard:
         return [event for event in self.events if event.WhichOneof("what") == what]
 
 
-class Stage:
+class RoomHarness:
     """A room, two people who take seats, and the time."""
 
     def __init__(
         self,
         world: World,
-        record: RoomRecord | None = None,
+        record: SavedRoom | None = None,
         explain: Callable[[Diverged], str] = str,
     ) -> None:
         self.world = world
-        self.voice = Heard()
-        self.kept: list[RoomRecord] = []
+        self.publisher = CapturingPublisher()
+        self.kept: list[SavedRoom] = []
         self.now_s = 1000.0
         self.room = Room(
             "room-1",
             world,
-            record or RoomRecord(seed=1),
-            self.voice,
+            record or SavedRoom(seed=1),
+            self.publisher,
             self.kept.append,
             now_s=self.now_s,
             explain=explain,
@@ -75,7 +75,7 @@ class Stage:
 
     @property
     def newest(self) -> State:
-        return self.voice.states[-1]
+        return self.publisher.states[-1]
 
     def status(self) -> RoomStatus:
         return self.room.status(self.now_s)

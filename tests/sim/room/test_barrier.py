@@ -16,9 +16,9 @@ from mart.protocol.messages import (
     BarrierPhase,
     Operator,
 )
-from mart.sim.room.barrier import Barrier, Firing
-from mart.sim.room.command_validation import Rejection
-from tests.sim.room.commands import arrival
+from mart.sim.room.barrier import Barrier, TickInputs
+from mart.sim.room.command_validation import CommandRejection
+from tests.sim.room.commands import received
 
 PERIOD_S = 0.05
 
@@ -34,24 +34,24 @@ def barrier() -> Barrier:
 
 def give(barrier: Barrier, *arms: str, sequence: int, at_s: float, stop: bool = False) -> None:
     for arm in arms:
-        assert barrier.offer(arrival(arm, 1, sequence, at_s, stop)) is None
+        assert barrier.offer(received(arm, 1, sequence, at_s, stop)) is None
 
 
-def fire(barrier: Barrier, now_s: float) -> Firing:
-    firing = barrier.advance(now_s, gate_open=True).firing
-    assert firing is not None
-    return firing
+def fire(barrier: Barrier, now_s: float) -> TickInputs:
+    inputs = barrier.advance(now_s, gate_open=True).inputs
+    assert inputs is not None
+    return inputs
 
 
 def waits(barrier: Barrier, now_s: float) -> bool:
-    return barrier.advance(now_s, gate_open=True).firing is None
+    return barrier.advance(now_s, gate_open=True).inputs is None
 
 
 def test_a_tick_needs_a_command_of_every_seat(barrier: Barrier) -> None:
     give(barrier, "arm0", sequence=1, at_s=0.0)
     assert waits(barrier, 0.0)
     give(barrier, "arm1", sequence=1, at_s=0.01)
-    assert set(fire(barrier, 0.01).arrivals) == {"arm0", "arm1"}
+    assert set(fire(barrier, 0.01).commands) == {"arm0", "arm1"}
 
 
 def test_a_command_moves_the_world_once(barrier: Barrier) -> None:
@@ -65,7 +65,7 @@ def test_the_newest_command_wins(barrier: Barrier) -> None:
     for sequence in (1, 2, 5):
         give(barrier, "arm0", sequence=sequence, at_s=0.0)
     give(barrier, "arm1", sequence=1, at_s=0.0)
-    assert fire(barrier, 0.0).arrivals["arm0"].sequence == 5
+    assert fire(barrier, 0.0).commands["arm0"].sequence == 5
 
 
 def test_no_tick_before_the_pace_allows_it(barrier: Barrier) -> None:
@@ -73,14 +73,14 @@ def test_no_tick_before_the_pace_allows_it(barrier: Barrier) -> None:
     fire(barrier, 0.0)
     give(barrier, "arm0", "arm1", sequence=2, at_s=0.01)
     decision = barrier.advance(0.01, gate_open=True)
-    assert decision.firing is None
+    assert decision.inputs is None
     assert decision.next_s == PERIOD_S
     fire(barrier, PERIOD_S)
 
 
 def test_a_closed_gate_keeps_the_newest_command(barrier: Barrier) -> None:
     give(barrier, "arm0", "arm1", sequence=1, at_s=0.0)
-    assert barrier.advance(0.0, gate_open=False).firing is None
+    assert barrier.advance(0.0, gate_open=False).inputs is None
     fire(barrier, 0.1)
 
 
@@ -128,25 +128,25 @@ def test_a_seat_put_on_hold_is_no_longer_waited_for(barrier: Barrier, now_s: flo
     give(barrier, "arm1", sequence=1, at_s=now_s)
     assert waits(barrier, now_s)
     barrier.seat("arm0", OPERATOR_HOLD, 2, now_s)
-    firing = fire(barrier, now_s)
-    assert set(firing.arrivals) == {"arm1"}
+    inputs = fire(barrier, now_s)
+    assert set(inputs.commands) == {"arm1"}
 
 
 def test_a_new_holder_begins_without_the_old_ones_commands(barrier: Barrier) -> None:
     give(barrier, "arm0", "arm1", sequence=9, at_s=0.0)
     barrier.seat("arm0", OPERATOR_HUMAN, 2, 0.01)
     assert waits(barrier, 0.01)
-    assert barrier.offer(arrival("arm0", 1, 10, 0.02)) is Rejection.WRONG_EPOCH
-    assert barrier.offer(arrival("arm0", 2, 1, 0.02)) is None
+    assert barrier.offer(received("arm0", 1, 10, 0.02)) is CommandRejection.WRONG_EPOCH
+    assert barrier.offer(received("arm0", 2, 1, 0.02)) is None
     fire(barrier, 0.02)
 
 
 def test_a_room_where_all_seats_are_on_hold_lives_on_at_its_pace() -> None:
     barrier = Barrier(["arm0", "arm1"], PERIOD_S, 0.0)
-    firing = fire(barrier, 0.0)
-    assert (dict(firing.arrivals), firing.straggler, firing.late_s) == ({}, None, 0.0)
+    inputs = fire(barrier, 0.0)
+    assert (dict(inputs.commands), inputs.straggler, inputs.late_s) == ({}, None, 0.0)
     decision = barrier.advance(0.01, gate_open=True)
-    assert (decision.firing, decision.next_s) == (None, PERIOD_S)
+    assert (decision.inputs, decision.next_s) == (None, PERIOD_S)
 
 
 def test_an_emergency_stop_holds_until_it_is_released(barrier: Barrier) -> None:
@@ -154,7 +154,7 @@ def test_an_emergency_stop_holds_until_it_is_released(barrier: Barrier) -> None:
     give(barrier, "arm1", sequence=1, at_s=0.0)
     decision = barrier.advance(2.0, gate_open=True)
     assert (decision.phase, decision.waiting_for) == (BARRIER_PHASE_STOPPED, (("arm0", 2.0),))
-    assert decision.firing is None
+    assert decision.inputs is None
     give(barrier, "arm0", "arm1", sequence=2, at_s=2.1)
     fire(barrier, 2.1)
 
@@ -168,7 +168,7 @@ def test_an_emergency_stop_ends_with_its_seat(barrier: Barrier) -> None:
 
 def test_a_late_repeat_of_a_release_does_not_undo_a_stop(barrier: Barrier) -> None:
     give(barrier, "arm0", sequence=2, at_s=0.0, stop=True)
-    assert barrier.offer(arrival("arm0", 1, 1, 0.1)) is Rejection.OLD_SEQUENCE
+    assert barrier.offer(received("arm0", 1, 1, 0.1)) is CommandRejection.OLD_SEQUENCE
     assert barrier.advance(0.1, gate_open=True).phase == BARRIER_PHASE_STOPPED
 
 
@@ -178,10 +178,10 @@ def test_the_straggler_completed_the_barrier_last(barrier: Barrier) -> None:
     give(barrier, "arm0", sequence=2, at_s=0.01)
     give(barrier, "arm1", sequence=2, at_s=0.08)
     give(barrier, "arm0", sequence=3, at_s=0.09)  # newer, but arm0 was not the one who was missing
-    firing = fire(barrier, 0.09)
-    assert firing.straggler == "arm1"
-    assert firing.late_s == pytest.approx(0.03)
-    assert firing.arrivals["arm0"].sequence == 3
+    inputs = fire(barrier, 0.09)
+    assert inputs.straggler == "arm1"
+    assert inputs.late_s == pytest.approx(0.03)
+    assert inputs.commands["arm0"].sequence == 3
 
 
 def test_nobody_is_late_where_the_pace_was_the_limit(barrier: Barrier) -> None:
@@ -202,20 +202,20 @@ def test_commands_for_the_old_world_are_void_after_a_reset(barrier: Barrier) -> 
 @pytest.mark.parametrize(
     ("arm", "epoch", "sequence", "reason"),
     [
-        ("arm7", 1, 5, Rejection.UNKNOWN_ARM),
-        ("arm0", 2, 5, Rejection.WRONG_EPOCH),
-        ("arm0", 0, 5, Rejection.WRONG_EPOCH),
-        ("arm0", 1, 4, Rejection.OLD_SEQUENCE),
-        ("arm0", 1, 3, Rejection.OLD_SEQUENCE),
-        ("arm1", 1, 5, Rejection.FREE_SEAT),
+        ("arm7", 1, 5, CommandRejection.UNKNOWN_ARM),
+        ("arm0", 2, 5, CommandRejection.WRONG_EPOCH),
+        ("arm0", 0, 5, CommandRejection.WRONG_EPOCH),
+        ("arm0", 1, 4, CommandRejection.OLD_SEQUENCE),
+        ("arm0", 1, 3, CommandRejection.OLD_SEQUENCE),
+        ("arm1", 1, 5, CommandRejection.FREE_SEAT),
     ],
 )
 def test_what_is_not_the_holders_next_command_is_rejected_and_counted(
-    barrier: Barrier, arm: str, epoch: int, sequence: int, reason: Rejection
+    barrier: Barrier, arm: str, epoch: int, sequence: int, reason: CommandRejection
 ) -> None:
     barrier.seat("arm1", OPERATOR_HOLD, 1, 0.0)
     give(barrier, "arm0", sequence=4, at_s=0.0)
-    assert barrier.offer(arrival(arm, epoch, sequence, 0.1)) is reason
+    assert barrier.offer(received(arm, epoch, sequence, 0.1)) is reason
     assert barrier.rejected == {reason: 1}
 
 

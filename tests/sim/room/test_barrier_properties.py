@@ -21,7 +21,7 @@ from mart.protocol.messages import (
 )
 from mart.sim.room.barrier import FREED_AFTER_S, PAUSED_AFTER_S, STALLED_AFTER_S, Barrier
 from mart.sim.room.pacing import CATCH_UP_TICKS
-from tests.sim.room.commands import arrival
+from tests.sim.room.commands import received
 
 ARMS = ("arm0", "arm1", "arm2")
 PERIOD_S = 0.05
@@ -87,7 +87,7 @@ class BarrierMachine(RuleBasedStateMachine):
         epoch, sequence = max(0, said.epoch + epoch_off), max(0, said.newest + step)
         good = said.operator != OPERATOR_HOLD and epoch == said.epoch and sequence > said.newest
         before = self.barrier.rejected.total()
-        rejection = self.barrier.offer(arrival(arm, epoch, sequence, self.now_s, stop))
+        rejection = self.barrier.offer(received(arm, epoch, sequence, self.now_s, stop))
         assert (rejection is None) == good
         assert self.barrier.rejected.total() - before == (not good)
         if good:
@@ -140,16 +140,16 @@ class BarrierMachine(RuleBasedStateMachine):
 
         may_fire = gate_open and expected in (BARRIER_PHASE_RUNNING, BARRIER_PHASE_STALLED)
         complete = all(said.fresh for said in driven.values())
-        if decision.firing is None:
+        if decision.inputs is None:
             assert not (may_fire and complete and self._pace_allows())
             return
         assert may_fire
         assert complete
-        assert {arm: used.sequence for arm, used in decision.firing.arrivals.items()} == {
+        assert {arm: used.sequence for arm, used in decision.inputs.commands.items()} == {
             arm: said.newest for arm, said in driven.items()
         }
-        assert decision.firing.late_s >= 0.0
-        assert (decision.firing.straggler is None) == (not driven)
+        assert decision.inputs.late_s >= 0.0
+        assert (decision.inputs.straggler is None) == (not driven)
         self.fired_s.append(self.now_s)
         for said in driven.values():
             said.used = said.newest

@@ -9,9 +9,9 @@ import pytest
 from mart.protocol import codec, keys
 from mart.protocol.messages import Model
 from mart.runtime.bus.memory import MemoryNetwork
-from mart.sim.room.room_server import Doorway
+from mart.sim.room.room_server import RoomServer
 from mart.sim.world import World
-from tests.sim.room.room_harness import Stage
+from tests.sim.room.room_harness import RoomHarness
 
 TASK = "two_arm_multi_cube_lifting"
 
@@ -37,9 +37,9 @@ def test_detailed_meshes_are_another_model_of_the_same_states(world: World) -> N
 
 def asked(world: World, looks: World | None, payload: bytes) -> Model:
     bus = MemoryNetwork().connect()
-    room = Stage(world).room
-    doorway = Doorway(bus, "room-1", room, world, do=lambda work: work(), garbled=Counter(), looks=looks)
+    room = RoomHarness(world).room
+    server = RoomServer(bus, "room-1", room, world, do=lambda work: work(), garbled=Counter(), looks=looks)
     try:
         return codec.decode(Model, bus.query(keys.model("room-1"), payload, 1.0))
     finally:
-        doorway.close()
+        server.close()

@@ -9,7 +9,7 @@ import pytest
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_POLICY, OPERATOR_SCRIPT
 from mart.sim.room import saved_room
-from mart.sim.room.saved_room import RoomRecord
+from mart.sim.room.saved_room import SavedRoom
 from mart.sim.room.seats import SeatTable
 
 
@@ -20,14 +20,14 @@ def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
     seats.assign("arm1", OPERATOR_SCRIPT)
     seats.assign("arm2", OPERATOR_POLICY, "lifter")
     seats.claim("arm2", "h2", "Ben", OPERATOR_HUMAN)
-    record = RoomRecord(seed=5, episodes=3, saved=2, good=1).with_seats(seats).planned("lift", 50)
+    record = SavedRoom(seed=5, episodes=3, saved=2, good=1).with_seats(seats).planned("lift", 50)
     saved_room.save(path, record)
     assert saved_room.load(path) == record
     assert record.holders() == list(seats)
 
 
 def test_a_plan_counts_from_when_it_was_made() -> None:
-    record = RoomRecord(seed=5, saved=4, good=3).planned("lift", 50)
+    record = SavedRoom(seed=5, saved=4, good=3).planned("lift", 50)
     assert record.with_changes(good=5).planned("lift", 50) == record.with_changes(good=5)  # a restart
     for task, episodes in (("wipe", 50), ("lift", 20)):
         anew = record.with_changes(good=5).planned(task, episodes).plan
@@ -43,7 +43,7 @@ def test_a_room_that_never_ran_has_no_record(tmp_path: Path) -> None:
 def test_a_record_is_replaced_and_only_its_owner_reads_it(tmp_path: Path) -> None:
     path = tmp_path / "room-1.json"
     for episodes in (1, 2):
-        saved_room.save(path, RoomRecord(seed=5, episodes=episodes))
+        saved_room.save(path, SavedRoom(seed=5, episodes=episodes))
     assert [file.name for file in tmp_path.iterdir()] == ["room-1.json"]
     assert path.stat().st_mode & 0o777 == 0o600
 

@@ -245,9 +245,9 @@ requests = st.one_of(
 
 
 @given(st.lists(requests, max_size=30))
-def test_the_epoch_grows_with_every_change_and_with_nothing_else(course: list[SeatRequest]) -> None:
+def test_the_epoch_grows_with_every_change_and_with_nothing_else(episode: list[SeatRequest]) -> None:
     seats = SeatTable(ARMS)
-    for request in course:
+    for request in episode:
         before = {seat.arm: seat for seat in seats}
         try:
             seats.answer(request)
@@ -267,9 +267,9 @@ def is_whole(seat: SeatHolder) -> bool:
 
 
 @given(st.lists(requests, max_size=30))
-def test_nobody_is_driven_out_by_another_than_a_person(course: list[SeatRequest]) -> None:
+def test_nobody_is_driven_out_by_another_than_a_person(episode: list[SeatRequest]) -> None:
     seats = SeatTable(ARMS)
-    for request in course:
+    for request in episode:
         before = {seat.arm: seat for seat in seats}
         with contextlib.suppress(MartError):
             seats.answer(request)

@@ -9,22 +9,22 @@ from contextlib import contextmanager
 import pytest
 
 from mart.protocol import clock
-from mart.sim.room.serial_executor import Turns
+from mart.sim.room.serial_executor import SerialExecutor
 
 FAR_S = 3600.0
 PATIENCE_S = 10.0
 
 
 @contextmanager
-def running(turns: Turns) -> Iterator[None]:
+def running(executor: SerialExecutor) -> Iterator[None]:
     stop = threading.Event()
-    runner = threading.Thread(target=turns.run, args=(stop,))
+    runner = threading.Thread(target=executor.run, args=(stop,))
     runner.start()
     try:
         yield
     finally:
         stop.set()
-        turns.do(lambda: None)
+        executor.do(lambda: None)
         runner.join(PATIENCE_S)
         assert not runner.is_alive()
 
@@ -36,24 +36,24 @@ def test_the_thread_that_brings_work_does_it_and_what_follows() -> None:
         done_by.append(threading.get_ident())
         return now_s + FAR_S
 
-    Turns(advance).do(lambda: done_by.append(threading.get_ident()))
+    SerialExecutor(advance).do(lambda: done_by.append(threading.get_ident()))
     assert done_by == [threading.get_ident()] * 2
 
 
 def test_work_that_comes_in_another_turn_is_done_by_its_holder() -> None:
     """And whoever brings it does not wait."""
     entered, leave, order = threading.Event(), threading.Event(), list[str]()
-    turns = Turns(lambda now_s: now_s + FAR_S)
+    executor = SerialExecutor(lambda now_s: now_s + FAR_S)
 
     def long_work() -> None:
         entered.set()
         assert leave.wait(PATIENCE_S)
         order.append("first")
 
-    holder = threading.Thread(target=turns.do, args=(long_work,))
+    holder = threading.Thread(target=executor.do, args=(long_work,))
     holder.start()
     assert entered.wait(PATIENCE_S)
-    turns.do(lambda: order.append("second"))
+    executor.do(lambda: order.append("second"))
     assert order == []
     leave.set()
     holder.join(PATIENCE_S)
@@ -62,7 +62,7 @@ def test_work_that_comes_in_another_turn_is_done_by_its_holder() -> None:
 
 def test_no_two_threads_have_a_turn_and_no_work_is_lost() -> None:
     inside, together, done = list[int](), list[int](), list[int]()
-    turns = Turns(lambda now_s: now_s + FAR_S)
+    executor = SerialExecutor(lambda now_s: now_s + FAR_S)
 
     def work() -> None:
         inside.append(1)
@@ -72,9 +72,9 @@ def test_no_two_threads_have_a_turn_and_no_work_is_lost() -> None:
 
     def bring() -> None:
         for _ in range(500):
-            turns.do(work)
+            executor.do(work)
 
-    with running(turns):
+    with running(executor):
         threads = [threading.Thread(target=bring) for _ in range(2)]  # 1000 wait at most: none is refused
         for thread in threads:
             thread.start()
@@ -95,20 +95,20 @@ def test_what_falls_due_is_done_though_nothing_comes_in() -> None:
             soon.set()
         return now_s + next(moments, FAR_S)
 
-    turns = Turns(advance)
+    executor = SerialExecutor(advance)
     began_s = clock.monotonic_s()
-    turns.do(lambda: None)
-    with running(turns):
+    executor.do(lambda: None)
+    with running(executor):
         assert soon.wait(PATIENCE_S)
     assert called[2] - began_s >= 0.02
 
 
 def test_a_failure_ends_the_run_whoever_had_the_turn() -> None:
-    turns = Turns(lambda now_s: now_s + FAR_S)
+    executor = SerialExecutor(lambda now_s: now_s + FAR_S)
 
     def fail() -> None:
         raise ValueError("physics")
 
-    turns.do(fail)
+    executor.do(fail)
     with pytest.raises(ValueError, match="physics"):
-        turns.run(threading.Event())
+        executor.run(threading.Event())

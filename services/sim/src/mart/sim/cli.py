@@ -74,12 +74,12 @@ def render(
 ) -> None:
     """Draw an episode anew from its states, from any viewpoint, as a video."""
     try:
-        from mart.sim.render_episode import film
+        from mart.sim.render_episode import render_episode
     except ImportError as error:  # of PyOpenGL, PyAV or the system's EGL
         raise Unavailable(
             f"Drawing needs what this installation lacks ({error}): pip install 'mart-sim[render]', and libegl1."
         ) from error
 
     video = out or Path(f"{file.stem}-{viewpoint}.mp4")
-    frames = film(file, video, viewpoint, width_px, height_px)
+    frames = render_episode(file, video, viewpoint, width_px, height_px)
     print_result({"video": str(video), "frames": frames}, f"{video}: {frames} pictures.", as_json)

@@ -21,7 +21,7 @@ from mart.sim.renderer import Renderer
 _QUALITY = {"crf": "20", "preset": "veryfast"}  # of x264: no difference to see, about 1 MB a minute
 
 
-def film(path: Path, out: Path, viewpoint: str, width_px: int, height_px: int) -> int:
+def render_episode(path: Path, out: Path, viewpoint: str, width_px: int, height_px: int) -> int:
     """Writes `out` (MP4, H.264) with one picture for each recorded state, in real time; returns how many.
 
     Raises NotFound for an unknown viewpoint, InvalidInput for a size that cannot be, Corrupt where the file does not

@@ -23,7 +23,7 @@ _BOUND = 10.0  # metres, radians, shares: nothing that is still in the room come
 
 
 @dataclass(frozen=True)
-class Options:
+class EnvOptions:
     """How a task's environment is built; every keyword of both kinds.
 
     `arms`: how many, where the task can have several numbers. `viewpoint`: which camera `render` shows, an arm's name
@@ -44,7 +44,7 @@ class Options:
 
 
 @dataclass(frozen=True)
-class Moment:
+class StepResult:
     """The world between two steps. `failed` says in words why the task can no longer succeed, "" while it can."""
 
     observations: Observations
@@ -67,10 +67,10 @@ class Moment:
         return {"subtasks": dict(self.subtasks), "success": self.success, "failed": self.failed}
 
 
-class Course:
+class EpisodeRunner:
     """Episodes of one task, one after the other."""
 
-    def __init__(self, task: str, options: Options) -> None:
+    def __init__(self, task: str, options: EnvOptions) -> None:
         """Raises NotFound for an unknown task or viewpoint, InvalidInput for what the task cannot have."""
         self._world = World.build(task, options.control_hz, options.arms, options.detail)
         self._options = options
@@ -89,13 +89,13 @@ class Course:
     def control_hz(self) -> float:
         return self._options.control_hz
 
-    def reset(self, seed: int) -> Moment:
+    def reset(self, seed: int) -> StepResult:
         """The world that rooms and rollouts of this seed begin with."""
         self._world.reset(seed)
         self._ticks = 0
-        return self._moment()
+        return self._result()
 
-    def step(self, actions: ArrayLike) -> Moment:
+    def step(self, actions: ArrayLike) -> StepResult:
         """actions: shape (arms, 7), in [-1, 1]; see `World`.
 
         Raises InvalidInput for actions that cannot be, Conflict where the episode is over.
@@ -106,14 +106,14 @@ class Course:
             self._world.step(actions)
         except Diverged as error:
             self._ticks = None
-            return Moment(
+            return StepResult(
                 _copied(self._last), dict.fromkeys(self._subtasks(), False), False, str(error), False
             )
         self._ticks += 1
-        moment = self._moment()
-        if moment.terminated or moment.truncated:
+        result = self._result()
+        if result.terminated or result.truncated:
             self._ticks = None
-        return moment
+        return result
 
     def render(self) -> Image | None:
         """The picture from the chosen viewpoint, shape (height, width, 3); None without a render mode."""
@@ -131,11 +131,11 @@ class Course:
             self._renderer.close()
             self._renderer = None
 
-    def _moment(self) -> Moment:
+    def _result(self) -> StepResult:
         progress = self._world.progress()
         assert self._ticks is not None
         self._last = self._world.observations()
-        return Moment(
+        return StepResult(
             observations=_copied(self._last),
             subtasks={name: bool(done) for name, done in progress.subtasks.items()},
             success=bool(progress.success),

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
-    Course,
+    EnvOptions,
+    EpisodeRunner,
     Observations,
-    Options,
     action_space,
     checked_seed,
     observation_space,
@@ -31,13 +31,13 @@ class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integ
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 20}  # noqa: RUF012
 
     def __init__(self, task: str, **options: Any) -> None:
-        """options: fields of `Options`."""
-        chosen = Options(**options)
-        self._course = Course(task, chosen)
+        """options: fields of `EnvOptions`."""
+        chosen = EnvOptions(**options)
+        self._runner = EpisodeRunner(task, chosen)
         self.render_mode = chosen.render_mode
         self.metadata = {**type(self).metadata, "render_fps": chosen.control_hz}
-        self.observation_space = observation_space(self._course.task.observations)
-        self.action_space = action_space(len(self._course.task.arms))
+        self.observation_space = observation_space(self._runner.task.observations)
+        self.action_space = action_space(len(self._runner.task.arms))
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -45,17 +45,17 @@ class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integ
         """`seed` begins the very episode that it begins in a room; without one, the next is drawn."""
         super().reset(seed=seed)
         drawn = int(self.np_random.integers(MAX_SEED)) if seed is None else checked_seed(seed)
-        moment = self._course.reset(drawn)
-        return moment.observations, moment.info()
+        result = self._runner.reset(drawn)
+        return result.observations, result.info()
 
     def step(
         self, action: NDArray[np.floating[Any] | np.integer[Any]]
     ) -> tuple[Observations, float, bool, bool, dict[str, Any]]:
-        moment = self._course.step(action)
-        return moment.observations, moment.reward, moment.terminated, moment.truncated, moment.info()
+        result = self._runner.step(action)
+        return result.observations, result.reward, result.terminated, result.truncated, result.info()
 
     def render(self) -> Image | None:
-        return self._course.render()
+        return self._runner.render()
 
     def close(self) -> None:
-        self._course.close()
+        self._runner.close()

@@ -15,10 +15,10 @@ from mart.protocol.errors import Conflict, InvalidInput
 from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
-    Course,
-    Moment,
+    EnvOptions,
+    EpisodeRunner,
     Observations,
-    Options,
+    StepResult,
     action_space,
     checked_seed,
     observation_space,
@@ -38,10 +38,10 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "is_parallelizable": True}  # noqa: RUF012
 
     def __init__(self, task: str, **options: Any) -> None:
-        """options: fields of `Options`."""
-        chosen = Options(**options)
-        self._course = Course(task, chosen)
-        facts = self._course.task
+        """options: fields of `EnvOptions`."""
+        chosen = EnvOptions(**options)
+        self._runner = EpisodeRunner(task, chosen)
+        facts = self._runner.task
         self.render_mode = chosen.render_mode
         self.metadata = {**type(self).metadata, "name": facts.name, "render_fps": chosen.control_hz}
         self.possible_agents = list(facts.arm_names)
@@ -51,7 +51,7 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
         self._joint = observation_space(facts.observations)
         self.state_space = spaces.flatten_space(self._joint)
         self._random, _ = seeding.np_random()
-        self._moment: Moment | None = None
+        self._result: StepResult | None = None
 
     def observation_space(self, agent: str) -> spaces.Dict:
         return self._partitions[agent]
@@ -66,36 +66,36 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
         if seed is not None:
             self._random, _ = seeding.np_random(checked_seed(seed))
         drawn = int(self._random.integers(MAX_SEED)) if seed is None else seed
-        moment = self._course.reset(drawn)
+        result = self._runner.reset(drawn)
         self.agents = list(self.possible_agents)
-        return self._seen(moment), self._infos(moment)
+        return self._seen(result), self._infos(result)
 
     def step(
         self, actions: Mapping[str, NDArray[np.float32]]
     ) -> tuple[dict[str, Observations], dict[str, float], dict[str, bool], dict[str, bool], Infos]:
         """Raises InvalidInput where an arm is missing: the world moves when every arm has been told what to do."""
-        moment = self._course.step(self._together(actions))
-        if moment.terminated or moment.truncated:
+        result = self._runner.step(self._together(actions))
+        if result.terminated or result.truncated:
             self.agents = []
         return (
-            self._seen(moment),
-            dict.fromkeys(self.possible_agents, moment.reward),
-            dict.fromkeys(self.possible_agents, moment.terminated),
-            dict.fromkeys(self.possible_agents, moment.truncated),
-            self._infos(moment),
+            self._seen(result),
+            dict.fromkeys(self.possible_agents, result.reward),
+            dict.fromkeys(self.possible_agents, result.terminated),
+            dict.fromkeys(self.possible_agents, result.truncated),
+            self._infos(result),
         )
 
     def state(self) -> NDArray[np.float64]:
         """The joint observation as one vector, in the order of `gymnasium.spaces.flatten`."""
-        if self._moment is None:
+        if self._result is None:
             raise Conflict("The state was asked for, but no episode has begun: call reset first.")
-        return np.asarray(spaces.flatten(self._joint, self._moment.observations))
+        return np.asarray(spaces.flatten(self._joint, self._result.observations))
 
     def render(self) -> Image | None:
-        return self._course.render()
+        return self._runner.render()
 
     def close(self) -> None:
-        self._course.close()
+        self._runner.close()
 
     def _together(self, actions: Mapping[str, NDArray[np.float32]]) -> NDArray[np.float64]:
         if set(actions) != set(self.possible_agents):
@@ -111,13 +111,13 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
                 )
         return np.array(rows)
 
-    def _seen(self, moment: Moment) -> dict[str, Observations]:
+    def _seen(self, result: StepResult) -> dict[str, Observations]:
         """Each agent's own arrays, even of what several see: one agent's wrapper must not change another's."""
-        self._moment = moment
+        self._result = result
         return {
-            agent: {name: moment.observations[name].copy() for name in space}
+            agent: {name: result.observations[name].copy() for name in space}
             for agent, space in self._partitions.items()
         }
 
-    def _infos(self, moment: Moment) -> Infos:
-        return {agent: moment.info() for agent in self.possible_agents}
+    def _infos(self, result: StepResult) -> Infos:
+        return {agent: result.info() for agent in self.possible_agents}

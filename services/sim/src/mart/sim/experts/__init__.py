@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mart.sim.experts.expert import Expert, Intent
+from mart.sim.experts.expert import Expert, ExpertIntent
 from mart.sim.experts.skill import Skill, get_skill, skill_names
 
-__all__ = ["Expert", "Intent", "Skill", "get_skill", "skill_names"]
+__all__ = ["Expert", "ExpertIntent", "Skill", "get_skill", "skill_names"]

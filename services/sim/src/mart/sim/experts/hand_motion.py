@@ -16,7 +16,7 @@ from mart.protocol.pose import (
     quaternion_log,
     quaternion_multiply,
 )
-from mart.sim.experts.human_error import Person
+from mart.sim.experts.human_error import HumanErrorModel
 
 _TREMOR_TIME_S = 0.4  # how long the tremor takes to wander off
 _SLOWING_PER_S = 6.0  # near its goal a hand slows down in proportion to what is left
@@ -33,12 +33,12 @@ _NEW_GOAL_M, _NEW_GOAL_RAD = (
 Vector = NDArray[np.float64]
 
 
-class Hand:
+class HandMotion:
     """Holds where the person wants the tool to be, as the reference without tremor."""
 
-    def __init__(self, person: Person) -> None:
-        self._person = person
-        self._speed_factor = person.random.uniform(0.85, 1.15)  # people differ
+    def __init__(self, human: HumanErrorModel) -> None:
+        self._human = human
+        self._speed_factor = human.random.uniform(0.85, 1.15)  # people differ
         self._tremor = np.zeros(6)
         self._miss = np.zeros(6)  # of the movement under way: translation, rotation vector
         self._correct_in_s = 0.0
@@ -53,7 +53,7 @@ class Hand:
             self._begin(difference(goal, start), pace)
         self._goal = goal
         shift, turn = difference(moved(goal, self._miss[:3], self._miss[3:]), start)
-        skill, factor = self._person.skill, pace * self._speed_factor
+        skill, factor = self._human.skill, pace * self._speed_factor
         step = _shortened(shift, _stride(shift, skill.speed_m_per_s * factor, elapsed_s))
         turn_step = _shortened(turn, _stride(turn, skill.turn_rad_per_s * factor, elapsed_s))
         self._reference = _leashed(moved(start, step, turn_step), measured)
@@ -79,12 +79,12 @@ class Hand:
 
     def _begin(self, way: tuple[Vector, Vector], pace: float) -> None:
         """A new movement: its first part will end beside the goal, more often too far than too short."""
-        random, share = self._person.random, self._person.skill.overshoot * pace
+        random, share = self._human.random, self._human.skill.overshoot * pace
         shift, turn = way
         along = share * random.normal(0.5, 1.0, 2)
         across = share * 0.3 * float(np.linalg.norm(shift)) * random.standard_normal(3)
         self._miss = np.concatenate([along[0] * shift + across, along[1] * turn])
-        self._correct_in_s = self._person.notices_s()
+        self._correct_in_s = self._human.notices_s()
 
     def _correct(self, pace: float, elapsed_s: float) -> None:
         """The first part is over: once the miss has been noticed, what is left of it is a movement like any other."""
@@ -97,10 +97,10 @@ class Hand:
 
     def _shake(self, elapsed_s: float) -> None:
         """An Ornstein-Uhlenbeck step, exact for any time."""
-        skill = self._person.skill
+        skill = self._human.skill
         spread = np.repeat([skill.tremor_m, skill.tremor_rad], 3)
         keep = np.exp(-elapsed_s / _TREMOR_TIME_S)
-        drive = self._person.random.standard_normal(6)
+        drive = self._human.random.standard_normal(6)
         self._tremor = keep * self._tremor + spread * np.sqrt(1 - keep**2) * drive
 
 

@@ -14,7 +14,7 @@ _HASTE_M = (0.015, 0.05)  # before the place, when the gripper is closed too ear
 CLOSING_S = 0.45  # fingers take six ticks to grip a thing
 
 
-class Person:
+class HumanErrorModel:
     """Draws from `random` alone, so a seed decides what a person does. `random` is for a plan's own choices as well."""
 
     def __init__(self, skill: Skill, random: np.random.Generator) -> None:

@@ -10,24 +10,24 @@ from numpy.typing import ArrayLike
 
 from mart.protocol.pose import Pose, quaternion_exp, quaternion_multiply
 from mart.protocol.tasks import Arm
-from mart.sim.experts.plan import Sight
+from mart.sim.experts.plan import OperatorObservation
 
-See = Callable[[Sight], Pose]
+ObservedPose = Callable[[OperatorObservation], Pose]
 
 _UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 
 
-def seen(arm: Arm, thing: str) -> See:
+def seen(arm: Arm, thing: str) -> ObservedPose:
     """Where a thing is, in this arm's base frame; unturned in the world where only its position is seen."""
     return _seen(arm, f"{thing}/position_in_world", f"{thing}/quaternion_in_world")
 
 
-def seen_tool(arm: Arm, partner: str) -> See:
+def seen_tool(arm: Arm, partner: str) -> ObservedPose:
     """Where the partner's tool is, in this arm's base frame: its position alone."""
     return _seen(arm, f"{partner}/tool_position_in_world", "")
 
 
-def _seen(arm: Arm, position: str, quaternion: str) -> See:
+def _seen(arm: Arm, position: str, quaternion: str) -> ObservedPose:
     base_from_world = arm.pose_base_in_world.inverse()
     return lambda now: (
         base_from_world @ Pose(now.observations[position], now.observations.get(quaternion, _UNTURNED))
@@ -82,15 +82,15 @@ def _yaw(pose: Pose, nearest_to_rad: float = 0.0, symmetry_rad: float = math.tau
     return nearest_to_rad + math.remainder(math.atan2(y, x) - nearest_to_rad, symmetry_rad)
 
 
-class Still:
-    """Whether what is seen has stayed within `within_m` of one place for `for_s`; to be asked at every sight."""
+class StillnessDetector:
+    """Whether what is seen has stayed within `within_m` of one place for `for_s`; to be asked at every observation."""
 
-    def __init__(self, see: See, within_m: float, for_s: float) -> None:
+    def __init__(self, see: ObservedPose, within_m: float, for_s: float) -> None:
         self._see, self._within_m, self._for_s = see, within_m, for_s
         self._place: Pose | None = None
         self._since_s = 0.0
 
-    def __call__(self, now: Sight) -> bool:
+    def __call__(self, now: OperatorObservation) -> bool:
         here = self._see(now)
         if self._place is None or apart_m(here, self._place) > self._within_m:
             self._place, self._since_s = here, now.sim_time_s

@@ -8,10 +8,10 @@ from importlib.util import find_spec
 
 from mart.protocol.errors import NotFound
 from mart.protocol.tasks import Arm, Task
-from mart.sim.experts.human_error import Person
-from mart.sim.experts.plan import Plan, Sight
+from mart.sim.experts.human_error import HumanErrorModel
+from mart.sim.experts.plan import ExpertPlan, OperatorObservation
 
-PlanOf = Callable[[Arm, Person, Sight], Plan]
+PlanOf = Callable[[Arm, HumanErrorModel, OperatorObservation], ExpertPlan]
 
 
 def plan_of(task: Task) -> PlanOf:

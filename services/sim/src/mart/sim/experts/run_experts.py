@@ -6,10 +6,10 @@ import numpy as np
 
 from mart.sim.experts.expert import Expert
 from mart.sim.experts.skill import get_skill
-from mart.sim.world import Progress, World
+from mart.sim.world import TaskProgress, World
 
 
-def rehearse(world: World, seed: int, skill: str = "expert", until_s: float | None = None) -> Progress:
+def run_experts(world: World, seed: int, skill: str = "expert", until_s: float | None = None) -> TaskProgress:
     """Ends with success, with failure, at `until_s` of simulated time or at the task's time limit."""
     world.reset(seed)
     randoms = np.random.default_rng(seed).spawn(len(world.arms))

@@ -16,7 +16,7 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Request
 from mart.runtime.service import announced, connected
 from mart.runtime.throttled_log import ThrottledLog
-from mart.sim.rollout.rollout_server import Lockstep
+from mart.sim.rollout.rollout_server import RolloutServer
 from mart.sim.settings import ReplicaSettings
 from mart.sim.world.divergence import DivergenceArchive
 
@@ -35,23 +35,23 @@ def serve_replica(settings: ReplicaSettings) -> None:
         contextlib.closing(service.bus.serve(keys.rollout(settings.name), requests.put)),
         announced(service),
     ):
-        _answer_all(Lockstep(explain=archive.keep), requests, service.stop)
+        _answer_all(RolloutServer(explain=archive.keep), requests, service.stop)
 
 
-def _answer_all(lockstep: Lockstep, requests: queue.SimpleQueue[Request], stop: threading.Event) -> None:
+def _answer_all(server: RolloutServer, requests: queue.SimpleQueue[Request], stop: threading.Event) -> None:
     refused: Counter[str] = Counter()
     throttled_log = ThrottledLog(_log)
     while not stop.is_set():
         with contextlib.suppress(queue.Empty):
             request = requests.get(timeout=_LONGEST_WAIT_S)
-            reply = _answer(lockstep, request.payload)
+            reply = _answer(server, request.payload)
             refused[reply.error.message] += bool(reply.error.message)
             request.reply(codec.encode(reply))
         throttled_log.report(refused, clock.monotonic_s())
 
 
-def _answer(lockstep: Lockstep, payload: bytes) -> RolloutReply:
+def _answer(server: RolloutServer, payload: bytes) -> RolloutReply:
     try:
-        return lockstep.answer(codec.decode(RolloutRequest, payload), clock.monotonic_s())
+        return server.answer(codec.decode(RolloutRequest, payload), clock.monotonic_s())
     except MartError as error:
         return RolloutReply(error=error_message(error))

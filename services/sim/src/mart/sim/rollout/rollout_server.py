@@ -30,7 +30,7 @@ _DIGEST_BYTES = 16
 
 
 @dataclass(frozen=True)
-class Kind:
+class WorldSpec:
     """What decides a world's model."""
 
     task: str
@@ -51,7 +51,7 @@ class _Session:
         return RolloutReply(session=name, worlds=pack(standing))
 
 
-class Lockstep:
+class RolloutServer:
     """Answers rollout requests. Raises errors of the tree; `now_s` is monotonic.
 
     explain: says in words why a world has failed whose physics left its bounds.
@@ -62,7 +62,7 @@ class Lockstep:
         self._threads = threads or os.cpu_count() or 1
         self._boot = secrets.token_hex(4)  # tells a session of an earlier run from one that was closed
         self._opened = 0
-        self._worlds: dict[Kind, World] = {}
+        self._worlds: dict[WorldSpec, World] = {}
         self._sessions: dict[str, _Session] = {}
 
     def answer(self, request: RolloutRequest, now_s: float) -> RolloutReply:
@@ -86,7 +86,7 @@ class Lockstep:
 
     def _reset(self, reset: RolloutRequest.Reset, now_s: float) -> RolloutReply:
         self._require_room(len(reset.seeds))
-        world = self._world(Kind(reset.task, reset.control_hz, reset.arms or None))
+        world = self._world(WorldSpec(reset.task, reset.control_hz, reset.arms or None))
         worlds = WorldBatch(world, len(reset.seeds), self._threads, self._explain)
         worlds.reset(reset.seeds)
         self._opened += 1
@@ -110,7 +110,7 @@ class Lockstep:
         return session.reply(step.session)
 
     def _resimulate(self, request: RolloutRequest.Resimulate) -> RolloutReply:
-        world = self._world(Kind(request.task, request.control_hz, request.arms or None))
+        world = self._world(WorldSpec(request.task, request.control_hz, request.arms or None))
         if request.model_sha256 != world.model_sha256:
             raise Conflict(
                 f"A recording of model {request.model_sha256[:12]} was given, but this replica compiles "
@@ -124,7 +124,7 @@ class Lockstep:
         return RolloutReply(state_digests=_digests(world, request.first_state, actions))
 
     def _describe(self, request: RolloutRequest.Describe) -> RolloutReply:
-        world = self._world(Kind(request.task, request.control_hz, request.arms or None))
+        world = self._world(WorldSpec(request.task, request.control_hz, request.arms or None))
         return RolloutReply(model=model_message(world))
 
     def _require_room(self, worlds: int) -> None:
@@ -151,10 +151,10 @@ class Lockstep:
             why = "it is not of this run of the replica, which has been restarted since"
         raise NotFound(f"There is no session {name!r}: {why}; reset to get one.")
 
-    def _world(self, kind: Kind) -> World:
-        if kind not in self._worlds:
-            self._worlds[kind] = World.build(kind.task, kind.control_hz, kind.arms)
-        return self._worlds[kind]
+    def _world(self, spec: WorldSpec) -> World:
+        if spec not in self._worlds:
+            self._worlds[spec] = World.build(spec.task, spec.control_hz, spec.arms)
+        return self._worlds[spec]
 
     def _forget_idle(self, now_s: float) -> None:
         idle = [name for name, session in self._sessions.items() if now_s - session.used_s > IDLE_S]

@@ -29,7 +29,7 @@ from mart.protocol.messages import (
     BarrierPhase,
     Operator,
 )
-from mart.sim.room.command_validation import Arrival, Rejection
+from mart.sim.room.command_validation import CommandRejection, ReceivedCommand
 from mart.sim.room.pacing import Pace
 
 STALLED_AFTER_S = 0.25
@@ -38,14 +38,14 @@ FREED_AFTER_S = 30.0
 
 
 @dataclass(frozen=True)
-class Firing:
+class TickInputs:
     """A tick that fires now.
 
-    arrivals: the newest command of every arm that is not on hold. straggler: the arm that completed the barrier last,
+    commands: the newest command of every arm that is not on hold. straggler: the arm that completed the barrier last,
     None where nobody drives; late_s: how long the tick waited for it beyond the pace.
     """
 
-    arrivals: Mapping[str, Arrival]
+    commands: Mapping[str, ReceivedCommand]
     due_s: float
     straggler: str | None
     late_s: float
@@ -62,18 +62,18 @@ class Decision:
     phase: BarrierPhase
     waiting_for: tuple[tuple[str, float], ...]
     silent: tuple[str, ...]
-    firing: Firing | None
+    inputs: TickInputs | None
     next_s: float
 
 
 @dataclass
-class _Lane:
+class _SeatState:
     """What the barrier knows of one seat."""
 
     operator: Operator
     epoch: int
     heard_s: float  # when a command was last accepted, or when the seat got its holder
-    newest: Arrival | None = None
+    newest: ReceivedCommand | None = None
     last_sequence: int = -1  # of the newest accepted command
     unused: bool = False  # the newest command has not moved the world yet
     complete_s: float = 0.0  # when the first unused command arrived
@@ -89,108 +89,108 @@ class Barrier:
 
     def __init__(self, arms: Iterable[str], period_s: float, now_s: float) -> None:
         self.pace = Pace(period_s, now_s)
-        self.rejected: Counter[Rejection] = Counter()
-        self._lanes = {arm: _Lane(OPERATOR_HOLD, 0, now_s) for arm in arms}
-        self._driven: dict[str, _Lane] = {}  # those of them that are not on hold
+        self.rejected: Counter[CommandRejection] = Counter()
+        self._seats = {arm: _SeatState(OPERATOR_HOLD, 0, now_s) for arm in arms}
+        self._driven: dict[str, _SeatState] = {}  # those of them that are not on hold
 
     def seat(self, arm: str, operator: Operator, epoch: int, now_s: float) -> None:
         """The seat has a new holder: what the old one said no longer counts."""
-        self._lanes[arm] = _Lane(operator, epoch, now_s)
-        self._driven = {arm: lane for arm, lane in self._lanes.items() if lane.driven}
+        self._seats[arm] = _SeatState(operator, epoch, now_s)
+        self._driven = {arm: seat for arm, seat in self._seats.items() if seat.driven}
 
-    def offer(self, arrival: Arrival) -> Rejection | None:
+    def offer(self, received: ReceivedCommand) -> CommandRejection | None:
         """Takes a command, or says why not. Rejections are counted."""
-        reason = self._objection(arrival)
+        reason = self._objection(received)
         if reason is not None:
             self.rejected[reason] += 1
             return reason
-        lane = self._lanes[arrival.arm]
-        if not lane.unused:
-            lane.complete_s = arrival.at_s
-        lane.newest, lane.unused = arrival, True
-        lane.last_sequence = arrival.sequence
-        lane.heard_s = arrival.at_s
-        if not arrival.emergency_stop:
-            lane.stopped_since_s = None
-        elif lane.stopped_since_s is None:
-            lane.stopped_since_s = arrival.at_s
+        seat = self._seats[received.arm]
+        if not seat.unused:
+            seat.complete_s = received.at_s
+        seat.newest, seat.unused = received, True
+        seat.last_sequence = received.sequence
+        seat.heard_s = received.at_s
+        if not received.emergency_stop:
+            seat.stopped_since_s = None
+        elif seat.stopped_since_s is None:
+            seat.stopped_since_s = received.at_s
         return None
 
-    def newest(self, arm: str) -> Arrival | None:
+    def newest(self, arm: str) -> ReceivedCommand | None:
         """The newest accepted command of the arm's present operator, used or not."""
-        return self._lanes[arm].newest
+        return self._seats[arm].newest
 
     def restart(self, now_s: float) -> None:
         """The world was reset: commands given for the old one are void, and the pace begins anew."""
-        for lane in self._lanes.values():
-            lane.unused = False
+        for seat in self._seats.values():
+            seat.unused = False
         self.pace.restart(now_s)
 
     def advance(self, now_s: float, gate_open: bool) -> Decision:
         """Decides. Where a tick fires, its commands count as used. `gate_open`: the episode lets the world run."""
         phase, waiting_for = self._phase(now_s)
         world_may_run = gate_open and phase in (BARRIER_PHASE_RUNNING, BARRIER_PHASE_STALLED)
-        firing = (
+        inputs = (
             self._fire(now_s) if world_may_run and self._complete() and now_s >= self.pace.due_s else None
         )
         silent = tuple(
             arm
-            for arm, lane in self._driven.items()
-            if lane.operator != OPERATOR_SCRIPT and now_s - lane.heard_s >= FREED_AFTER_S
+            for arm, seat in self._driven.items()
+            if seat.operator != OPERATOR_SCRIPT and now_s - seat.heard_s >= FREED_AFTER_S
         )
-        return Decision(phase, waiting_for, silent, firing, self._next_s(now_s, world_may_run))
+        return Decision(phase, waiting_for, silent, inputs, self._next_s(now_s, world_may_run))
 
     def _complete(self) -> bool:
         """Everyone who drives has given a new command."""
-        return all(lane.unused for lane in self._driven.values())
+        return all(seat.unused for seat in self._driven.values())
 
-    def _objection(self, arrival: Arrival) -> Rejection | None:
-        lane = self._lanes.get(arrival.arm)
-        if lane is None:
-            return Rejection.UNKNOWN_ARM
-        if not lane.driven:
-            return Rejection.FREE_SEAT
-        if arrival.seat_epoch != lane.epoch:
-            return Rejection.WRONG_EPOCH
-        if arrival.sequence <= lane.last_sequence:
-            return Rejection.OLD_SEQUENCE
+    def _objection(self, received: ReceivedCommand) -> CommandRejection | None:
+        seat = self._seats.get(received.arm)
+        if seat is None:
+            return CommandRejection.UNKNOWN_ARM
+        if not seat.driven:
+            return CommandRejection.FREE_SEAT
+        if received.seat_epoch != seat.epoch:
+            return CommandRejection.WRONG_EPOCH
+        if received.sequence <= seat.last_sequence:
+            return CommandRejection.OLD_SEQUENCE
         return None
 
     def _phase(self, now_s: float) -> tuple[BarrierPhase, tuple[tuple[str, float], ...]]:
         driven = self._driven.items()
         stops = tuple(
-            (arm, now_s - lane.stopped_since_s) for arm, lane in driven if lane.stopped_since_s is not None
+            (arm, now_s - seat.stopped_since_s) for arm, seat in driven if seat.stopped_since_s is not None
         )
         if stops:
             return BARRIER_PHASE_STOPPED, stops
         missing = tuple(
-            (arm, now_s - lane.heard_s) for arm, lane in driven if now_s - lane.heard_s >= STALLED_AFTER_S
+            (arm, now_s - seat.heard_s) for arm, seat in driven if now_s - seat.heard_s >= STALLED_AFTER_S
         )
         if not missing:
             return BARRIER_PHASE_RUNNING, ()
         longest_s = max(since_s for _, since_s in missing)
         return BARRIER_PHASE_PAUSED if longest_s >= PAUSED_AFTER_S else BARRIER_PHASE_STALLED, missing
 
-    def _fire(self, now_s: float) -> Firing:
+    def _fire(self, now_s: float) -> TickInputs:
         driven = self._driven
-        arrivals = {}
-        for arm, lane in driven.items():
-            assert lane.newest is not None  # it is unused, so it is there
-            arrivals[arm] = lane.newest
-            lane.unused = False
+        commands = {}
+        for arm, seat in driven.items():
+            assert seat.newest is not None  # it is unused, so it is there
+            commands[arm] = seat.newest
+            seat.unused = False
         straggler = max(driven, key=lambda arm: driven[arm].complete_s, default=None)
         due_s = self.pace.due_s
         late_s = max(0.0, driven[straggler].complete_s - due_s) if straggler is not None else 0.0
         self.pace.fired(now_s)
-        return Firing(arrivals, due_s, straggler, late_s)
+        return TickInputs(commands, due_s, straggler, late_s)
 
     def _next_s(self, now_s: float, world_may_run: bool) -> float:
         """When the answer may change without a new command; `now_s` where it has changed already."""
         moments = [
             moment
-            for lane in self._driven.values()
+            for seat in self._driven.values()
             for after_s in (STALLED_AFTER_S, PAUSED_AFTER_S, FREED_AFTER_S)
-            if (moment := lane.heard_s + after_s) > now_s
+            if (moment := seat.heard_s + after_s) > now_s
         ]
         if world_may_run and self._complete():
             moments.append(max(self.pace.due_s, now_s))

@@ -7,7 +7,7 @@ from mart.protocol.messages import Event, RoomStatus, State
 from mart.runtime.bus import Bus
 
 
-class BusVoice:
+class BusPublisher:
     """Speaks on the keys of a room."""
 
     def __init__(self, bus: Bus, room: str) -> None:

@@ -18,7 +18,7 @@ MAX_COORDINATE_M = 100.0
 _NORM_TOLERANCE = 0.01
 
 
-class Rejection(StrEnum):
+class CommandRejection(StrEnum):
     """Why a command was not used."""
 
     MALFORMED = "not a command"
@@ -31,16 +31,16 @@ class Rejection(StrEnum):
     OUT_OF_BOUNDS = "out of bounds"
 
 
-class Rejected(InvalidInput):
+class CommandRejected(InvalidInput):
     """A command that cannot be used, whoever holds the seat."""
 
-    def __init__(self, reason: Rejection) -> None:
+    def __init__(self, reason: CommandRejection) -> None:
         super().__init__(f"A command was rejected: {reason}.")
         self.reason = reason
 
 
 @dataclass(frozen=True)
-class Arrival:
+class ReceivedCommand:
     """A well-formed command and when it came: monotonic seconds for decisions, wall nanoseconds for the record."""
 
     command: Command
@@ -65,31 +65,31 @@ class Arrival:
         return self.command.emergency_stop
 
 
-def admit(payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> Arrival:
+def validate_command(payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> ReceivedCommand:
     """The command in `payload`, which came on the key of `arm`. Raises Rejected with the reason."""
     try:
         command = codec.decode(Command, payload, MAX_COMMAND_BYTES)
     except InvalidInput as error:
-        raise Rejected(Rejection.MALFORMED) from error
+        raise CommandRejected(CommandRejection.MALFORMED) from error
     if command.arm != arm:
-        raise Rejected(Rejection.UNKNOWN_ARM)
+        raise CommandRejected(CommandRejection.UNKNOWN_ARM)
     reason = _objection(command.target_tool_in_base, command.gripper)
     if reason is not None:
-        raise Rejected(reason)
+        raise CommandRejected(reason)
     target = command.target_tool_in_base
     pose = Pose(
         np.array((target.x, target.y, target.z)), np.array((target.qw, target.qx, target.qy, target.qz))
     )
-    return Arrival(command, pose, at_s, at_wall_ns)
+    return ReceivedCommand(command, pose, at_s, at_wall_ns)
 
 
-def _objection(target: PoseMessage, gripper: float) -> Rejection | None:
+def _objection(target: PoseMessage, gripper: float) -> CommandRejection | None:
     position = (target.x, target.y, target.z)
     quaternion = (target.qw, target.qx, target.qy, target.qz)
     if not all(map(math.isfinite, (*position, *quaternion, gripper))):
-        return Rejection.NOT_FINITE
+        return CommandRejection.NOT_FINITE
     if abs(math.hypot(*quaternion) - 1.0) > _NORM_TOLERANCE:
-        return Rejection.BAD_NORM
+        return CommandRejection.BAD_NORM
     if max(map(abs, position)) > MAX_COORDINATE_M or not 0.0 <= gripper <= 1.0:
-        return Rejection.OUT_OF_BOUNDS
+        return CommandRejection.OUT_OF_BOUNDS
     return None

@@ -1,4 +1,4 @@
-"""The course of an episode. Pure: requests, ticks and `now` in, what to do next out.
+"""Decide how an episode goes on. Pure: requests, ticks and `now` in, what to do next out.
 
     practice ── everyone ready ──► countdown ── 3 s, all present ──► recording ── outcome ──► ended ── 2 s ──► practice
 
@@ -54,7 +54,7 @@ class ResetWorld:
 
 
 @dataclass(frozen=True)
-class Started:
+class BeginEpisode:
     """Recording begins: the next state is the episode's first."""
 
     number: int
@@ -62,14 +62,14 @@ class Started:
 
 
 @dataclass(frozen=True)
-class Ended:
+class EndEpisode:
     number: int
     outcome: Outcome
     ticks: int
     reason: str
 
 
-Step = ResetWorld | Started | Ended
+Effect = ResetWorld | BeginEpisode | EndEpisode
 
 
 def seed_of(room_seed: int, stream: str, number: int) -> int:
@@ -78,7 +78,7 @@ def seed_of(room_seed: int, stream: str, number: int) -> int:
     return int(np.random.SeedSequence(entropy).generate_state(1, np.uint32)[0])
 
 
-class EpisodeCourse:
+class EpisodeStateMachine:
     """Where a room stands. `number` is the newest episode's, 0 before the first."""
 
     def __init__(self, room_seed: int, horizon_ticks: int, number: int = 0) -> None:
@@ -115,7 +115,7 @@ class EpisodeCourse:
         waits = self.phase in (EPISODE_PHASE_COUNTDOWN, EPISODE_PHASE_ENDED) and self._until_s > now_s
         return self._until_s if waits else float("inf")
 
-    def answer(self, request: EpisodeRequest, seats: SeatTable, now_s: float) -> Sequence[Step]:
+    def answer(self, request: EpisodeRequest, seats: SeatTable, now_s: float) -> Sequence[Effect]:
         """Does what a request asks. Raises Conflict, Forbidden, InvalidInput or NotFound."""
         match request.WhichOneof("what"):
             case "ready":
@@ -126,7 +126,7 @@ class EpisodeCourse:
                 return self._answer_reset(request.reset, seats, now_s)
         raise InvalidInput("An empty episode request was given; ask for ready, finish or reset.")
 
-    def seats_changed(self, seats: SeatTable, now_s: float) -> Sequence[Step]:
+    def seats_changed(self, seats: SeatTable, now_s: float) -> Sequence[Effect]:
         """Somebody came, left or was replaced."""
         self._ready = frozenset()
         if self.phase == EPISODE_PHASE_COUNTDOWN:
@@ -135,19 +135,19 @@ class EpisodeCourse:
             return self.end(OUTCOME_DISCARDED, "everyone left", now_s)
         return ()
 
-    def advance(self, everyone_present: bool, now_s: float) -> Sequence[Step]:
+    def advance(self, everyone_present: bool, now_s: float) -> Sequence[Effect]:
         """Time has passed. A countdown waits at 0 until everyone is present."""
         if now_s < self._until_s:
             return ()
         if self.phase == EPISODE_PHASE_COUNTDOWN and everyone_present:
             self.phase = EPISODE_PHASE_RECORDING
-            return (Started(self.number, self.seed),)
+            return (BeginEpisode(self.number, self.seed),)
         if self.phase == EPISODE_PHASE_ENDED:
             return self._practice()
         return ()
 
-    def ticked(self, success: bool, failed: str | None, now_s: float) -> Sequence[Step]:
-        """The world advanced; `success` and `failed` are the task's judgement."""
+    def ticked(self, success: bool, failed: str | None, now_s: float) -> Sequence[Effect]:
+        """The world advanced; `success` and `failed` are what the task says of this instant."""
         if not self.recording:
             return ()
         self.ticks += 1
@@ -163,13 +163,13 @@ class EpisodeCourse:
         """The room was paused or stopped."""
         self.interrupted = self.interrupted or self.recording
 
-    def end(self, outcome: Outcome, reason: str, now_s: float) -> Sequence[Step]:
+    def end(self, outcome: Outcome, reason: str, now_s: float) -> Sequence[Effect]:
         self.phase = EPISODE_PHASE_ENDED
         self.outcome, self.reason = outcome, reason
         self._until_s = now_s + ENDED_S
-        return (Ended(self.number, outcome, self.ticks, reason),)
+        return (EndEpisode(self.number, outcome, self.ticks, reason),)
 
-    def abandon(self, outcome: Outcome, reason: str, now_s: float) -> Sequence[Step]:
+    def abandon(self, outcome: Outcome, reason: str, now_s: float) -> Sequence[Effect]:
         """Back to practice with a fresh world at once; a recording ends with this outcome."""
         if self.recording:
             return (*self.end(outcome, reason, now_s), *self._practice())
@@ -177,7 +177,7 @@ class EpisodeCourse:
             self.number -= 1  # this episode never began; its number is free again
         return self._practice()
 
-    def _answer_ready(self, ready: EpisodeRequest.Ready, seats: SeatTable, now_s: float) -> Sequence[Step]:
+    def _answer_ready(self, ready: EpisodeRequest.Ready, seats: SeatTable, now_s: float) -> Sequence[Effect]:
         seat = seats[ready.arm]
         _require_say(seats, (seat,), ready.holder_id)
         if self.phase == EPISODE_PHASE_COUNTDOWN and not ready.ready:
@@ -196,7 +196,9 @@ class EpisodeCourse:
         humans = {human.arm for human in seats.of_operator(OPERATOR_HUMAN)}
         return self._count_down(ready.number, now_s) if self._ready and humans <= self._ready else ()
 
-    def _answer_finish(self, finish: EpisodeRequest.Finish, seats: SeatTable, now_s: float) -> Sequence[Step]:
+    def _answer_finish(
+        self, finish: EpisodeRequest.Finish, seats: SeatTable, now_s: float
+    ) -> Sequence[Effect]:
         _require_say(seats, tuple(seats), finish.holder_id)
         if not self.recording:
             raise Conflict(f"An outcome was given during {phase_word(self.phase)}; only a recording has one.")
@@ -206,17 +208,17 @@ class EpisodeCourse:
             )
         return self.end(finish.outcome, "said by an operator", now_s)
 
-    def _answer_reset(self, reset: EpisodeRequest.Reset, seats: SeatTable, now_s: float) -> Sequence[Step]:
+    def _answer_reset(self, reset: EpisodeRequest.Reset, seats: SeatTable, now_s: float) -> Sequence[Effect]:
         _require_say(seats, tuple(seats), reset.holder_id)
         return self.abandon(OUTCOME_DISCARDED, "reset by an operator", now_s)
 
-    def _count_down(self, number: int, now_s: float) -> Sequence[Step]:
+    def _count_down(self, number: int, now_s: float) -> Sequence[Effect]:
         self.number = number or self.number + 1
         self._begin(EPISODE_PHASE_COUNTDOWN, seed_of(self._room_seed, "episode", self.number))
         self._until_s = now_s + COUNTDOWN_S
         return (ResetWorld(self.seed),)
 
-    def _practice(self) -> Sequence[Step]:
+    def _practice(self) -> Sequence[Effect]:
         self._practices += 1
         self._begin(
             EPISODE_PHASE_PRACTICE, seed_of(self._room_seed, f"practice {self._practices}", self.number)

@@ -1,8 +1,8 @@
 """One room: seats, barrier, episode and world, put together. Used by one thread at a time, which says what time it is
 (`now_s`, monotonic seconds).
 
-What it has to say goes to a `Voice`, what must survive a crash to `keep`, which may raise OSError. `explain` says in
-words what became of a world whose physics left its bounds.
+What it has to say goes to a `RoomPublisher`, what must survive a crash to `keep`, which may raise OSError. `explain`
+says in words what became of a world whose physics left its bounds.
 """
 
 from __future__ import annotations
@@ -31,10 +31,17 @@ from mart.protocol.messages import (
     error_message,
 )
 from mart.sim.room import room_messages
-from mart.sim.room.barrier import FREED_AFTER_S, Barrier, Decision, Firing
-from mart.sim.room.command_validation import Rejected, Rejection, admit
-from mart.sim.room.episode_state_machine import Ended, EpisodeCourse, ResetWorld, Started, Step, Terms
-from mart.sim.room.saved_room import RoomRecord
+from mart.sim.room.barrier import FREED_AFTER_S, Barrier, Decision, TickInputs
+from mart.sim.room.command_validation import CommandRejected, CommandRejection, validate_command
+from mart.sim.room.episode_state_machine import (
+    BeginEpisode,
+    Effect,
+    EndEpisode,
+    EpisodeStateMachine,
+    ResetWorld,
+    Terms,
+)
+from mart.sim.room.saved_room import SavedRoom
 from mart.sim.room.seats import SeatHolder, SeatTable
 from mart.sim.room.ticker import Ticker
 from mart.sim.world import Diverged, World
@@ -42,7 +49,7 @@ from mart.sim.world import Diverged, World
 REPEAT_S = 0.2  # status always; the newest state while no tick fires, for those who came late
 
 
-class Voice(Protocol):
+class RoomPublisher(Protocol):
     """Where a room speaks. None of these may block."""
 
     def state(self, state: State) -> None: ...
@@ -60,9 +67,9 @@ class Room:
         self,
         name: str,
         world: World,
-        record: RoomRecord,
-        voice: Voice,
-        keep: Callable[[RoomRecord], None],
+        record: SavedRoom,
+        publisher: RoomPublisher,
+        keep: Callable[[SavedRoom], None],
         *,
         now_s: float,
         pace: float = 1.0,
@@ -70,7 +77,13 @@ class Room:
         explain: Callable[[Diverged], str] = str,
     ) -> None:
         self._explain = explain
-        self._name, self._world, self._voice, self._keep, self._record = name, world, voice, keep, record
+        self._name, self._world, self._publisher, self._keep, self._record = (
+            name,
+            world,
+            publisher,
+            keep,
+            record,
+        )
         self._boot_ns = clock.wall_ns()
         self._seats = SeatTable(world.arms)
         self._seats.restore(record.holders())
@@ -80,34 +93,34 @@ class Room:
         self._terms = terms
         self._time_limit_s = terms.time_limit_s or world.task.time_limit_s
         horizon_ticks = round(self._time_limit_s / world.control_period_s)
-        self._course = EpisodeCourse(record.seed, horizon_ticks, record.episodes)
+        self._episode = EpisodeStateMachine(record.seed, horizon_ticks, record.episodes)
         self._ticker = Ticker(name, world, self._boot_ns, now_s)
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
         self._status_due_s = now_s
         self._repeat_due_s = now_s
         self._remember(record)
-        self._do([ResetWorld(self._course.seed)], now_s)
+        self._do([ResetWorld(self._episode.seed)], now_s)
 
     @property
-    def rejected(self) -> Counter[Rejection]:
+    def rejected(self) -> Counter[CommandRejection]:
         """Commands that were not used, by reason, since the room opened."""
         return self._barrier.rejected
 
     @property
     def in_practice(self) -> bool:
         """No episode is under way."""
-        return self._course.phase == EPISODE_PHASE_PRACTICE
+        return self._episode.phase == EPISODE_PHASE_PRACTICE
 
     def hear(self, payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> None:
         """A command came on the key of `arm`."""
         try:
-            arrival = admit(payload, arm, at_s, at_wall_ns)
-        except Rejected as error:
+            received = validate_command(payload, arm, at_s, at_wall_ns)
+        except CommandRejected as error:
             self._barrier.rejected[error.reason] += 1
         else:
-            if self._barrier.offer(arrival) is None:
-                self._ticker.aim(arrival)
+            if self._barrier.offer(received) is None:
+                self._ticker.aim(received)
 
     def answer_seat(self, request: SeatRequest, now_s: float) -> RoomReply:
         try:
@@ -121,7 +134,7 @@ class Room:
 
     def answer_episode(self, request: EpisodeRequest, now_s: float) -> RoomReply:
         try:
-            self._do(self._course.answer(request, self._seats, now_s), now_s)
+            self._do(self._episode.answer(request, self._seats, now_s), now_s)
         except MartError as error:
             return RoomReply(error=error_message(error), status=self.status(now_s))
         self._status_due_s = now_s
@@ -133,19 +146,19 @@ class Room:
 
     def advance(self, now_s: float) -> float:
         """Does what is due; returns the time at which to call again if nothing arrives before."""
-        decision = self._barrier.advance(now_s, self._course.world_runs)
-        if decision.firing is not None:
-            self._fire(decision.firing, now_s)
+        decision = self._barrier.advance(now_s, self._episode.world_runs)
+        if decision.inputs is not None:
+            self._fire(decision.inputs, now_s)
         self._decision = decision
         self._tell_barrier(decision)
         for arm in decision.silent:
             self._give_up(arm, now_s)
-        steps = self._course.advance(decision.phase == BARRIER_PHASE_RUNNING, now_s)
-        self._do(steps, now_s)
+        effects = self._episode.advance(decision.phase == BARRIER_PHASE_RUNNING, now_s)
+        self._do(effects, now_s)
         self._repeat(now_s)
-        if steps or decision.silent:
+        if effects or decision.silent:
             return now_s
-        return min(decision.next_s, self._course.next_s(now_s), self._status_due_s, self._repeat_due_s)
+        return min(decision.next_s, self._episode.next_s(now_s), self._status_due_s, self._repeat_due_s)
 
     def status(self, now_s: float) -> RoomStatus:
         progress = self._ticker.progress
@@ -154,11 +167,11 @@ class Room:
             task=self._world.task.name,
             control_hz=self._world.control_hz,
             tick=self._ticker.tick,
-            real_time_factor=self._ticker.real_time_factor(now_s) if self._course.world_runs else 1.0,
+            real_time_factor=self._ticker.real_time_factor(now_s) if self._episode.world_runs else 1.0,
             barrier=self._decision.phase,
             waiting_for=room_messages.waiting(self._decision.waiting_for),
             seats=[self._seat_message(seat) for seat in self._seats],
-            episode=room_messages.episode(self._course, self._world.control_period_s, now_s),
+            episode=room_messages.episode(self._episode, self._world.control_period_s, now_s),
             progress=room_messages.progress(progress) if progress is not None else None,
             episodes_saved=self._record.saved,
             episodes_good=self._record.good,
@@ -168,37 +181,39 @@ class Room:
             plan=room_messages.plan(self._record),
         )
 
-    def _fire(self, firing: Firing, now_s: float) -> None:
+    def _fire(self, inputs: TickInputs, now_s: float) -> None:
         try:
-            state = self._ticker.advance(firing, self._seats, self._course, now_s)
+            state = self._ticker.advance(inputs, self._seats, self._episode, now_s)
         except Diverged as error:
             self._tell(room_messages.notice("warning", self._explain(error)))
-            self._do(self._course.abandon(OUTCOME_FAILURE, "the physics diverged", now_s), now_s)
+            self._do(self._episode.abandon(OUTCOME_FAILURE, "the physics diverged", now_s), now_s)
             return
         self._tell_state(state, now_s)
         progress = state.progress
-        self._do(self._course.ticked(progress.success, progress.failed or None, now_s), now_s)
+        self._do(self._episode.ticked(progress.success, progress.failed or None, now_s), now_s)
 
-    def _do(self, steps: Sequence[Step], now_s: float) -> None:
-        for step in steps:
-            match step:
+    def _do(self, effects: Sequence[Effect], now_s: float) -> None:
+        for effect in effects:
+            match effect:
                 case ResetWorld():
-                    self._tell_state(self._ticker.reset(step.seed, self._seats, self._course, now_s), now_s)
+                    self._tell_state(
+                        self._ticker.reset(effect.seed, self._seats, self._episode, now_s), now_s
+                    )
                     self._barrier.restart(now_s)
-                    self._tell(Event(world_reset=Event.WorldReset(seed=step.seed)))
-                case Started():
-                    self._start(step, now_s)
-                case Ended():
-                    self._end(step)
+                    self._tell(Event(world_reset=Event.WorldReset(seed=effect.seed)))
+                case BeginEpisode():
+                    self._start(effect, now_s)
+                case EndEpisode():
+                    self._end(effect)
             self._status_due_s = now_s
 
-    def _start(self, step: Started, now_s: float) -> None:
-        self._remember(self._record.with_changes(episodes=step.number))
+    def _start(self, effect: BeginEpisode, now_s: float) -> None:
+        self._remember(self._record.with_changes(episodes=effect.number))
         self._tell(
             Event(
                 episode_started=Event.EpisodeStarted(
-                    number=step.number,
-                    seed=step.seed,
+                    number=effect.number,
+                    seed=effect.seed,
                     seats=[self._seat_message(seat) for seat in self._seats],
                     task=self._world.task.name,
                     control_hz=self._world.control_hz,
@@ -209,17 +224,17 @@ class Room:
                 )
             )
         )
-        self._tell_state(self._ticker.standing(self._seats, self._course, now_s), now_s)
+        self._tell_state(self._ticker.standing(self._seats, self._episode, now_s), now_s)
         self._barrier.restart(now_s)
 
-    def _end(self, step: Ended) -> None:
+    def _end(self, effect: EndEpisode) -> None:
         self._tell(
             Event(
                 episode_ended=Event.EpisodeEnded(
-                    number=step.number,
-                    outcome=step.outcome,
-                    ticks=step.ticks,
-                    reason=step.reason,
+                    number=effect.number,
+                    outcome=effect.outcome,
+                    ticks=effect.ticks,
+                    reason=effect.reason,
                     last_tick=self._ticker.tick,
                 )
             )
@@ -236,12 +251,12 @@ class Room:
         self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
         self._remember(self._record.with_seats(self._seats))
         self._tell(Event(seat_changed=self._seat_message(seat)))
-        self._do(self._course.seats_changed(self._seats, now_s), now_s)
+        self._do(self._episode.seats_changed(self._seats, now_s), now_s)
         self._status_due_s = now_s
 
     def _tell_barrier(self, decision: Decision) -> None:
         if decision.phase in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED):
-            self._course.interrupt()
+            self._episode.interrupt()
         holds = (decision.phase, *(arm for arm, _ in decision.waiting_for))
         if holds != self._told:
             self._told = holds
@@ -249,26 +264,26 @@ class Room:
             self._status_due_s = 0.0
 
     def _tell_state(self, state: State, now_s: float) -> None:
-        self._voice.state(state)
+        self._publisher.state(state)
         self._repeat_due_s = now_s + REPEAT_S
 
     def _tell(self, event: Event) -> None:
         event.wall_ns, event.room, event.tick = clock.wall_ns(), self._name, self._ticker.tick
-        self._voice.event(event)
+        self._publisher.event(event)
 
     def _repeat(self, now_s: float) -> None:
         if now_s >= self._repeat_due_s:
-            self._voice.repeat_state()
+            self._publisher.repeat_state()
             self._repeat_due_s = now_s + REPEAT_S
         if now_s >= self._status_due_s:
-            self._voice.status(self.status(now_s))
+            self._publisher.status(self.status(now_s))
             self._status_due_s = now_s + REPEAT_S
 
     def _seat_message(self, seat: SeatHolder) -> Seat:
         newest = self._barrier.newest(seat.arm) if seat.operator != OPERATOR_HOLD else None
-        return room_messages.seat(seat, self._course.is_ready(seat.arm), newest)
+        return room_messages.seat(seat, self._episode.is_ready(seat.arm), newest)
 
-    def _remember(self, record: RoomRecord) -> None:
+    def _remember(self, record: SavedRoom) -> None:
         """A disk that is full must not stop the world."""
         self._record = record
         try:

@@ -16,11 +16,11 @@ from mart.protocol.messages import (
     Seat,
     Waiting,
 )
-from mart.sim.room.command_validation import Arrival
-from mart.sim.room.episode_state_machine import EpisodeCourse
-from mart.sim.room.saved_room import RoomRecord
+from mart.sim.room.command_validation import ReceivedCommand
+from mart.sim.room.episode_state_machine import EpisodeStateMachine
+from mart.sim.room.saved_room import SavedRoom
 from mart.sim.room.seats import SeatHolder
-from mart.sim.world import Progress
+from mart.sim.world import TaskProgress
 
 # What any operator sees, by name: see mart.protocol.tasks.
 Seen = Mapping[str, NDArray[np.float64]]
@@ -30,10 +30,12 @@ Seen = Mapping[str, NDArray[np.float64]]
 Fields = dict[str, Any]
 
 
-def arm_state(seen: Seen, seat: SeatHolder, arrival: Arrival | None, action: Sequence[float]) -> Fields:
+def arm_state(
+    seen: Seen, seat: SeatHolder, received: ReceivedCommand | None, action: Sequence[float]
+) -> Fields:
     """One arm after a tick, an ArmState.
 
-    arrival: the command that moved it, None for a held arm. action: empty after a reset.
+    received: the command that moved it, None for a held arm. action: empty after a reset.
     """
     x, y, z = seen[f"{seat.arm}/tool_position_in_base"].tolist()
     qw, qx, qy, qz = seen[f"{seat.arm}/tool_quaternion_in_base"].tolist()
@@ -46,12 +48,12 @@ def arm_state(seen: Seen, seat: SeatHolder, arrival: Arrival | None, action: Seq
         "source": seat.operator,
         "seat_epoch": seat.epoch,
     }
-    if arrival is not None:
+    if received is not None:
         state.update(
-            sequence=arrival.sequence,
-            arrived_ns=arrival.at_wall_ns,
-            stamps=arrival.command.stamps,
-            engaged=arrival.command.engaged,
+            sequence=received.sequence,
+            arrived_ns=received.at_wall_ns,
+            stamps=received.command.stamps,
+            engaged=received.command.engaged,
             fresh=True,
         )
     return state
@@ -62,7 +64,7 @@ def observations(seen: Seen) -> list[Fields]:
     return [{"name": name, "value": value.ravel().tolist()} for name, value in seen.items()]
 
 
-def progress(progress: Progress) -> Fields:
+def progress(progress: TaskProgress) -> Fields:
     """The message of the same name."""
     return {
         "subtasks": [{"name": name, "done": done} for name, done in progress.subtasks.items()],
@@ -73,7 +75,7 @@ def progress(progress: Progress) -> Fields:
     }
 
 
-def seat(holder: SeatHolder, ready: bool, newest: Arrival | None) -> Seat:
+def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None) -> Seat:
     """`newest`: the newest command of this seat's operator."""
     return Seat(
         arm=holder.arm,
@@ -88,21 +90,21 @@ def seat(holder: SeatHolder, ready: bool, newest: Arrival | None) -> Seat:
     )
 
 
-def episode(course: EpisodeCourse, control_period_s: float, now_s: float) -> Episode:
+def episode(episode: EpisodeStateMachine, control_period_s: float, now_s: float) -> Episode:
     return Episode(
-        number=course.number,
-        phase=course.phase,
-        remaining_s=course.remaining_s(now_s),
-        ticks=course.ticks,
-        elapsed_s=course.ticks * control_period_s,
-        outcome=course.outcome,
-        seed=course.seed,
-        interrupted=course.interrupted,
-        reason=course.reason,
+        number=episode.number,
+        phase=episode.phase,
+        remaining_s=episode.remaining_s(now_s),
+        ticks=episode.ticks,
+        elapsed_s=episode.ticks * control_period_s,
+        outcome=episode.outcome,
+        seed=episode.seed,
+        interrupted=episode.interrupted,
+        reason=episode.reason,
     )
 
 
-def plan(record: RoomRecord) -> Plan | None:
+def plan(record: SavedRoom) -> Plan | None:
     wanted = record.plan
     return Plan(episodes=wanted.episodes, good=record.good - wanted.good_before) if wanted else None
 

@@ -21,7 +21,7 @@ MAX_REQUEST_BYTES = 4096
 _MAX_EVENT_BYTES = 64 * 1024
 
 
-class Doorway:
+class RoomServer:
     """Turns what comes in into work for the room, which `do` does now or later; never does any by itself.
 
     `garbled` counts undecodable payloads by where they came.

@@ -11,17 +11,17 @@ import threading
 from collections.abc import Callable
 
 from mart.protocol import clock
-from mart.sim.room.work_queue import Mailbox
+from mart.sim.room.work_queue import WorkQueue
 
 _LONGEST_REST_S = 1.0  # so that a stop is noticed
 
 
-class Turns:
+class SerialExecutor:
     """`advance` does what is due; it returns when to call it again if nothing comes in, in monotonic seconds."""
 
     def __init__(self, advance: Callable[[float], float]) -> None:
         self._advance = advance
-        self._mailbox = Mailbox()
+        self._work_queue = WorkQueue()
         self._turn = threading.Lock()
         self._changed = threading.Condition()
         self._next_s = clock.monotonic_s()
@@ -29,9 +29,9 @@ class Turns:
 
     def do(self, work: Callable[[], None]) -> None:
         """Now, or by whoever has the turn. For any thread."""
-        self._mailbox.put(work)
+        self._work_queue.put(work)
         # Work that came after the holder's last look, but before its turn ended, is found by one of the two.
-        while not self._mailbox.is_empty and self._turn.acquire(blocking=False):
+        while not self._work_queue.is_empty and self._turn.acquire(blocking=False):
             try:
                 self._take_turn()
             finally:
@@ -50,7 +50,7 @@ class Turns:
 
     def _take_turn(self) -> None:
         try:
-            self._mailbox.work(timeout_s=0.0)
+            self._work_queue.work(timeout_s=0.0)
             next_s = self._advance(clock.monotonic_s())
         except Exception as error:  # noqa: BLE001 - raised again by `run`
             self._failure, next_s = error, 0.0

@@ -15,14 +15,14 @@ from mart.runtime.service import announced, connected
 from mart.runtime.throttled_log import ThrottledLog
 from mart.sim.experts import Skill, get_skill
 from mart.sim.room import saved_room
-from mart.sim.room.bus_publisher import BusVoice
+from mart.sim.room.bus_publisher import BusPublisher
 from mart.sim.room.episode_state_machine import Terms
 from mart.sim.room.room import Room
-from mart.sim.room.room_server import Doorway
-from mart.sim.room.saved_room import RoomRecord
-from mart.sim.room.serial_executor import Turns
-from mart.sim.room.unpaced_room import LockstepRoom, OrderedVoice, SimulatedTime
-from mart.sim.room.work_queue import Mailbox
+from mart.sim.room.room_server import RoomServer
+from mart.sim.room.saved_room import SavedRoom
+from mart.sim.room.serial_executor import SerialExecutor
+from mart.sim.room.unpaced_room import OrderedPublisher, SimulatedTime, UnpacedRoom
+from mart.sim.room.work_queue import WorkQueue
 from mart.sim.settings import SimSettings
 from mart.sim.world import World
 from mart.sim.world.divergence import DivergenceArchive
@@ -40,7 +40,7 @@ def serve_room(settings: SimSettings) -> None:
     skill = get_skill(settings.skill) if settings.skill else None
     world = World.build(settings.task, settings.control_hz, settings.arms)
     if settings.lockstep:
-        serve_lockstep(settings, world, skill or get_skill(DEFAULT_SKILL))
+        serve_unpaced(settings, world, skill or get_skill(DEFAULT_SKILL))
     else:
         serve_world(settings, world)
 
@@ -48,12 +48,12 @@ def serve_room(settings: SimSettings) -> None:
 def serve_world(settings: SimSettings, world: World) -> None:
     """The room of `settings` around a world that exists already."""
     with connected(settings, ServiceKind.SIM, settings.room) as service, contextlib.ExitStack() as opened:
-        voice = opened.enter_context(contextlib.closing(BusVoice(service.bus, settings.room)))
+        publisher = opened.enter_context(contextlib.closing(BusPublisher(service.bus, settings.room)))
         room = Room(
             settings.room,
             world,
             _record(settings),
-            voice,
+            publisher,
             _keeper(settings),
             now_s=clock.monotonic_s(),
             pace=settings.pace,
@@ -67,43 +67,43 @@ def serve_world(settings: SimSettings, world: World) -> None:
             throttled_log.report(Counter(room.rejected) + garbled, now_s)
             return next_s
 
-        turns = Turns(advance)
-        doorway = Doorway(
-            service.bus, settings.room, room, world, do=turns.do, garbled=garbled, looks=_looks(settings)
+        executor = SerialExecutor(advance)
+        server = RoomServer(
+            service.bus, settings.room, room, world, do=executor.do, garbled=garbled, looks=_looks(settings)
         )
-        opened.enter_context(contextlib.closing(doorway))
-        doorway.hear_commands()
+        opened.enter_context(contextlib.closing(server))
+        server.hear_commands()
         opened.enter_context(announced(service))
         gc.freeze()  # what is here now stays: later collections need not look at it
-        turns.run(service.stop)
+        executor.run(service.stop)
 
 
-def serve_lockstep(settings: SimSettings, world: World, skill: Skill) -> None:
+def serve_unpaced(settings: SimSettings, world: World, skill: Skill) -> None:
     """The same room on simulated time, with its scripts."""
     with connected(settings, ServiceKind.SIM, settings.room) as service, contextlib.ExitStack() as opened:
-        mailbox, garbled, time = Mailbox(), Counter[str](), SimulatedTime()
-        voice = OrderedVoice(service.bus, settings.room, world.arms)
-        opened.enter_context(contextlib.closing(voice))
+        work_queue, garbled, time = WorkQueue(), Counter[str](), SimulatedTime()
+        publisher = OrderedPublisher(service.bus, settings.room, world.arms)
+        opened.enter_context(contextlib.closing(publisher))
         terms = Terms(lockstep=True, skill=skill.name, time_limit_s=settings.time_limit_s)
         room = Room(
             settings.room,
             world,
             _record(settings),
-            voice,
+            publisher,
             _keeper(settings),
             now_s=time.now_s(),
             terms=terms,
             explain=_archive(settings).keep,
         )
-        doorway = Doorway(
-            service.bus, settings.room, room, world, do=mailbox.put, garbled=garbled, now_s=time.now_s
+        server = RoomServer(
+            service.bus, settings.room, room, world, do=work_queue.put, garbled=garbled, now_s=time.now_s
         )
-        opened.enter_context(contextlib.closing(doorway))
-        lockstep = LockstepRoom(room, voice, time)
-        lockstep.seat_scripts(world.task, skill, settings.seed or 0)
+        opened.enter_context(contextlib.closing(server))
+        unpaced = UnpacedRoom(room, publisher, time)
+        unpaced.seat_scripts(world.task, skill, settings.seed or 0)
         opened.enter_context(announced(service))
         gc.freeze()
-        lockstep.run(mailbox, garbled, service.stop)
+        unpaced.run(work_queue, garbled, service.stop)
 
 
 def _looks(settings: SimSettings) -> World | None:
@@ -117,13 +117,13 @@ def _archive(settings: SimSettings) -> DivergenceArchive:
     return DivergenceArchive(settings.diverged_dir, settings.room, clock.wall_ns)
 
 
-def _keeper(settings: SimSettings) -> Callable[[RoomRecord], None]:
+def _keeper(settings: SimSettings) -> Callable[[SavedRoom], None]:
     return lambda record: saved_room.save(settings.room_path, record)
 
 
-def _record(settings: SimSettings) -> RoomRecord:
+def _record(settings: SimSettings) -> SavedRoom:
     kept = saved_room.load(settings.room_path)
     if kept is None:
-        kept = RoomRecord(seed=secrets.randbits(_SEED_BITS))
+        kept = SavedRoom(seed=secrets.randbits(_SEED_BITS))
     kept = kept.planned(settings.task, settings.episodes)
     return kept if settings.seed is None else kept.with_changes(seed=settings.seed)

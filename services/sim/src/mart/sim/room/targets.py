@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
-from mart.sim.room.command_validation import Arrival
+from mart.sim.room.command_validation import ReceivedCommand
 from mart.sim.world import World
 
 
@@ -23,7 +23,7 @@ class Targets:
         self._world = world
         self._gripper = dict.fromkeys(world.arms, 0.0)
         self._held: dict[str, Pose] = {}
-        self._aimed: dict[str, tuple[Arrival, NDArray[np.float64]]] = {}
+        self._aimed: dict[str, tuple[ReceivedCommand, NDArray[np.float64]]] = {}
 
     def world_reset(self) -> None:
         """Arms are somewhere else now, their grippers as the reset left them."""
@@ -31,27 +31,27 @@ class Targets:
         self._aimed.clear()
         self._gripper = {arm: self._world.gripper(arm) for arm in self._world.arms}
 
-    def aim(self, arrival: Arrival) -> NDArray[np.float64]:
+    def aim(self, received: ReceivedCommand) -> NDArray[np.float64]:
         """The action, shape (7,), that this command asks for in the world as it is now."""
-        action = self._world.action_for(arrival.arm, arrival.target_tool_in_base, arrival.command.gripper)
-        self._aimed[arrival.arm] = (arrival, action)
+        action = self._world.action_for(received.arm, received.target_tool_in_base, received.command.gripper)
+        self._aimed[received.arm] = (received, action)
         return action
 
-    def actions(self, arrivals: Mapping[str, Arrival]) -> NDArray[np.float64]:
+    def actions(self, commands: Mapping[str, ReceivedCommand]) -> NDArray[np.float64]:
         """What is to be done next, shape (arms, 7).
 
-        arrivals: the commands of the arms that are driven; the others hold, gripper included.
+        commands: the commands of the arms that are driven; the others hold, gripper included.
         """
-        actions = np.array([self._action(arm, arrivals.get(arm)) for arm in self._world.arms])
+        actions = np.array([self._action(arm, commands.get(arm)) for arm in self._world.arms])
         self._aimed.clear()
         return actions
 
-    def _action(self, arm: str, arrival: Arrival | None) -> NDArray[np.float64]:
-        if arrival is None:
+    def _action(self, arm: str, received: ReceivedCommand | None) -> NDArray[np.float64]:
+        if received is None:
             if arm not in self._held:
                 self._held[arm] = self._world.tool_pose_in_base(arm)
             return self._world.action_for(arm, self._held[arm], self._gripper[arm])
         self._held.pop(arm, None)
-        self._gripper[arm] = arrival.command.gripper
+        self._gripper[arm] = received.command.gripper
         known, action = self._aimed.get(arm, (None, None))
-        return action if known is arrival and action is not None else self.aim(arrival)
+        return action if known is received and action is not None else self.aim(received)

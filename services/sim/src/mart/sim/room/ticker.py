@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from mart.protocol import clock
 from mart.protocol.messages import State, TickStamps
 from mart.sim.room import room_messages
-from mart.sim.room.barrier import Firing
-from mart.sim.room.command_validation import Arrival
-from mart.sim.room.episode_state_machine import EpisodeCourse
+from mart.sim.room.barrier import TickInputs
+from mart.sim.room.command_validation import ReceivedCommand
+from mart.sim.room.episode_state_machine import EpisodeStateMachine
 from mart.sim.room.pacing import RealTimeFactor
 from mart.sim.room.seats import SeatTable
 from mart.sim.room.targets import Targets
-from mart.sim.world import Progress, World
+from mart.sim.world import TaskProgress, World
 
-NOBODY: Mapping[str, Arrival] = MappingProxyType({})
+NOBODY: Mapping[str, ReceivedCommand] = MappingProxyType({})
 
 
 class Ticker:
@@ -27,7 +27,7 @@ class Ticker:
 
     def __init__(self, room: str, world: World, boot_ns: int, now_s: float) -> None:
         self.tick = 0
-        self.progress: Progress | None = None
+        self.progress: TaskProgress | None = None
         self._room = room
         self._world = world
         self._boot_ns = boot_ns
@@ -37,53 +37,55 @@ class Ticker:
     def real_time_factor(self, now_s: float) -> float:
         return self._real_time_factor.value(now_s)
 
-    def reset(self, seed: int, seats: SeatTable, course: EpisodeCourse, now_s: float) -> State:
+    def reset(self, seed: int, seats: SeatTable, episode: EpisodeStateMachine, now_s: float) -> State:
         """The state of the fresh world."""
         self._world.reset(seed)
         self._targets.world_reset()
-        return self.standing(seats, course, now_s)
+        return self.standing(seats, episode, now_s)
 
-    def standing(self, seats: SeatTable, course: EpisodeCourse, now_s: float) -> State:
+    def standing(self, seats: SeatTable, episode: EpisodeStateMachine, now_s: float) -> State:
         """The world as it is, before it begins to run."""
         self._real_time_factor.restart(now_s)
         wall_ns = clock.wall_ns()
         stamps = TickStamps(fired_ns=wall_ns, stepped_ns=wall_ns)
-        return self._state(seats, course, now_s, self._world.progress(), stamps=stamps)
+        return self._state(seats, episode, now_s, self._world.progress(), stamps=stamps)
 
-    def aim(self, arrival: Arrival) -> None:
+    def aim(self, received: ReceivedCommand) -> None:
         """Works out beforehand what an accepted command asks for."""
-        self._targets.aim(arrival)
+        self._targets.aim(received)
 
-    def advance(self, firing: Firing, seats: SeatTable, course: EpisodeCourse, now_s: float) -> State:
+    def advance(
+        self, inputs: TickInputs, seats: SeatTable, episode: EpisodeStateMachine, now_s: float
+    ) -> State:
         """One control period. Raises Diverged where the physics left its bounds."""
         fired_ns = clock.wall_ns()
-        actions = self._targets.actions(firing.arrivals)
-        judgement = self._world.step(actions)
+        actions = self._targets.actions(inputs.commands)
+        status = self._world.step(actions)
         stamps = TickStamps(
-            due_ns=fired_ns - round((now_s - firing.due_s) * 1e9),
+            due_ns=fired_ns - round((now_s - inputs.due_s) * 1e9),
             fired_ns=fired_ns,
             stepped_ns=clock.wall_ns(),
         )
         self._real_time_factor.ticked(now_s)
-        progress = self._world.progress(judgement)
+        progress = self._world.progress(status)
         state = self._state(
-            seats, course, now_s, progress, stamps=stamps, arrivals=firing.arrivals, actions=actions
+            seats, episode, now_s, progress, stamps=stamps, commands=inputs.commands, actions=actions
         )
-        state.straggler = firing.straggler or ""
-        state.straggler_late_s = firing.late_s
-        if course.recording:
-            state.episode_tick = course.ticks + 1
+        state.straggler = inputs.straggler or ""
+        state.straggler_late_s = inputs.late_s
+        if episode.recording:
+            state.episode_tick = episode.ticks + 1
         return state
 
     def _state(
         self,
         seats: SeatTable,
-        course: EpisodeCourse,
+        episode: EpisodeStateMachine,
         now_s: float,
-        progress: Progress,
+        progress: TaskProgress,
         *,
         stamps: TickStamps,
-        arrivals: Mapping[str, Arrival] = NOBODY,
+        commands: Mapping[str, ReceivedCommand] = NOBODY,
         actions: NDArray[np.float64] | None = None,
     ) -> State:
         self.tick += 1
@@ -100,13 +102,13 @@ class Ticker:
                 room_messages.arm_state(
                     seen,
                     seat,
-                    arrivals.get(seat.arm),
+                    commands.get(seat.arm),
                     () if actions is None else actions[index].tolist(),
                 )
                 for index, seat in enumerate(seats)
             ],
             observations=room_messages.observations(seen),
             progress=room_messages.progress(progress),
-            episode=course.number if course.recording else 0,
+            episode=episode.number if episode.recording else 0,
             boot=self._boot_ns,
         )

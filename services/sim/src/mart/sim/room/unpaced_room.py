@@ -20,7 +20,7 @@ from mart.sim.experts import Skill
 from mart.sim.operate import REPEAT_S, ScriptedOperator
 from mart.sim.room.room import REPEAT_S as STATUS_S
 from mart.sim.room.room import Room
-from mart.sim.room.work_queue import Mailbox
+from mart.sim.room.work_queue import WorkQueue
 
 _log = logging.getLogger(__name__)
 
@@ -38,7 +38,7 @@ class SimulatedTime:
         self._now_s = max(self._now_s, moment_s)
 
 
-class OrderedVoice:
+class OrderedPublisher:
     """Speaks on the keys of a room, one thing after another. `newest` is the state that was told last."""
 
     def __init__(self, bus: Bus, room: str, arms: tuple[str, ...]) -> None:
@@ -82,11 +82,11 @@ class OrderedVoice:
             publisher.close()
 
 
-class LockstepRoom:
+class UnpacedRoom:
     """A room, where it speaks, its time, and a script on every seat."""
 
-    def __init__(self, room: Room, voice: OrderedVoice, time: SimulatedTime) -> None:
-        self._room, self._voice, self._time = room, voice, time
+    def __init__(self, room: Room, publisher: OrderedPublisher, time: SimulatedTime) -> None:
+        self._room, self._publisher, self._time = room, publisher, time
         self._operators: dict[str, ScriptedOperator] = {}
         self._act_s = time.now_s()
 
@@ -98,13 +98,13 @@ class LockstepRoom:
             raise_error(reply.error)
             self._operators[arm] = ScriptedOperator(task, arm, reply.seat.epoch, skill, seed)
 
-    def run(self, mailbox: Mailbox, garbled: Counter[str], stop: threading.Event) -> None:
+    def run(self, work_queue: WorkQueue, garbled: Counter[str], stop: threading.Event) -> None:
         """Until `stop` is set. What comes in is answered between episodes: whoever asks twice gets two."""
         throttled_log = ThrottledLog(_log)
         while not stop.is_set():
             throttled_log.report(Counter(self._room.rejected) + garbled, clock.monotonic_s())
-            self._voice.status(self._room.status(self._time.now_s()))
-            mailbox.work_once(STATUS_S)
+            self._publisher.status(self._room.status(self._time.now_s()))
+            work_queue.work_once(STATUS_S)
             self.play(stop)
 
     def play(self, stop: threading.Event) -> None:
@@ -120,7 +120,7 @@ class LockstepRoom:
         Whether anything was said.
         """
         now_s = self._time.now_s()
-        news = [operator.see(self._voice.newest) for operator in self._operators.values()]
+        news = [operator.see(self._publisher.newest) for operator in self._operators.values()]
         if not any(news) and now_s < self._act_s:
             return False
         self._act_s = now_s + REPEAT_S
@@ -129,6 +129,6 @@ class LockstepRoom:
             command = operator.command(wall_ns)
             assert command is not None  # it has seen the world's first state
             payload = codec.encode(command)
-            self._voice.command(arm, payload)
+            self._publisher.command(arm, payload)
             self._room.hear(payload, arm, now_s, wall_ns)
         return True

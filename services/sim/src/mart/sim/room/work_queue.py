@@ -8,7 +8,7 @@ from collections.abc import Callable
 _KEPT = 1024
 
 
-class Mailbox:
+class WorkQueue:
     """In the order in which it came. A flood beyond its bound is lost, not kept."""
 
     def __init__(self) -> None:

@@ -15,14 +15,14 @@ import numpy as np
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import SHARED_VIEWPOINT, Arm, Task
 from mart.sim.scene.data import Array, Data, Flags
-from mart.sim.scene.scenery import Camera
+from mart.sim.scene.scenery import FixedCamera
 
 _SAME_GAP_RAD = 0.05
 _NARROW_GAP_RAD = 2.0
 
 
 @dataclass(frozen=True)
-class Judgement:
+class TaskStatus:
     """How a task stands at one instant: flags of shape (...), one for each world.
 
     failed: what makes success impossible, in words, and where it has happened; of several, the first is told.
@@ -40,8 +40,8 @@ class Scene(ABC):
     what it needs there. What an episode has to remember beyond positions and velocities is there too: `memory_size`
     numbers, 0 after a reset.
 
-    `observe`, `remember` and `judge` are written once for both: the arrays they see begin with the axis of the worlds
-    in a batch and have none for a single world, so they index from the end (`position[..., 2]`), reduce over `axis=-1`
+    `observe`, `remember` and `task_status` are written once for both: the arrays they see begin with the axis of the
+    worlds in a batch and have none for a single world, so they index from the end (`position[..., 2]`), reduce over `axis=-1`
     and choose with `&`, `|` and `np.where` instead of `and`, `or` and `if`. They see what follows from positions
     (qpos, xpos, xquat, xmat, site_xpos, …) and qvel; contacts and sensors are those of an earlier substep.
     """
@@ -68,14 +68,14 @@ class Scene(ABC):
         """The declared observations that are not the arms' own, each of shape (..., *its own)."""
 
     def remember(self) -> None:  # noqa: B027
-        """Notes in `memory` what has happened; called once a tick, before `judge`. Most tasks have nothing to note."""
+        """Note in `memory` what has happened; called once a tick, before `task_status`. Most tasks note nothing."""
 
     def memory(self, data: Data) -> Array:
         """A view of this scene's part of the state, shape (..., memory_size)."""
         return data.userdata[..., -1 - self.memory_size : -1]
 
     @abstractmethod
-    def judge(self) -> Judgement:
+    def task_status(self) -> TaskStatus:
         """Subtasks, success and failure at this instant."""
 
     def start_pose_in_base(self, arm: Arm, random: np.random.Generator) -> Pose:
@@ -83,7 +83,7 @@ class Scene(ABC):
         position = np.array([0.45, 0.0, 0.20]) + random.uniform(-0.03, 0.03, 3)
         return Pose(position, Pose.identity().quaternion_wxyz)
 
-    def cameras(self) -> tuple[Camera, ...]:
+    def cameras(self) -> tuple[FixedCamera, ...]:
         """One for each seat, named like its arm, and the shared one."""
         seats = tuple(seat_camera(arm, side=-1 if i % 2 == 0 else 1) for i, arm in enumerate(self.task.arms))
         return (*seats, shared_camera(self.task.arms))
@@ -99,7 +99,7 @@ def all_of(flags: Iterable[Flags]) -> Flags:
     return functools.reduce(operator.and_, flags)
 
 
-def seat_camera(arm: Arm, side: int) -> Camera:
+def seat_camera(arm: Arm, side: int) -> FixedCamera:
     """Beside the own base, looking along the arm at the work; behind the shoulder the own elbow would be in the way.
 
     side: -1 or +1, the sign of the camera's y in the base frame.
@@ -107,10 +107,10 @@ def seat_camera(arm: Arm, side: int) -> Camera:
     base = arm.pose_base_in_world
     x, y, z = base.transform_points((-0.08, 0.70 * side, 0.85))
     target_x, target_y, target_z = base.transform_points((0.67, 0.03 * side, 0.05))
-    return Camera(arm.name, (x, y, z), (target_x, target_y, target_z), 40.0)
+    return FixedCamera(arm.name, (x, y, z), (target_x, target_y, target_z), 40.0)
 
 
-def shared_camera(arms: Sequence[Arm]) -> Camera:
+def shared_camera(arms: Sequence[Arm]) -> FixedCamera:
     """Looks at the middle of the table through the widest gap between the arms, from the front where it can.
 
     Where four arms leave no gap of more than a right angle, from higher up and further away, over their shoulders.
@@ -126,4 +126,4 @@ def shared_camera(arms: Sequence[Arm]) -> Camera:
     azimuth = min(middles, key=lambda middle: abs(math.remainder(middle + math.pi / 2, math.tau)))
     distance_m, height_m = (1.05, 1.15) if widest > _NARROW_GAP_RAD else (1.20, 1.45)
     position = (distance_m * math.cos(azimuth), distance_m * math.sin(azimuth), height_m)
-    return Camera(SHARED_VIEWPOINT, position, (0.0, 0.02, 0.05), 44.0)
+    return FixedCamera(SHARED_VIEWPOINT, position, (0.0, 0.02, 0.05), 44.0)

@@ -28,7 +28,7 @@ _BOX, _PLANE, _CYLINDER = (
 
 
 @dataclass(frozen=True)
-class Camera:
+class FixedCamera:
     """A fixed camera at `position` that looks at `target` (both in the world frame, metres), upright."""
 
     name: str
@@ -125,7 +125,7 @@ def _add_light(spec: mujoco.MjSpec) -> None:
         )
 
 
-def add_camera(spec: mujoco.MjSpec, camera: Camera) -> None:
+def add_camera(spec: mujoco.MjSpec, camera: FixedCamera) -> None:
     position, target = np.array(camera.position), np.array(camera.target)
     back = position - target
     back /= np.linalg.norm(back)

@@ -14,7 +14,7 @@ from mart.protocol.tasks.tray import CARRIERS
 from mart.sim.scene.data import Array, Data
 from mart.sim.scene.gripper import GRASPABLE
 from mart.sim.scene.palette import rgba
-from mart.sim.scene.scene import Judgement, Scene, any_of
+from mart.sim.scene.scene import Scene, TaskStatus, any_of
 from mart.sim.scene.shadows import add_shadow
 from mart.sim.scene.symbols import add_tile
 from mart.sim.tasks.dirt import Dirt, add_dirt
@@ -86,7 +86,7 @@ class LiftWiping(Scene):
     def remember(self) -> None:
         self._dirt.wipe()
 
-    def judge(self) -> Judgement:
+    def task_status(self) -> TaskStatus:
         failed = {
             **self._tray.spills(),
             "The sponge fell off the table.": self._sponge_position[..., 2] < FALLEN_Z_M,
@@ -94,7 +94,7 @@ class LiftWiping(Scene):
         lifted = (self._tray.lowest_point_m() > LIFTED_M) & ~any_of(failed.values())
         aside = lifted & (self._tray.position[..., 1] < ASIDE_Y_M)
         clean = self._dirt.is_gone()
-        return Judgement(
+        return TaskStatus(
             {"lift_tray": lifted, "carry_tray": aside, "wipe_table": clean}, aside & clean, failed
         )
 

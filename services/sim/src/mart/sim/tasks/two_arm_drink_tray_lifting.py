@@ -8,7 +8,7 @@ import numpy as np
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
 from mart.sim.scene.data import Array, Data
-from mart.sim.scene.scene import Judgement, Scene, any_of
+from mart.sim.scene.scene import Scene, TaskStatus, any_of
 from mart.sim.tasks.tray import Tray, across, add_tray
 
 LIFTED_M = 0.10  # of the tray's lowest corner over the table
@@ -32,10 +32,10 @@ class DrinkTrayLifting(Scene):
     def observe(self) -> dict[str, Array]:
         return self._tray.observe()
 
-    def judge(self) -> Judgement:
+    def task_status(self) -> TaskStatus:
         spills = self._tray.spills()
         lifted = (self._tray.lowest_point_m() > LIFTED_M) & ~any_of(spills.values())
-        return Judgement({"lift_tray": lifted}, lifted, spills)
+        return TaskStatus({"lift_tray": lifted}, lifted, spills)
 
 
 SCENE = DrinkTrayLifting

@@ -11,7 +11,7 @@ from mart.protocol.tasks import Arm, Task
 from mart.sim.scene.data import Array, Data, evenly
 from mart.sim.scene.gripper import GRASPABLE
 from mart.sim.scene.palette import rgba
-from mart.sim.scene.scene import Judgement, Scene
+from mart.sim.scene.scene import Scene, TaskStatus
 from mart.sim.scene.shadows import add_shadow
 from mart.sim.scene.symbols import add_tile
 
@@ -84,11 +84,11 @@ class MultiCubeLifting(Scene):
             observations[f"{cube_of(arm)}/quaternion_in_world"] = self._quaternions[index]
         return observations
 
-    def judge(self) -> Judgement:
+    def task_status(self) -> TaskStatus:
         lifted, fallen = self._lowest_points_m() > LIFTED_M, self._heights < FALLEN_Z_M
         subtasks = {subtask.name: lifted[..., index] for index, subtask in enumerate(self.task.subtasks)}
         failed = {text: fallen[..., index] for index, text in enumerate(self._failures)}
-        return Judgement(subtasks, np.logical_and.reduce(lifted, axis=-1), failed)
+        return TaskStatus(subtasks, np.logical_and.reduce(lifted, axis=-1), failed)
 
     def _lowest_points_m(self) -> Array:
         """Height of each cube's lowest corner over the table, shape (..., cubes)."""

@@ -11,7 +11,7 @@ from mart.protocol.tasks import MAX_ARMS
 from mart.sim.scene.data import Array, Data, Flags, length, within
 from mart.sim.scene.gripper import GRASPABLE
 from mart.sim.scene.palette import rgba
-from mart.sim.scene.scene import Judgement, Scene, all_of
+from mart.sim.scene.scene import Scene, TaskStatus, all_of
 from mart.sim.scene.shadows import add_shadow
 from mart.sim.scene.symbols import add_tile
 from mart.sim.scene.things import Thing, Tool
@@ -111,7 +111,7 @@ class PickPlaceHandover(Scene):
             np.where(up & fetcher & receiver, _HELD_BY_BOTH, self._stage * (fetcher | receiver)),
         )
 
-    def judge(self) -> Judgement:
+    def task_status(self) -> TaskStatus:
         handed_over = self._stage == _HANDED_OVER
         cleared = _inside(self._trash, self._trash_tray, TRASH_TRAY_HALF_M)
         placed = _inside(self._hammer, self._bin, BIN_HALF_M) & handed_over
@@ -124,7 +124,7 @@ class PickPlaceHandover(Scene):
             "hammer_placed": placed,
         }
         let_go = [self._let_go(tool) for tool in self._tools.values()]
-        return Judgement(subtasks, all_of([placed, cleared, *let_go]), self._failures())
+        return TaskStatus(subtasks, all_of([placed, cleared, *let_go]), self._failures())
 
     def _holds_hammer(self, tool: Tool) -> Flags:
         narrow, wide = _GRIP_WIDTH_M

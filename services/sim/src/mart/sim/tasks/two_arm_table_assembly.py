@@ -14,7 +14,7 @@ import numpy as np
 from mart.protocol.tasks import Arm
 from mart.sim.scene.data import Array, Data, Flags, length, within
 from mart.sim.scene.palette import rgba
-from mart.sim.scene.scene import Judgement, Scene, all_of
+from mart.sim.scene.scene import Scene, TaskStatus, all_of
 from mart.sim.scene.scenery import TABLE_HALF_M
 from mart.sim.scene.shadows import add_shadow
 from mart.sim.scene.symbols import add_tile
@@ -143,7 +143,7 @@ class TableAssembly(Scene):
             observations |= thing.observations()
         return observations
 
-    def judge(self) -> Judgement:
+    def task_status(self) -> TaskStatus:
         column0, column1 = (
             self._column_seated(*of_one) for of_one in zip(self._columns, (-1, 1), strict=True)
         )
@@ -156,7 +156,7 @@ class TableAssembly(Scene):
             "tabletop_seated": seated,
         }
         let_go = [self._let_go(tool) for tool in self._tools.values()]
-        return Judgement(subtasks, all_of([seated, *let_go]), self._failures())
+        return TaskStatus(subtasks, all_of([seated, *let_go]), self._failures())
 
     def _column_seated(self, column: Thing, side: int) -> Flags:
         off = self._base.frame(column.position) - (SOCKET_X_M * side, 0.0, SEAT_Z_M)

@@ -11,13 +11,13 @@ import numpy as np
 
 from mart.sim.scene.data import Array, Data
 from mart.sim.scene.gripper import STROKE_M
-from mart.sim.scene.scene import Judgement, Scene
+from mart.sim.scene.scene import Scene, TaskStatus
 from mart.sim.scene.shadows import Shadows
 from mart.sim.world import osc
 from mart.sim.world.arm import MeasuredArms
 
 
-class Surface:
+class ControlInterface:
     """The scene must have been made for this data alone: it keeps views of it."""
 
     def __init__(self, scene: Scene, model: mujoco.MjModel, data: Data) -> None:
@@ -38,15 +38,15 @@ class Surface:
         np.multiply(np.minimum(np.maximum(actions, -1.0), 1.0), self._action_scale, out=self.commands)
         self.modes.fill(osc.NEW_DELTA)
 
-    def settle(self) -> Judgement:
+    def settle(self) -> TaskStatus:
         """A control period is over: what it did is remembered, judged and counted."""
         self._scene.remember()
-        judgement = self.judge()
-        np.multiply(self.success_ticks + 1.0, judgement.success_now, out=self.success_ticks)
-        return judgement
+        status = self.task_status()
+        np.multiply(self.success_ticks + 1.0, status.success_now, out=self.success_ticks)
+        return status
 
-    def judge(self) -> Judgement:
-        return self._scene.judge()
+    def task_status(self) -> TaskStatus:
+        return self._scene.task_status()
 
     def cast_shadows(self) -> None:
         self._shadows.follow()

@@ -36,7 +36,7 @@ class Diverged(Corrupt):
         self.last = last
 
 
-class Trail:
+class StateHistory:
     """The last states of one world, as they come."""
 
     def __init__(self, model: mujoco.MjModel, action_shape: tuple[int, ...]) -> None:

@@ -1,4 +1,4 @@
-"""How far a task has come: a judgement of this instant plus how long success has lasted."""
+"""How far a task has come: how it stands at this instant, plus how long success has lasted."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mart.sim.scene.data import Flags
 
 
 @dataclass(frozen=True)
-class Progress:
+class TaskProgress:
     """`success_ticks` counts ticks of `success_now` in a row; `success` once they reach the task's hold.
 
     `failed` says in words why the task can no longer succeed, None while it can.

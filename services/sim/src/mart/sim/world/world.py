@@ -23,13 +23,13 @@ from mart.protocol.tasks import Task, get_task
 from mart.sim.scene import panda
 from mart.sim.scene.data import Array
 from mart.sim.scene.meshes import Detail
-from mart.sim.scene.scene import Judgement, Scene
+from mart.sim.scene.scene import Scene, TaskStatus
 from mart.sim.tasks import scene_of
 from mart.sim.world import kinematics, model, osc
 from mart.sim.world.arm import MeasuredArm
-from mart.sim.world.control_interface import Surface
-from mart.sim.world.last_states import Diverged, LastStates, Trail
-from mart.sim.world.progress import Progress, first_reasons
+from mart.sim.world.control_interface import ControlInterface
+from mart.sim.world.last_states import Diverged, LastStates, StateHistory
+from mart.sim.world.progress import TaskProgress, first_reasons
 
 # As a number: looking an enumeration up takes longer than what is called with it.
 STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
@@ -59,10 +59,10 @@ class World:
         self.control_hz, self.control_period_s = control_hz, 1.0 / control_hz
         self.model = model.build(scene, timestep_s, detail)
         self.data = mujoco.MjData(self.model)
-        self._surface = Surface(scene, self.model, self.data)
+        self._interface = ControlInterface(scene, self.model, self.data)
         self._measured = {arm: MeasuredArm(self.model, self.data, arm) for arm in self.arms}
         self._action_shape = (len(self.arms), ACTION_SIZE)
-        self._trail = Trail(self.model, self._action_shape)
+        self._history = StateHistory(self.model, self._action_shape)
         self._fatal_warnings = self.data.warning.number[FATAL_WARNINGS]
 
     @classmethod
@@ -102,14 +102,14 @@ class World:
         """Begins an episode: things and arms where this seed puts them, arms at rest and holding."""
         random = np.random.default_rng(seed)
         mujoco.mj_resetData(self.model, self.data)
-        self._trail.clear()
+        self._history.clear()
         self._scene.place_objects(random)
         for index, arm in enumerate(self.task.arms):
             tool_in_world = arm.pose_base_in_world @ self._scene.start_pose_in_base(arm, random)
             joints = kinematics.solve(self.model, arm.name, tool_in_world, np.array(panda.HOME_RAD))
             self._measured[arm.name].place(joints)
-            self._surface.postures[index] = joints
-        self._surface.command(np.tile(_HOLD_OPEN, (len(self.arms), 1)))
+            self._interface.postures[index] = joints
+        self._interface.command(np.tile(_HOLD_OPEN, (len(self.arms), 1)))
         mujoco.mj_forward(self.model, self.data)
 
     def tool_pose_in_base(self, arm: str) -> Pose:
@@ -138,14 +138,14 @@ class World:
             ]
         )
 
-    def step(self, actions: ArrayLike) -> Judgement:
+    def step(self, actions: ArrayLike) -> TaskStatus:
         """Advances one control period; returns how the task stands then.
 
         Raises InvalidInput where the shape is not (arms, 7) or a number is not finite, Diverged where the physics left
         its bounds.
         """
         self.drive(actions)
-        return self._surface.settle()
+        return self._interface.settle()
 
     def drive(self, actions: ArrayLike) -> None:
         """The part of a step that moves the arms: physics and control; nothing is remembered or judged."""
@@ -157,14 +157,14 @@ class World:
         if not math.isfinite(sum(actions.ravel().tolist())):
             raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
         begun_s = self.sim_time_s
-        self._trail.note(self.data, actions)
-        self._surface.command(actions)
+        self._history.note(self.data, actions)
+        self._interface.command(actions)
         mujoco.mj_step(self.model, self.data, self.substeps)
         # Poses of the new state: mj_step leaves those of its last substep's beginning.
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_checkVel(self.model, self.data)  # what MuJoCo would find bad next time is told this time
         if any(self._fatal_warnings.tolist()):
-            raise Diverged(begun_s, self.last_states(*self._trail.states_and_actions()))
+            raise Diverged(begun_s, self.last_states(*self._history.states_and_actions()))
 
     def last_states(self, states: Array, actions: Array) -> LastStates:
         """Of a world of this model; shapes (n, size) and (n, arms, 7)."""
@@ -172,7 +172,7 @@ class World:
 
     def integration_state(self) -> bytes:
         """MuJoCo's full integration state, float64 little-endian: all that decides the future, and the shadows."""
-        self._surface.cast_shadows()
+        self._interface.cast_shadows()
         state = np.empty(mujoco.mj_stateSize(self.model, STATE))
         mujoco.mj_getState(self.model, self.data, state, STATE)
         return state.astype("<f8", copy=False).tobytes()
@@ -186,27 +186,27 @@ class World:
         if not np.isfinite(numbers).all():
             raise InvalidInput("A state with NaN or infinity was given; every number must be finite.")
         mujoco.mj_resetData(self.model, self.data)
-        self._trail.clear()
+        self._history.clear()
         mujoco.mj_setState(self.model, self.data, numbers, STATE)
         mujoco.mj_kinematics(self.model, self.data)
 
     def observations(self) -> dict[str, Array]:
         """All that any operator sees, in the catalogue's order."""
-        return self._surface.observations()
+        return self._interface.observations()
 
     def observations_for(self, arm: str) -> dict[str, Array]:
         """What this arm's operator sees."""
         seen = self.observations()
         return {observation.name: seen[observation.name] for observation in self.task.observations_of(arm)}
 
-    def progress(self, judgement: Judgement | None = None) -> Progress:
-        """judgement: what `step` returned, where nothing has changed since; without it, this instant is judged."""
-        judgement = judgement or self._surface.judge()
-        ticks = int(self._surface.success_ticks)
-        (reason,) = first_reasons(judgement.failed, worlds=1)
-        return Progress(
-            subtasks={name: bool(done) for name, done in judgement.subtasks.items()},
-            success_now=bool(judgement.success_now),
+    def progress(self, status: TaskStatus | None = None) -> TaskProgress:
+        """status: what `step` returned, where nothing has changed since; without it, this instant is judged."""
+        status = status or self._interface.task_status()
+        ticks = int(self._interface.success_ticks)
+        (reason,) = first_reasons(status.failed, worlds=1)
+        return TaskProgress(
+            subtasks={name: bool(done) for name, done in status.subtasks.items()},
+            success_now=bool(status.success_now),
             success_ticks=ticks,
             success=ticks >= self.task.success_hold_ticks,
             failed=reason or None,
