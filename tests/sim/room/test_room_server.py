@@ -38,7 +38,9 @@ def test_detailed_meshes_are_another_model_of_the_same_states(world: World) -> N
 def asked(world: World, looks: World | None, payload: bytes) -> Model:
     bus = MemoryNetwork().connect()
     room = RoomHarness(world).room
-    server = RoomServer(bus, "room-1", room, world, do=lambda work: work(), garbled=Counter(), looks=looks)
+    server = RoomServer(
+        bus, "room-1", room, world, submit=lambda work: work(), garbled=Counter(), looks=looks
+    )
     try:
         return codec.decode(Model, bus.query(keys.model("room-1"), payload, 1.0))
     finally:

@@ -24,7 +24,7 @@ def running(executor: SerialExecutor) -> Iterator[None]:
         yield
     finally:
         stop.set()
-        executor.do(lambda: None)
+        executor.submit(lambda: None)
         runner.join(PATIENCE_S)
         assert not runner.is_alive()
 
@@ -36,7 +36,7 @@ def test_the_thread_that_brings_work_does_it_and_what_follows() -> None:
         done_by.append(threading.get_ident())
         return now_s + FAR_S
 
-    SerialExecutor(advance).do(lambda: done_by.append(threading.get_ident()))
+    SerialExecutor(advance).submit(lambda: done_by.append(threading.get_ident()))
     assert done_by == [threading.get_ident()] * 2
 
 
@@ -50,10 +50,10 @@ def test_work_that_comes_in_another_turn_is_done_by_its_holder() -> None:
         assert leave.wait(PATIENCE_S)
         order.append("first")
 
-    holder = threading.Thread(target=executor.do, args=(long_work,))
+    holder = threading.Thread(target=executor.submit, args=(long_work,))
     holder.start()
     assert entered.wait(PATIENCE_S)
-    executor.do(lambda: order.append("second"))
+    executor.submit(lambda: order.append("second"))
     assert order == []
     leave.set()
     holder.join(PATIENCE_S)
@@ -72,7 +72,7 @@ def test_no_two_threads_have_a_turn_and_no_work_is_lost() -> None:
 
     def bring() -> None:
         for _ in range(500):
-            executor.do(work)
+            executor.submit(work)
 
     with running(executor):
         threads = [threading.Thread(target=bring) for _ in range(2)]  # 1000 wait at most: none is refused
@@ -97,7 +97,7 @@ def test_what_falls_due_is_done_though_nothing_comes_in() -> None:
 
     executor = SerialExecutor(advance)
     began_s = clock.monotonic_s()
-    executor.do(lambda: None)
+    executor.submit(lambda: None)
     with running(executor):
         assert soon.wait(PATIENCE_S)
     assert called[2] - began_s >= 0.02
@@ -109,6 +109,6 @@ def test_a_failure_ends_the_run_whoever_had_the_turn() -> None:
     def fail() -> None:
         raise ValueError("physics")
 
-    executor.do(fail)
+    executor.submit(fail)
     with pytest.raises(ValueError, match="physics"):
         executor.run(threading.Event())

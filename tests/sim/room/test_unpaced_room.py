@@ -21,10 +21,11 @@ from mart.protocol.messages import (
 from mart.runtime.bus.base import Handler
 from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
 from mart.sim.experts import get_skill
+from mart.sim.room.bus_publisher import OrderedPublisher
 from mart.sim.room.episode_state_machine import COUNTDOWN_S, ENDED_S, Terms
 from mart.sim.room.room import Room
 from mart.sim.room.saved_room import SavedRoom
-from mart.sim.room.unpaced_room import OrderedPublisher, SimulatedTime, UnpacedRoom
+from mart.sim.room.unpaced_room import SimulatedTime, UnpacedRoom
 from mart.sim.room.work_queue import WorkQueue
 from mart.sim.world import World
 

@@ -11,7 +11,7 @@ def test_work_is_done_in_the_order_in_which_it_came() -> None:
     work_queue, done = WorkQueue(), list[int]()
     for number in range(5):
         work_queue.put(lambda number=number: done.append(number))  # type: ignore[misc]  # a lambda's default
-    work_queue.work(timeout_s=0.0)
+    work_queue.run_all(timeout_s=0.0)
     assert done == [0, 1, 2, 3, 4]
 
 
@@ -25,15 +25,15 @@ def test_work_wakes_the_one_who_waits() -> None:
 
 
 def test_nothing_to_do_is_no_failure() -> None:
-    WorkQueue().work(timeout_s=-1.0)
-    assert not WorkQueue().work_once(timeout_s=-1.0)
+    WorkQueue().run_all(timeout_s=-1.0)
+    assert not WorkQueue().run_one(timeout_s=-1.0)
 
 
 def test_work_can_be_done_one_by_one() -> None:
     work_queue, done = WorkQueue(), list[int]()
     work_queue.put(lambda: done.append(1))
     work_queue.put(lambda: done.append(2))
-    assert work_queue.work_once(timeout_s=0.0)
+    assert work_queue.run_one(timeout_s=0.0)
     assert done == [1]
 
 
@@ -45,7 +45,7 @@ def test_work_that_makes_work_does_not_hold_up_the_room() -> None:
         work_queue.put(again)
 
     work_queue.put(again)
-    work_queue.work(timeout_s=0.0)
+    work_queue.run_all(timeout_s=0.0)
     assert len(rounds) <= 2
 
 
@@ -53,5 +53,5 @@ def test_a_flood_is_bounded() -> None:
     work_queue, done = WorkQueue(), list[int]()
     for _ in range(100_000):
         work_queue.put(lambda: done.append(1))
-    work_queue.work(timeout_s=0.0)
+    work_queue.run_all(timeout_s=0.0)
     assert 0 < len(done) <= 2000

@@ -1,4 +1,4 @@
-"""The sim's commands. Heavy modules are imported inside them: `mart --help` loads this file."""
+"""Offer the sim's commands. Heavy modules are imported inside them: `mart --help` loads this file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mart.sim.settings import ExpertsSettings, ReplicaSettings, SimSettings
 
 
 def _given(**options: Any) -> dict[str, Any]:
-    """Options that were given; the others come from the environment or have defaults."""
+    """Return the options that were given; the others come from the environment or have defaults."""
     return {name: value for name, value in options.items() if value is not None}
 
 

@@ -1,4 +1,4 @@
-"""An episode file becomes a video: its own model, its own states, any viewpoint. No task is needed, and no physics."""
+"""Draw an episode file as a video: its own model, its own states, any viewpoint; no task is needed, and no physics."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _QUALITY = {"crf": "20", "preset": "veryfast"}  # of x264: no difference to see,
 
 
 def render_episode(path: Path, out: Path, viewpoint: str, width_px: int, height_px: int) -> int:
-    """Writes `out` (MP4, H.264) with one picture for each recorded state, in real time; returns how many.
+    """Write `out` (MP4, H.264) with one picture for each recorded state, in real time; return how many.
 
     Raises NotFound for an unknown viewpoint, InvalidInput for a size that cannot be, Corrupt where the file does not
     hold what it should.
@@ -53,7 +53,7 @@ def _model(file: EpisodeFile) -> mujoco.MjModel:
 
 
 def _states(file: EpisodeFile) -> Iterator[bytes]:
-    """Integration states, each tick once."""
+    """Yield the integration states, each tick once."""
     newest = -1
     for message in file.messages(STATE):
         state = codec.decode(State, message.payload)

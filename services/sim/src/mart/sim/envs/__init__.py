@@ -1,4 +1,4 @@
-"""Every task as an environment of Gymnasium (joint) and of PettingZoo (one agent for each arm), in this process.
+"""Offer every task as an environment of Gymnasium (joint) and of PettingZoo (one agent for each arm), in this process.
 
 Importing this registers every task with Gymnasium: `gymnasium.make("mart/TwoArmMultiCubeLifting-v0")`. Needs the extra
 `mart-sim[envs]`. Guide: docs/how-to-use-the-environments.md.
@@ -16,7 +16,7 @@ __all__ = ["ArmsEnv", "JointEnv", "gymnasium_id"]
 
 
 def gymnasium_id(task: str) -> str:
-    """`two_arm_multi_cube_lifting` is `mart/TwoArmMultiCubeLifting-v0`."""
+    """Return the id under which Gymnasium knows a task: `mart/TwoArmMultiCubeLifting-v0`."""
     return f"mart/{''.join(word.capitalize() for word in task.split('_'))}-v0"
 
 

@@ -1,4 +1,4 @@
-"""What both kinds of environment share: one world of a task, episode after episode, and its pictures."""
+"""Run episodes of one task and draw them: what both kinds of environment share."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _BOUND = 10.0  # metres, radians, shares: nothing that is still in the room come
 
 @dataclass(frozen=True)
 class EnvOptions:
-    """How a task's environment is built; every keyword of both kinds.
+    """Choose how a task's environment is built; the fields are the keywords of both kinds.
 
     `arms`: how many, where the task can have several numbers. `viewpoint`: which camera `render` shows, an arm's name
     or "front". `detail`: "hull", or "detailed" for machines with a GPU.
@@ -45,7 +45,7 @@ class EnvOptions:
 
 @dataclass(frozen=True)
 class StepResult:
-    """The world between two steps. `failed` says in words why the task can no longer succeed, "" while it can."""
+    """Tell how the world is between two steps; `failed` says why the task can no longer succeed, "" while it can."""
 
     observations: Observations
     subtasks: dict[str, bool]
@@ -55,23 +55,24 @@ class StepResult:
 
     @property
     def terminated(self) -> bool:
+        """Whether the episode is over by success, or by a failure that nothing can mend."""
         return self.success or bool(self.failed)
 
     @property
     def reward(self) -> float:
-        """1 for the step that completes the task, 0 for every other."""
+        """Return 1 for the step that completes the task, 0 for every other."""
         return float(self.success)
 
     def info(self) -> dict[str, object]:
-        """A new one at each call: whoever holds one may change it."""
+        """Return a new dictionary at each call (whoever holds one may change it): subtasks, success, failed."""
         return {"subtasks": dict(self.subtasks), "success": self.success, "failed": self.failed}
 
 
 class EpisodeRunner:
-    """Episodes of one task, one after the other."""
+    """Run one world of a task, one episode after the other, and draw it."""
 
     def __init__(self, task: str, options: EnvOptions) -> None:
-        """Raises NotFound for an unknown task or viewpoint, InvalidInput for what the task cannot have."""
+        """Build the world; raises NotFound for an unknown task or viewpoint, InvalidInput for what it cannot have."""
         self._world = World.build(task, options.control_hz, options.arms, options.detail)
         self._options = options
         self._horizon_ticks = self.task.horizon_at(options.control_hz)
@@ -83,20 +84,22 @@ class EpisodeRunner:
 
     @property
     def task(self) -> Task:
+        """The catalogue's row of the task."""
         return self._world.task
 
     @property
     def control_hz(self) -> float:
+        """Steps a second of simulated time."""
         return self._options.control_hz
 
     def reset(self, seed: int) -> StepResult:
-        """The world that rooms and rollouts of this seed begin with."""
+        """Begin the episode that rooms and rollouts begin with this seed."""
         self._world.reset(seed)
         self._ticks = 0
         return self._result()
 
     def step(self, actions: ArrayLike) -> StepResult:
-        """actions: shape (arms, 7), in [-1, 1]; see `World`.
+        """Advance one control period; actions: shape (arms, 7), in [-1, 1], see `World`.
 
         Raises InvalidInput for actions that cannot be, Conflict where the episode is over.
         """
@@ -116,7 +119,7 @@ class EpisodeRunner:
         return result
 
     def render(self) -> Image | None:
-        """The picture from the chosen viewpoint, shape (height, width, 3); None without a render mode."""
+        """Draw the chosen viewpoint: uint8, shape (height, width, 3); None without a render mode."""
         if self._options.render_mode is None:
             return None
         if self._renderer is None:
@@ -127,6 +130,7 @@ class EpisodeRunner:
         return self._renderer.draw(self._world.integration_state())
 
     def close(self) -> None:
+        """Let the renderer go; the world stays usable."""
         if self._renderer is not None:
             self._renderer.close()
             self._renderer = None
@@ -148,21 +152,22 @@ class EpisodeRunner:
 
 
 def _copied(observations: Observations) -> Observations:
-    """Whoever is given observations keeps them; the world's own follow it."""
+    """Copy observations: whoever is given them keeps them, while the world's own follow it."""
     return {name: value.copy() for name, value in observations.items()}
 
 
 def observation_space(observations: Iterable[Observation]) -> spaces.Dict:
-    """float64 arrays by the catalogue's names."""
+    """Return the space of these observations: float64 arrays by the catalogue's names."""
     return spaces.Dict({one.name: spaces.Box(-_BOUND, _BOUND, one.shape, np.float64) for one in observations})
 
 
 def action_space(*leading: int) -> spaces.Box:
-    """[-1, 1], shape (*leading, 7)."""
+    """Return the space [-1, 1] of float32 actions, shape (*leading, 7)."""
     return spaces.Box(-1.0, 1.0, (*leading, ACTION_SIZE), np.float32)
 
 
 def checked_seed(seed: int) -> int:
+    """Return the seed; raises InvalidInput where it is not from 0 to 2^63 - 1."""
     if not 0 <= seed < MAX_SEED:
         raise InvalidInput(f"The seed {seed} was given; it must be from 0 to 2^63 - 1.")
     return seed

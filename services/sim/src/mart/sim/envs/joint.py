@@ -1,4 +1,4 @@
-"""A task as a Gymnasium environment: one agent that sees everything and moves every arm."""
+"""Offer a task as a Gymnasium environment: one agent that sees everything and moves every arm."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from mart.sim.renderer import Image
 
 
 class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integer[Any]]]):
-    """Actions: shape (arms, 7) in [-1, 1]. Observations: a dictionary of all that any operator sees.
+    """Step a task as one agent: actions of shape (arms, 7) in [-1, 1]; observations are all that any operator sees.
 
     The reward is 1 for the step that completes the task and 0 for every other. An episode terminates with success or
     irrecoverable failure, and is truncated at the task's horizon. `info`: subtasks (name → done), success, failed.
@@ -31,7 +31,7 @@ class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integ
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 20}  # noqa: RUF012
 
     def __init__(self, task: str, **options: Any) -> None:
-        """options: fields of `EnvOptions`."""
+        """Build the environment of a task; the options are the fields of `EnvOptions`. Raises as `EpisodeRunner`."""
         chosen = EnvOptions(**options)
         self._runner = EpisodeRunner(task, chosen)
         self.render_mode = chosen.render_mode
@@ -42,7 +42,7 @@ class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integ
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observations, dict[str, Any]]:
-        """`seed` begins the very episode that it begins in a room; without one, the next is drawn."""
+        """Begin the very episode that `seed` begins in a room; without one, the next seed is drawn."""
         super().reset(seed=seed)
         drawn = int(self.np_random.integers(MAX_SEED)) if seed is None else checked_seed(seed)
         result = self._runner.reset(drawn)
@@ -51,11 +51,14 @@ class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integ
     def step(
         self, action: NDArray[np.floating[Any] | np.integer[Any]]
     ) -> tuple[Observations, float, bool, bool, dict[str, Any]]:
+        """Advance one control period; return observations, reward, terminated, truncated, info."""
         result = self._runner.step(action)
         return result.observations, result.reward, result.terminated, result.truncated, result.info()
 
     def render(self) -> Image | None:
+        """Draw the chosen viewpoint: uint8, shape (height, width, 3); None without a render mode."""
         return self._runner.render()
 
     def close(self) -> None:
+        """Let the renderer go."""
         self._runner.close()

@@ -1,4 +1,4 @@
-"""A task as a PettingZoo environment: one agent for each arm, and each sees what that arm's operator sees."""
+"""Offer a task as a PettingZoo environment: one agent for each arm, which sees what that arm's operator sees."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Infos = dict[str, dict[str, object]]
 
 
 class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ignore[misc]
-    """Agents are the arms, `arm0` and so on. Actions: shape (7,) in [-1, 1]; reward, end and info are everybody's.
+    """Step a task as one agent for each arm (`arm0`, …): actions of shape (7,) in [-1, 1]; all share reward and end.
 
     All agents start together and end together: with success, with irrecoverable failure or at the task's horizon.
     """
@@ -38,7 +38,7 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "is_parallelizable": True}  # noqa: RUF012
 
     def __init__(self, task: str, **options: Any) -> None:
-        """options: fields of `EnvOptions`."""
+        """Build the environment of a task; the options are the fields of `EnvOptions`. Raises as `EpisodeRunner`."""
         chosen = EnvOptions(**options)
         self._runner = EpisodeRunner(task, chosen)
         facts = self._runner.task
@@ -54,15 +54,17 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
         self._result: StepResult | None = None
 
     def observation_space(self, agent: str) -> spaces.Dict:
+        """Return the space of what this arm's operator sees."""
         return self._partitions[agent]
 
     def action_space(self, agent: str) -> spaces.Box:
+        """Return the space of this arm's actions, shape (7,)."""
         return self._actions[agent]
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Observations], Infos]:
-        """`seed` begins the very episode that it begins in a room; without one, the next is drawn."""
+        """Begin the very episode that `seed` begins in a room; without one, the next seed is drawn."""
         if seed is not None:
             self._random, _ = seeding.np_random(checked_seed(seed))
         drawn = int(self._random.integers(MAX_SEED)) if seed is None else seed
@@ -73,7 +75,7 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
     def step(
         self, actions: Mapping[str, NDArray[np.float32]]
     ) -> tuple[dict[str, Observations], dict[str, float], dict[str, bool], dict[str, bool], Infos]:
-        """Raises InvalidInput where an arm is missing: the world moves when every arm has been told what to do."""
+        """Advance one control period. Raises InvalidInput where an arm has no action: the world waits for every arm."""
         result = self._runner.step(self._together(actions))
         if result.terminated or result.truncated:
             self.agents = []
@@ -86,15 +88,17 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
         )
 
     def state(self) -> NDArray[np.float64]:
-        """The joint observation as one vector, in the order of `gymnasium.spaces.flatten`."""
+        """Return the joint observation as one vector, in the order of `gymnasium.spaces.flatten`."""
         if self._result is None:
             raise Conflict("The state was asked for, but no episode has begun: call reset first.")
         return np.asarray(spaces.flatten(self._joint, self._result.observations))
 
     def render(self) -> Image | None:
+        """Draw the chosen viewpoint: uint8, shape (height, width, 3); None without a render mode."""
         return self._runner.render()
 
     def close(self) -> None:
+        """Let the renderer go."""
         self._runner.close()
 
     def _together(self, actions: Mapping[str, NDArray[np.float32]]) -> NDArray[np.float64]:
@@ -112,7 +116,7 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
         return np.array(rows)
 
     def _seen(self, result: StepResult) -> dict[str, Observations]:
-        """Each agent's own arrays, even of what several see: one agent's wrapper must not change another's."""
+        """Give each agent arrays of its own, even of what several see: one's wrapper must not change another's."""
         self._result = result
         return {
             agent: {name: result.observations[name].copy() for name in space}

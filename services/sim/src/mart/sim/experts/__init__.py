@@ -1,4 +1,4 @@
-"""Scripted operators: one per arm, seeing only what that arm's operator sees."""
+"""Drive arms by script: one operator per arm, which sees only what that arm's operator sees."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One arm's part in carrying a tray by its two handles, in step with a partner whom it only sees."""
+"""Carry a tray by its two handles: one arm's part, in step with a partner whom it only sees."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Vector = NDArray[np.float64]
 
 
 class Carrier:
-    """What one carrier sees and does; everything is in the arm's own base frame."""
+    """Carry the own side of a tray; all poses are in the arm's own base frame."""
 
     def __init__(self, arm: Arm, human: HumanErrorModel) -> None:
         self._human = human
@@ -38,7 +38,7 @@ class Carrier:
         self._partner_tool = seen_tool(arm, partner)
 
     def pick(self, obs: OperatorObservation) -> PlanStep:
-        """Attempts at the own handle until it is in the hand."""
+        """Try to grip the own handle until it is in the hand."""
         while True:
             obs = yield from pick(obs, self._human, self._grip)
             if not self.has_lost(obs):
@@ -46,7 +46,7 @@ class Carrier:
             obs = yield from self._let_go(obs)
 
     def await_partner(self, obs: OperatorObservation) -> PlanStep:
-        """Until the partner's tool has come to its handle, and a moment longer: fingers close slowly."""
+        """Wait until the partner's tool has come to its handle, and a moment longer: fingers close slowly."""
         here = Waypoint(obs.pose_tool_in_base, CLOSED)
         obs = yield from wait(obs, here, self._human, lambda now: not self.is_alone(now))
         return (yield from stay(obs, here, self._human.grips_s()))
@@ -54,7 +54,7 @@ class Carrier:
     def along(
         self, obs: OperatorObservation, shift: Vector, until: Callable[[OperatorObservation], bool]
     ) -> PlanStep:
-        """Moves the own handle by `shift` (metres), never far ahead of the partner's.
+        """Move the own handle by `shift` (metres), never far ahead of the partner's.
 
         Ends when `until` holds or the handle is lost. Where the partner lets go, it goes back to where it began.
         """
@@ -73,25 +73,27 @@ class Carrier:
         return obs
 
     def has_lost(self, now: OperatorObservation) -> bool:
+        """Whether the own handle is not in the hand."""
         return apart_m(self._handle(now), now.pose_tool_in_base) > _AWAY_M or now.gripper > _MISSED
 
     def is_alone(self, now: OperatorObservation) -> bool:
-        """The partner's tool is not at its handle."""
+        """Whether the partner's tool is away from its handle."""
         return apart_m(self._partner_handle(now), self._partner_tool(now)) > _AWAY_M
 
     def _let_go(self, obs: OperatorObservation) -> PlanStep:
-        """Opens and goes up, so as to take the tray with it as little as can be."""
+        """Open and go up, so as to take the tray with it as little as can be."""
         here = obs.pose_tool_in_base
         obs = yield from stay(obs, Waypoint(here, OPEN), self._human.settles_s())
         up = Waypoint(raised(here, _CLEAR_M), OPEN, _PACE)
         return (yield from go(obs, lambda _: up, _PATIENCE_S))
 
     def _grip(self, now: OperatorObservation) -> Pose:
-        """The tool that grips the own handle: fingers across the bar, which lies across the line between handles."""
+        """Return the tool that grips the own handle: fingers across the bar, which is square to the tray."""
         handle = self._handle(now).position
         x, y, _ = handle - self._partner_handle(now).position
         return upright(handle, (math.atan2(y, x) + math.pi / 2) % math.pi)
 
 
 def raised(pose: Pose, height_m: float) -> Pose:
+    """Return the same pose `height_m` higher."""
     return Pose(pose.position + np.array([0.0, 0.0, height_m]), pose.quaternion_wxyz)

@@ -1,4 +1,4 @@
-"""A scripted operator of one arm. Pure: it is shown what that arm's operator sees and says what it wants."""
+"""Drive one arm by script. Pure: it is shown what that arm's operator sees and says what it wants."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SLIP_S = 0.4  # how long a hand that slipped stays open
 
 @dataclass(frozen=True)
 class ExpertIntent:
-    """What the operator wants now. While not `engaged` the clutch is let go, and the arm should hold."""
+    """Say what the operator wants now. While not `engaged` the clutch is let go, and the arm should hold."""
 
     target_tool_in_base: Pose
     gripper: float
@@ -30,7 +30,7 @@ class ExpertIntent:
 
 
 class Expert:
-    """Good for one episode. Copes with observations that arrive some ticks late, repeatedly or not at all.
+    """Drive one arm for one episode. Copes with observations that arrive some ticks late, repeatedly or not at all.
 
     Time is the sim's: an expert that is shown the same moment again wants the same thing again.
     """
@@ -48,7 +48,7 @@ class Expert:
         self._slip_until_s = 0.0
 
     def act(self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float) -> ExpertIntent:
-        """observations: what the task declares for this arm; see `World.observations_for`."""
+        """Return what the operator wants; observations: what the task declares for this arm."""
         if self._intent is None or sim_time_s > self._seen_s:
             self._intent = self._want(self._look(observations, sim_time_s))
             self._seen_s = sim_time_s
@@ -91,7 +91,7 @@ class Expert:
         return waypoint
 
     def _grip(self, waypoint: Waypoint, now_s: float, elapsed_s: float) -> float:
-        """What the gripper is told: a hand that should stay closed opens now and then for a moment."""
+        """Say what the gripper is told: a hand that should stay closed opens now and then for a moment."""
         if waypoint.gripper >= CLOSED and self._human.lets_slip(elapsed_s):
             self._slip_until_s = now_s + _SLIP_S
         return OPEN if now_s < self._slip_until_s else waypoint.gripper

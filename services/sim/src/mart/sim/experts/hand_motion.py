@@ -1,4 +1,4 @@
-"""The human part of a scripted operator: moves a reference towards a goal, with limited speed, misses and a tremor.
+"""Move a reference towards a goal as a human hand does: with limited speed, misses and a tremor.
 
 A movement has a first part that ends beside its goal, by an error in proportion to its speed, and corrections that
 follow when the error has been seen: the optimized initial impulse model (Meyer, Abrams, Kornblum, Wright, Smith 1988).
@@ -34,7 +34,7 @@ Vector = NDArray[np.float64]
 
 
 class HandMotion:
-    """Holds where the person wants the tool to be, as the reference without tremor."""
+    """Follow goals with the pose where the person wants the tool: the reference, kept without its tremor."""
 
     def __init__(self, human: HumanErrorModel) -> None:
         self._human = human
@@ -47,7 +47,7 @@ class HandMotion:
         self._resting: Pose | None = None
 
     def move(self, goal: Pose, measured: Pose, pace: float, elapsed_s: float) -> Pose:
-        """One moment of moving towards `goal` at `pace` times the usual speed; the pose to command."""
+        """Go on towards `goal` for `elapsed_s` at `pace` times the usual speed; return the pose to command."""
         start, self._resting = self._reference or measured, None
         if self._goal is None or not _near(goal, self._goal, _NEW_GOAL_M, _NEW_GOAL_RAD):
             self._begin(difference(goal, start), pace)
@@ -63,7 +63,7 @@ class HandMotion:
         return moved(self._reference, self._tremor[:3], self._tremor[3:])
 
     def has_reached(self, goal: Pose, measured: Pose) -> bool:
-        """Both the wish and the tool are at the goal."""
+        """Whether both the reference and the tool are at the goal."""
         if self._reference is None:
             return False
         return _near(goal, self._reference, _ARRIVED_M, _ARRIVED_RAD) and _near(
@@ -71,14 +71,14 @@ class HandMotion:
         )
 
     def rest(self, measured: Pose) -> Pose:
-        """The pose to command while the clutch is let go, always the same; moving on starts from the measured one."""
+        """Return the pose to command while the clutch is let go: always the same. The next move starts at the tool."""
         if self._resting is None:
             self._resting = self._reference or measured
         self._reference = self._goal = None
         return self._resting
 
     def _begin(self, way: tuple[Vector, Vector], pace: float) -> None:
-        """A new movement: its first part will end beside the goal, more often too far than too short."""
+        """Begin a movement: its first part will end beside the goal, more often too far than too short."""
         random, share = self._human.random, self._human.skill.overshoot * pace
         shift, turn = way
         along = share * random.normal(0.5, 1.0, 2)
@@ -87,7 +87,7 @@ class HandMotion:
         self._correct_in_s = self._human.notices_s()
 
     def _correct(self, pace: float, elapsed_s: float) -> None:
-        """The first part is over: once the miss has been noticed, what is left of it is a movement like any other."""
+        """Count down until the miss of the first part is noticed; what is left of it is a movement like any other."""
         self._correct_in_s -= elapsed_s
         if self._correct_in_s > 0.0:
             return
@@ -96,7 +96,7 @@ class HandMotion:
             self._begin((-miss[:3], -miss[3:]), pace)
 
     def _shake(self, elapsed_s: float) -> None:
-        """An Ornstein-Uhlenbeck step, exact for any time."""
+        """Advance the tremor by an Ornstein-Uhlenbeck step, exact for any time."""
         skill = self._human.skill
         spread = np.repeat([skill.tremor_m, skill.tremor_rad], 3)
         keep = np.exp(-elapsed_s / _TREMOR_TIME_S)
@@ -105,13 +105,13 @@ class HandMotion:
 
 
 def difference(goal: Pose, start: Pose) -> tuple[Vector, Vector]:
-    """Translation (metres) and rotation vector (radians), both along the parent's axes, from `start` to `goal`."""
+    """Return translation (metres) and rotation vector (radians), along the parent's axes, from `start` to `goal`."""
     turn = quaternion_multiply(goal.quaternion_wxyz, quaternion_conjugate(start.quaternion_wxyz))
     return goal.position - start.position, quaternion_log(turn)
 
 
 def moved(start: Pose, shift: Vector, turn: Vector) -> Pose:
-    """The inverse of `difference`."""
+    """Return the pose that `difference` leads to from `start`."""
     return Pose(start.position + shift, quaternion_multiply(quaternion_exp(turn), start.quaternion_wxyz))
 
 

@@ -1,4 +1,4 @@
-"""One person of a skill: what they draw from chance, attempt by attempt."""
+"""Draw the errors and delays of one person of a skill, attempt by attempt."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CLOSING_S = 0.45  # fingers take six ticks to grip a thing
 
 
 class HumanErrorModel:
-    """Draws from `random` alone, so a seed decides what a person does. `random` is for a plan's own choices as well."""
+    """Draw from `random` alone, so a seed decides what a person does; a plan's own choices may use it as well."""
 
     def __init__(self, skill: Skill, random: np.random.Generator) -> None:
         self.skill = skill
@@ -23,23 +23,23 @@ class HumanErrorModel:
         self._attempts = 0
 
     def varied(self, mean: float) -> float:
-        """A time or a size like `mean`: within 30 % of it."""
+        """Draw a time or a size like `mean`: within 30 % of it."""
         return mean * self.random.uniform(0.7, 1.3)
 
     def reacts_s(self) -> float:
-        """How long before the first movement."""
+        """Draw the seconds before the first movement."""
         return self.varied(self.skill.reaction_s)
 
     def settles_s(self) -> float:
-        """How long this person looks at a place before going on."""
+        """Draw the seconds for which this person looks at a place before going on."""
         return self.varied(self.skill.settle_s)
 
     def notices_s(self) -> float:
-        """How long it takes until this person acts on what is to be seen."""
+        """Draw the seconds until this person acts on what is to be seen."""
         return self.varied(self.skill.notice_s)
 
     def aims(self) -> Pose:
-        """One more attempt: where this person grips, in the frame of the tool that would grip well.
+        """Draw where the next attempt grips, in the frame of the tool that would grip well.
 
         Less wide of it every time, because people learn from a miss.
         """
@@ -50,19 +50,19 @@ class HumanErrorModel:
         return Pose(shift, np.array([math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)]))
 
     def closes_before_m(self) -> float:
-        """How far before the place the gripper is closed: 0 unless in haste."""
+        """Draw how far before the place (metres) the gripper is closed: 0 unless in haste."""
         return self.random.uniform(*_HASTE_M) if self._hastes() else 0.0
 
     def grips_s(self) -> float:
-        """How long this person waits for the fingers: long enough unless in haste."""
+        """Draw the seconds for which this person waits for the fingers: enough unless in haste."""
         return self.random.uniform(0.1, 0.3) if self._hastes() else CLOSING_S + self.settles_s()
 
     def lets_slip(self, elapsed_s: float) -> bool:
-        """Whether what is held slipped from this hand within `elapsed_s`."""
+        """Draw whether what is held slips from this hand within `elapsed_s`."""
         return bool(self.random.random() < -math.expm1(-self.skill.slip_per_s * elapsed_s))
 
     def pauses_s(self) -> float:
-        """How long the clutch is let go before the next movement; mostly 0."""
+        """Draw the seconds for which the clutch is let go before the next movement; mostly 0."""
         return self.varied(self.skill.pause_s) if self.random.random() < self.skill.pause_probability else 0.0
 
     def _hastes(self) -> bool:

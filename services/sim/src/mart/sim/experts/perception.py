@@ -1,4 +1,4 @@
-"""What plans make of what they see: where things are in the own arm's base frame, how a tool would grip them."""
+"""Tell plans where things are in the own arm's base frame, and how a tool would grip them."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def seen(arm: Arm, thing: str) -> ObservedPose:
-    """Where a thing is, in this arm's base frame; unturned in the world where only its position is seen."""
+    """Return a function that finds a thing in this arm's base frame; unturned where only its position is seen."""
     return _seen(arm, f"{thing}/position_in_world", f"{thing}/quaternion_in_world")
 
 
 def seen_tool(arm: Arm, partner: str) -> ObservedPose:
-    """Where the partner's tool is, in this arm's base frame: its position alone."""
+    """Return a function that finds the partner's tool in this arm's base frame: its position alone."""
     return _seen(arm, f"{partner}/tool_position_in_world", "")
 
 
@@ -35,23 +35,23 @@ def _seen(arm: Arm, position: str, quaternion: str) -> ObservedPose:
 
 
 def at(x: float, y: float, z: float) -> Pose:
-    """A place in a frame, unturned."""
+    """Return a place in a frame (metres), unturned."""
     return Pose(np.array([x, y, z]), _UNTURNED)
 
 
 def upright(position: ArrayLike, yaw_rad: float) -> Pose:
-    """A thing that stands, or a tool that points straight down."""
+    """Return the pose of a thing that stands, or of a tool that points straight down, turned by `yaw_rad`."""
     half = yaw_rad / 2
     return Pose(np.asarray(position), np.array([math.cos(half), 0.0, 0.0, math.sin(half)]))
 
 
 def standing(place: Pose, like: Pose, symmetry_rad: float) -> Pose:
-    """Standing at a place, square to it, and turned from `like` as little as the symmetry allows."""
+    """Return a pose standing at a place, square to it, turned from `like` as little as the symmetry allows."""
     return upright(place.position, _yaw(place, _yaw(like), symmetry_rad))
 
 
 def level(place: Pose, like: Pose) -> Pose:
-    """At a place, with its x axis along the place's, either way round, and on that of its four sides `like` is near."""
+    """Return a pose at a place, x axis along the place's (either way), on that of its four sides `like` is near."""
     along, x = place.rotation_matrix()[:, 0], like.rotation_matrix()[:, 0]
     along = along if along @ x > 0.0 else -along
     axis = np.cross(x, along)
@@ -64,16 +64,17 @@ def level(place: Pose, like: Pose) -> Pose:
 
 
 def across(thing: Pose, symmetry_rad: float = math.pi) -> Pose:
-    """The tool that grips a thing from above, with the fingers on either side of its x axis."""
+    """Return the tool that grips a thing from above, with the fingers on either side of its x axis."""
     return upright(thing.position, _yaw(thing, symmetry_rad=symmetry_rad))
 
 
 def apart_m(one: Pose, other: Pose) -> float:
+    """Return the distance of two poses' positions in metres."""
     return one.distance_to(other)[0]
 
 
 def uprightness(pose: Pose) -> float:
-    """Cosine of its tilt."""
+    """Return the cosine of a pose's tilt: 1 where it stands."""
     return float(pose.rotation_matrix()[2, 2])
 
 
@@ -83,7 +84,7 @@ def _yaw(pose: Pose, nearest_to_rad: float = 0.0, symmetry_rad: float = math.tau
 
 
 class StillnessDetector:
-    """Whether what is seen has stayed within `within_m` of one place for `for_s`; to be asked at every observation."""
+    """Tell whether what is seen stayed within `within_m` of one place for `for_s`; ask at every observation."""
 
     def __init__(self, see: ObservedPose, within_m: float, for_s: float) -> None:
         self._see, self._within_m, self._for_s = see, within_m, for_s

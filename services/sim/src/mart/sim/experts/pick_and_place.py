@@ -1,4 +1,4 @@
-"""A thing in the hand of a person: gripping it, bringing it to its place, letting it go."""
+"""Grip a thing, bring it to its place and let it go, as people do."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _OPENING_S = 0.35
 
 
 class PickAndPlace:
-    """`thing` and `tool` tell, in the own base frame, where the thing is and where a tool is that grips it well.
+    """Handle one thing; `thing` and `tool` find, in the own base frame, it and a tool that grips it well.
 
     hangs: whether it turns in the hand as it likes; the hand then stays straight instead of leaning with it.
     """
@@ -48,11 +48,11 @@ class PickAndPlace:
         self._human, self._thing, self._tool, self._hangs = human, thing, tool, hangs
 
     def is_lost(self, now: OperatorObservation) -> bool:
-        """The thing is not in the hand."""
+        """Whether the thing is not in the hand."""
         return now.gripper > _MISSED or apart_m(self._tool(now), now.pose_tool_in_base) > _LOST_M
 
     def pick(self, obs: OperatorObservation, unless: Until = never, beside_m: float = 0.0) -> PlanStep:
-        """One attempt, with the fingers so far beside the thing, which moves between them when they close."""
+        """Try once, with the fingers `beside_m` beside the thing, which moves between them when they close."""
 
         def grasp(now: OperatorObservation) -> Pose:
             return self._tool(now) @ at(0.0, beside_m, 0.0)
@@ -68,7 +68,7 @@ class PickAndPlace:
         pace: Callable[[OperatorObservation], float] = lambda _: _PACE,
         patience_s: float = math.inf,
     ) -> PlanStep:
-        """The thing towards its goal: until `until` holds, it is lost, or `patience_s` have passed."""
+        """Bring the thing towards its goal: until `until` holds, it is lost, or `patience_s` have passed."""
         trim = np.zeros(3)
         last_s, give_up_s = obs.sim_time_s, obs.sim_time_s + patience_s
         while not (until(obs) or self.is_lost(obs)) and obs.sim_time_s < give_up_s:
@@ -85,7 +85,7 @@ class PickAndPlace:
         return obs
 
     def raise_to(self, obs: OperatorObservation, z_m: float) -> PlanStep:
-        """Straight up, nearly as high as asked, which is high enough to go on; not down where it is higher."""
+        """Lift straight up, nearly as high as asked, which is enough to go on; not down where it is higher."""
         here = self._thing(obs)
         up = at(0.0, 0.0, max(0.0, z_m - here.position[2])) @ here
         return (
@@ -101,7 +101,7 @@ class PickAndPlace:
         *,
         caught: Until = never,
     ) -> PlanStep:
-        """Up to `clear_m` over the place, there and down, again where it got stuck; lets go. The thing may be lost.
+        """Go up to `clear_m` over the place, there and down, again where it got stuck; let go. It may be lost.
 
         caught: that it hangs on to something, from which it is to be lifted off before it is brought any further.
         """
@@ -135,14 +135,14 @@ class PickAndPlace:
         return (yield from stay(obs, up, self._human.settles_s()))
 
     def is_over(self, now: OperatorObservation, place: ObservedPose) -> bool:
-        """The thing is straight over its place, as far as this person can tell."""
+        """Whether the thing is straight over its place, as far as this person can tell."""
         thing, skill = self._thing(now), self._human.skill
         off_m = float(np.linalg.norm((thing.position - place(now).position)[:2]))
         _, off_rad = thing.distance_to(place(now))
         return off_m < _ALIGNED_M + skill.tremor_m and off_rad < _ALIGNED_RAD + skill.tremor_rad
 
     def let_go(self, obs: OperatorObservation, up_m: float = 0.12) -> PlanStep:
-        """Opens, and goes straight up where the thing is not far below already."""
+        """Open, and go straight up where the thing is not far below already."""
         here = obs.pose_tool_in_base
         obs = yield from stay(obs, Waypoint(here, OPEN), _OPENING_S + self._human.settles_s())
         if here.position[2] - self._tool(obs).position[2] > up_m:

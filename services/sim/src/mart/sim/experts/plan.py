@@ -1,12 +1,12 @@
-"""What a scripted operator wants next: a generator that is sent what it sees and yields waypoints.
+"""Write a scripted operator's plan as a generator: it is sent what the operator sees and yields waypoints.
 
 A plan is written like a recipe, `plan(arm, human, obs)`, of five steps; each ends with what is seen then:
 
-    obs = yield from pick(obs, human, grasp)             # one attempt to grip a thing, with this person's errors
+    obs = yield from pick(obs, human, grasp)              # one attempt to grip a thing, with this person's errors
     obs = yield from go(obs, lambda now: Waypoint(...))   # until the tool is there
-    obs = yield from wait(obs, waypoint, human, until)   # until something is seen, noticed as late as people do
+    obs = yield from wait(obs, waypoint, human, until)    # until something is seen, noticed as late as people do
     obs = yield from stay(obs, waypoint, duration_s)      # for a while
-    obs = yield waypoint                                    # for one tick
+    obs = yield waypoint                                  # for one tick
 
 A plan looks again after each attempt and begins anew where the thing is not in the hand: any of them may fail. Errors,
 tremor, pauses and slips come from the person and the hand; a plan adds none. Poses are in the arm's own base frame.
@@ -31,7 +31,7 @@ _PATIENCE_S = 2.5  # a tool that does not get where it should by then is standin
 
 @dataclass(frozen=True)
 class Waypoint:
-    """Where the tool should go (own base frame) and what the gripper should do; `pace` 1 is the person's own speed."""
+    """Say where the tool should go (own base frame), what the gripper should do, and at what pace (1: usual speed)."""
 
     pose_tool_in_base: Pose
     gripper: float
@@ -40,7 +40,7 @@ class Waypoint:
 
 @dataclass(frozen=True)
 class OperatorObservation:
-    """What one operator sees at one moment. `arrived`: the tool is at the waypoint that was yielded last."""
+    """Hold what one operator sees at one moment; `arrived`: the tool is at the waypoint yielded last."""
 
     observations: Mapping[str, NDArray[np.float64]]
     sim_time_s: float
@@ -56,6 +56,7 @@ Until = Callable[[OperatorObservation], bool]
 
 
 def never(_: OperatorObservation) -> bool:
+    """Never hold: the condition of a step that nothing ends."""
     return False
 
 
@@ -66,7 +67,7 @@ def go(
     short_m: float = 0.0,
     unless: Until = never,
 ) -> PlanStep:
-    """Until the tool is there, or `short_m` before it, or `patience_s` have passed; the aim follows what is seen.
+    """Go until the tool is there, or `short_m` before it, or `patience_s` have passed; the aim follows what is seen.
 
     unless: what makes it pointless to go on.
     """
@@ -80,7 +81,7 @@ def go(
 
 
 def stay(obs: OperatorObservation, waypoint: Waypoint, duration_s: float) -> PlanStep:
-    """For a while."""
+    """Stay at a waypoint for `duration_s`."""
     until_s = obs.sim_time_s + duration_s
     while obs.sim_time_s < until_s:
         obs = yield waypoint
@@ -88,7 +89,7 @@ def stay(obs: OperatorObservation, waypoint: Waypoint, duration_s: float) -> Pla
 
 
 def wait(obs: OperatorObservation, waypoint: Waypoint, human: HumanErrorModel, until: Until) -> PlanStep:
-    """At `waypoint`, until `until` holds; acted upon as late as this person notices things."""
+    """Wait at `waypoint` until `until` holds; acted upon as late as this person notices things."""
     while not until(obs):
         obs = yield waypoint
     return (yield from stay(obs, waypoint, human.notices_s()))
@@ -101,7 +102,7 @@ def pick(
     over_m: float = 0.10,
     unless: Until = never,
 ) -> PlanStep:
-    """One attempt to grip something: over it, down onto it, close. Look afterwards whether it is in the hand.
+    """Try once to grip something: over it, down onto it, close. Look afterwards whether it is in the hand.
 
     grasp: the tool's pose (base frame) that would grip it well; followed until the tool goes down, fixed from then on.
     unless: what makes the attempt pointless while it is under way.

@@ -1,4 +1,4 @@
-"""Which plan belongs to which task."""
+"""Find the plan of a task by the task's name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PlanOf = Callable[[Arm, HumanErrorModel, OperatorObservation], ExpertPlan]
 
 
 def plan_of(task: Task) -> PlanOf:
-    """`plan` in the file `<task.name>.py` beside this one. Raises NotFound for a task that no script can do."""
+    """Return `plan` of the file `<task.name>.py` beside this one; raises NotFound for a task that no script can do."""
     name = f"{__package__}.{task.name}"
     if find_spec(name) is None:
         raise NotFound(

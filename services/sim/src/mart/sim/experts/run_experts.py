@@ -1,4 +1,4 @@
-"""One episode in this process, with a script at every arm: to try a task out."""
+"""Run one episode in this process, with a script at every arm: to try a task out."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mart.sim.world import TaskProgress, World
 
 
 def run_experts(world: World, seed: int, skill: str = "expert", until_s: float | None = None) -> TaskProgress:
-    """Ends with success, with failure, at `until_s` of simulated time or at the task's time limit."""
+    """Play one episode until success, failure, `until_s` (simulated) or the time limit; return the progress then."""
     world.reset(seed)
     randoms = np.random.default_rng(seed).spawn(len(world.arms))
     experts = {

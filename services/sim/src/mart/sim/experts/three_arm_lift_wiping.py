@@ -1,4 +1,4 @@
-"""Two carry the tray onto the rack, in step; the third takes the sponge, waits until they are aside, and wipes."""
+"""Plan lift and wipe: two carry the tray to the rack in step; the third waits with the sponge, then wipes."""
 
 from __future__ import annotations
 
@@ -39,6 +39,7 @@ Vector = NDArray[np.float64]
 
 
 def plan(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPlan:
+    """Yield the waypoints of one arm: the wiper's, or a carrier's."""
     return _wipe(arm, human, obs) if arm.name == WIPER else _carry(arm, human, obs)
 
 
@@ -76,7 +77,7 @@ def _wipe(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertP
 
 
 class _Wiper:
-    """What the third operator sees and does; everything is in the arm's own base frame."""
+    """Wipe as the third operator; all poses are in the arm's own base frame."""
 
     def __init__(self, arm: Arm, human: HumanErrorModel) -> None:
         self._human = human
@@ -87,7 +88,7 @@ class _Wiper:
         return self._sponge(now) @ _BLOCK
 
     def wait_aside(self, obs: OperatorObservation) -> PlanStep:
-        """Holds the sponge up until the tray has left the dirt."""
+        """Hold the sponge up until the tray has left the dirt."""
         up = Waypoint(raised(obs.pose_tool_in_base, _OVER_M), CLOSED, _PACE)
 
         def has_news(now: OperatorObservation) -> bool:
@@ -96,7 +97,7 @@ class _Wiper:
         return (yield from wait(obs, up, self._human, has_news))
 
     def rub(self, obs: OperatorObservation) -> PlanStep:
-        """Over whatever is nearest and still dirty, pressed harder where it does not come off; then up, and stay so."""
+        """Rub what is nearest and still dirty, harder where it does not come off; then go up, and stay so."""
         since_s, left = obs.sim_time_s, len(self._spots)
         offset = obs.pose_tool_in_base.position - self._sponge(obs).position
         turn = obs.pose_tool_in_base.quaternion_wxyz
@@ -112,7 +113,7 @@ class _Wiper:
         return apart_m(self.grip(now), now.pose_tool_in_base) > _LOST_M
 
     def _next_place(self, now: OperatorObservation, dirty: Vector, stuck_s: float) -> Vector:
-        """Where the sponge's middle should be."""
+        """Return where the sponge's middle should be, shape (3,), metres."""
         x, y, _ = self._sponge(now).position
         if len(dirty) == 0 or not _is_aside(now):
             return np.array([x, y, _OVER_M])

@@ -1,4 +1,4 @@
-"""Takes the own handle, waits for the partner, and lifts in step; puts the tray down where the partner has let go."""
+"""Plan drink tray lifting: grip the own handle, wait for the partner, lift in step; down where the partner let go."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ _LIFT_M = 0.14  # 10 cm would do; a loaded arm sags by 1 cm
 
 
 def plan(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPlan:
+    """Yield the waypoints of one arm."""
     carrier = Carrier(arm, human)
     up = np.array([0.0, 0.0, _LIFT_M])
     while True:

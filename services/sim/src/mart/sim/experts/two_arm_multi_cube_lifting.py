@@ -1,4 +1,4 @@
-"""Lifts the own cube; picks it up once more where it was missed, slipped or dropped."""
+"""Plan multi-cube lifting: lift the own cube; pick it up once more where it was missed, slipped or dropped."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ _LOST_M = 0.05  # a cube further from the tool than this is not in the hand
 
 
 def plan(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPlan:
+    """Yield the waypoints of one arm."""
     cube = arm.name.replace("arm", "cube")
     base_from_world = arm.pose_base_in_world.inverse()
 
@@ -36,7 +37,7 @@ def plan(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPl
 
 
 def grip(thing_in_base: Pose) -> Pose:
-    """The tool that grips it: pointing down, fingers across one of its sides, turned by at most 45 degrees."""
+    """Return the tool that grips a cube: pointing down, fingers across a side, turned by at most 45 degrees."""
     rotation = thing_in_base.rotation_matrix()
     flattest = rotation[:, int(np.argmin(np.abs(rotation[2])))]
     quarter = math.pi / 2

@@ -1,4 +1,4 @@
-"""Arm 0 opens the container and holds the hammer out; arm 1 clears the bin, takes the hammer over and lays it there.
+"""Plan the handover: arm 0 opens the container and holds the hammer out; arm 1 clears the bin and lays it there.
 
 The two agree by what they see: arm 1 comes when the hammer hangs still in the air, arm 0 lets go when the other tool
 has rested at the far end of the handle for a while, arm 1 leaves when the other tool has gone.
@@ -56,6 +56,7 @@ _PARTNER_OFF_M, _PARTNER_GONE_M = 0.045, 0.09  # of a tool that has let go, and 
 
 
 def plan(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPlan:
+    """Yield the waypoints of one arm: the fetcher's (arm 0), or the receiver's (arm 1)."""
     if arm.name == "arm0":
         fetcher = _Fetcher(arm, human)
         while True:
@@ -74,7 +75,7 @@ def plan(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPl
 
 
 class _Fetcher:
-    """Arm 0."""
+    """Act as arm 0: open the container, hold the hammer out."""
 
     def __init__(self, arm: Arm, human: HumanErrorModel) -> None:
         self._human = human
@@ -88,22 +89,22 @@ class _Fetcher:
         self.retreat = Waypoint(across(to_base @ _RETREAT), OPEN)
 
     def is_open(self, now: OperatorObservation) -> bool:
-        """The lid is away, and down."""
+        """Whether the lid is away, and down."""
         x, y, z = self._lid(now).position - self._container(now).position
         return math.hypot(x, y) > _OPEN_M and z < _LOW_M
 
     def remove_lid(self, obs: OperatorObservation) -> PlanStep:
-        """One attempt."""
+        """Try once to lay the lid aside."""
         obs = yield from self._knob.pick(obs)
         return (yield from self._knob.put(obs, self._place_of_lid, _CLEAR_M, self.is_open))
 
     def has_to_fetch(self, now: OperatorObservation) -> bool:
-        """The hammer lies where this arm can reach it."""
+        """Whether the hammer lies where this arm can reach it."""
         x, _, z = self._hammer(now).position
         return z < _IN_THE_AIR_Z_M and x < self._offer.position[0] + _FETCHED_TO_M
 
     def offer_hammer(self, obs: OperatorObservation) -> PlanStep:
-        """One attempt: out of the container, held out until the partner has it, let go."""
+        """Try once: out of the container, held out until the partner has it, let go."""
         obs = yield from self._handle.pick(obs, beside_m=next(self._sides))
         obs = yield from self._handle.raise_to(obs, self._offer.position[2])
         still = StillnessDetector(self._partner, _STILL_M, _PARTNER_S)
@@ -126,7 +127,7 @@ class _Fetcher:
 
 
 class _Receiver:
-    """Arm 1."""
+    """Act as arm 1: clear the bin, take the hammer over, lay it there."""
 
     def __init__(self, arm: Arm, human: HumanErrorModel) -> None:
         self._human = human
@@ -148,7 +149,7 @@ class _Receiver:
         return _lies_in(self._trash(now), self._tray(now), _TRAY_HALF_M)
 
     def clear_trash(self, obs: OperatorObservation) -> PlanStep:
-        """One attempt, each across the other two sides of the cube: a wall may be in the way."""
+        """Try once to move the trash, each time across the other two sides of the cube: a wall may be in the way."""
         grip = next(self._grips)
         obs = yield from grip.pick(obs)
         return (yield from grip.put(obs, self._place_of_trash, _CLEAR_M, self.is_clear))
@@ -157,7 +158,7 @@ class _Receiver:
         return _lies_in(self._hammer(now), self._bin(now), _BIN_HALF_M)
 
     def take_hammer(self, obs: OperatorObservation) -> PlanStep:
-        """One attempt: out of the partner's hand into the bin.
+        """Try once: out of the partner's hand into the bin.
 
         From where it fell on this arm's shelf as well; only, a hammer that has not been handed over goes back first.
         """
@@ -184,7 +185,7 @@ class _Receiver:
         return (yield from self._handle.put(obs, self._place_back, _CLEAR_M, self._is_back))
 
     def _is_within_reach(self, now: OperatorObservation) -> bool:
-        """Held out, or on the own shelf."""
+        """Whether the hammer is held out, or lies on the own shelf."""
         return self._is_in_the_air(now) or self._hammer(now).position[0] < self._reach_x_m
 
     def _is_in_the_air(self, now: OperatorObservation) -> bool:
@@ -208,7 +209,7 @@ class _Receiver:
 
 
 def _own_end(hammer: Pose) -> Pose:
-    """What is nearer to the own base: mostly the head's for arm 0, but it may have fallen the other way round."""
+    """Return the end nearer to the own base: mostly the head's for arm 0, but it may have fallen the other way."""
     return hammer @ (_HEAD_END if _points_away(hammer) else _FREE_END)
 
 
@@ -217,7 +218,7 @@ def _other_end(hammer: Pose) -> Pose:
 
 
 def _points_away(hammer: Pose) -> bool:
-    """Its head is nearer to the own base than its handle."""
+    """Whether the hammer's head is nearer to the own base than its handle."""
     return bool(hammer.rotation_matrix()[0, 0] > 0.0)
 
 

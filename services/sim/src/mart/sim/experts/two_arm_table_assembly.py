@@ -1,4 +1,4 @@
-"""Puts the own column into its socket, then carries the tabletop together with the partner, each by the own knob.
+"""Plan the assembly: put the own column into its socket, then carry the tabletop with the partner, each by a knob.
 
 The two agree by what they see: who has come to the own knob waits until the partner's tool rests at the other one, and
 whoever is ahead on the way waits for the other.
@@ -58,6 +58,7 @@ _PATIENCE_S = 8.0
 
 
 def plan(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPlan:
+    """Yield the waypoints of one arm."""
     column, top = _Column(arm, human), _Tabletop(arm, human)
     while True:
         while not column.is_seated(obs):
@@ -80,7 +81,7 @@ class _Column:
         return apart_m(column, self._place(now)) < _SEEN_SEATED_M and uprightness(column) > 0.985
 
     def place(self, obs: OperatorObservation) -> PlanStep:
-        """One attempt."""
+        """Try once to put the own column into its socket."""
         lies = self._lies(obs)
         obs = yield from self._grip.pick(obs)
         if lies:
@@ -93,7 +94,7 @@ class _Column:
         )
 
     def _leans(self, now: OperatorObservation) -> bool:
-        """More than it does when it hangs freely."""
+        """Whether the column leans more than it does when it hangs freely."""
         return uprightness(self._column(now)) < _LEANING
 
     def _lies(self, now: OperatorObservation) -> bool:
@@ -103,7 +104,7 @@ class _Column:
         return self._column(now) @ _NECK
 
     def _tool(self, now: OperatorObservation) -> Pose:
-        """With the fingers across a column that lies, so that it swings upright between them."""
+        """Return the tool with the fingers across a column that lies, so that it swings upright between them."""
         neck = self._neck(now)
         return across(neck @ _AXIS_AS_X) if self._lies(now) else across(neck, math.pi / 2)
 
@@ -127,7 +128,7 @@ class _Tabletop:
         return apart_m(top, self._place(now)) < _SEEN_SEATED_M and uprightness(top) > 0.995
 
     def mount(self, obs: OperatorObservation) -> PlanStep:
-        """One attempt: the own knob in the hand, then up, over the pegs and down together."""
+        """Try once: grip the own knob, then up, over the pegs and down together."""
         obs = yield from self._grip.pick(obs)
         here, still = (
             Waypoint(obs.pose_tool_in_base, CLOSED),
@@ -156,7 +157,7 @@ class _Tabletop:
         return (yield from self._grip.let_go(obs))
 
     def _carry(self, obs: OperatorObservation, goal: ObservedPose, until: Until) -> PlanStep:
-        """The tabletop towards its goal by the own knob, waiting while the own end is ahead of the other."""
+        """Bring the tabletop to its goal by the own knob, waiting while the own end is ahead of the other."""
 
         def pace(now: OperatorObservation) -> float:
             top, end = self._top(now), goal(now)
@@ -169,7 +170,7 @@ class _Tabletop:
         return (yield from self._grip.bring(obs, knob_goal, until, pace=pace, patience_s=_PATIENCE_S))
 
     def _knob(self, now: OperatorObservation) -> Pose:
-        """With the tool that grips it: round as it is, that need not lean when the tabletop does."""
+        """Find the knob with the tool that grips it: round as it is, that need not lean when the tabletop does."""
         return across(self._top(now) @ self._own)
 
     def _place(self, now: OperatorObservation) -> Pose:
@@ -182,7 +183,7 @@ class _Tabletop:
         return self._grip.is_over(now, lambda now: across(self._place(now) @ self._own))
 
     def _raised(self, now: OperatorObservation) -> Pose:
-        """Where it is, but level and as high as over the pegs."""
+        """Return the tabletop's place, but level and as high as over the pegs."""
         top = self._top(now)
         place = np.array([*top.position[:2], self._over_pegs(now).position[2]])
         return standing(Pose(place, top.quaternion_wxyz), top, math.tau)

@@ -1,4 +1,4 @@
-"""`mart replica`: lockstep worlds on the bus. Requests are answered one after another, below the rooms' priority."""
+"""Serve worlds on the bus (`mart replica`): requests are answered one after another, below the rooms' priority."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _LONGEST_WAIT_S = 0.5  # so that a stop is noticed
 
 
 def serve_replica(settings: ReplicaSettings) -> None:
-    """Until the process is asked to stop."""
+    """Answer rollout requests until the process is asked to stop."""
     os.nice(settings.niceness)
     requests: queue.SimpleQueue[Request] = queue.SimpleQueue()
     archive = DivergenceArchive(settings.diverged_dir, settings.name, clock.wall_ns)

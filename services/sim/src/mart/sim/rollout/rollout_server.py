@@ -1,4 +1,4 @@
-"""Worlds stepped by requests, as fast as the machine allows: for training, evaluation and re-simulation.
+"""Step worlds by requests, as fast as the machine allows: for training, evaluation and re-simulation.
 
 The barrier's rule holds here too: a request carries an action for every arm of every world, so each world advances
 exactly when all its arms have been told what to do. The worlds are those of the rooms.
@@ -31,7 +31,7 @@ _DIGEST_BYTES = 16
 
 @dataclass(frozen=True)
 class WorldSpec:
-    """What decides a world's model."""
+    """Name what decides a world's model."""
 
     task: str
     control_hz: float
@@ -52,7 +52,7 @@ class _Session:
 
 
 class RolloutServer:
-    """Answers rollout requests. Raises errors of the tree; `now_s` is monotonic.
+    """Answer rollout requests with worlds of this process; `threads` step a batch, all cores by default.
 
     explain: says in words why a world has failed whose physics left its bounds.
     """
@@ -66,6 +66,7 @@ class RolloutServer:
         self._sessions: dict[str, _Session] = {}
 
     def answer(self, request: RolloutRequest, now_s: float) -> RolloutReply:
+        """Do what a request asks at `now_s` (monotonic). Raises errors of the tree."""
         self._forget_idle(now_s)
         match request.WhichOneof("what"):
             case "reset":
@@ -163,7 +164,7 @@ class RolloutServer:
 
 
 def _digests(world: World, first_state: bytes, actions: Array) -> bytes:
-    """Raises InvalidInput where `first_state` is not this model's, Diverged where the physics left its bounds."""
+    """Digest every state after the first; raises InvalidInput where `first_state` is not this model's, or Diverged."""
     world.set_integration_state(first_state)
     digests = []
     for action in actions:
@@ -173,7 +174,7 @@ def _digests(world: World, first_state: bytes, actions: Array) -> bytes:
 
 
 def _actions(payload: bytes, shape: tuple[int, ...]) -> Array:
-    """float64, little-endian. Raises InvalidInput where the size is another."""
+    """Read float64, little-endian, of this shape; raises InvalidInput where the size is another."""
     expected = 8 * math.prod(shape)
     if len(payload) != expected:
         raise InvalidInput(f"Actions of {len(payload)} bytes were given; shape {shape} takes {expected}.")
@@ -181,7 +182,7 @@ def _actions(payload: bytes, shape: tuple[int, ...]) -> Array:
 
 
 def _running(payload: bytes, worlds: int) -> Flags:
-    """uint8 a world; empty: all."""
+    """Read one flag (uint8) a world; no bytes mean that all run."""
     if len(payload) not in (0, worlds):
         raise InvalidInput(f"{len(payload)} flags were given; give one for each of {worlds} worlds, or none.")
     return np.frombuffer(payload, np.uint8).astype(bool) if payload else np.ones(worlds, bool)

@@ -1,4 +1,4 @@
-"""The barrier: the world advances only when every operator has given a new command.
+"""Advance the world only when every operator has given a new command: the barrier.
 
 A pure state machine: commands, seats and `now` in, decisions out. No bus, no threads, no clock. Times are seconds on
 one monotonic clock.
@@ -39,7 +39,7 @@ FREED_AFTER_S = 30.0
 
 @dataclass(frozen=True)
 class TickInputs:
-    """A tick that fires now.
+    """Hold what a tick that fires now is stepped with.
 
     commands: the newest command of every arm that is not on hold. straggler: the arm that completed the barrier last,
     None where nobody drives; late_s: how long the tick waited for it beyond the pace.
@@ -53,7 +53,7 @@ class TickInputs:
 
 @dataclass(frozen=True)
 class Decision:
-    """What holds now. Ask again at `next_s`, or when a command arrives, whichever is first.
+    """Tell what holds now. Ask again at `next_s`, or when a command arrives, whichever is first.
 
     waiting_for: (arm, for how many seconds); the arms without a command, or those that hold an emergency stop.
     silent: arms whose seat is to be given up.
@@ -68,7 +68,7 @@ class Decision:
 
 @dataclass
 class _SeatState:
-    """What the barrier knows of one seat."""
+    """Hold what the barrier knows of one seat."""
 
     operator: Operator
     epoch: int
@@ -85,7 +85,7 @@ class _SeatState:
 
 
 class Barrier:
-    """`arms` start on hold with epoch 0; `seat` puts operators in."""
+    """Decide when the world ticks; `arms` start on hold with epoch 0, `seat` puts operators in."""
 
     def __init__(self, arms: Iterable[str], period_s: float, now_s: float) -> None:
         self.pace = Pace(period_s, now_s)
@@ -94,12 +94,12 @@ class Barrier:
         self._driven: dict[str, _SeatState] = {}  # those of them that are not on hold
 
     def seat(self, arm: str, operator: Operator, epoch: int, now_s: float) -> None:
-        """The seat has a new holder: what the old one said no longer counts."""
+        """Give a seat to a new holder: what the old one said no longer counts."""
         self._seats[arm] = _SeatState(operator, epoch, now_s)
         self._driven = {arm: seat for arm, seat in self._seats.items() if seat.driven}
 
     def offer(self, received: ReceivedCommand) -> CommandRejection | None:
-        """Takes a command, or says why not. Rejections are counted."""
+        """Take a command, or return why not; rejections are counted in `rejected`."""
         reason = self._objection(received)
         if reason is not None:
             self.rejected[reason] += 1
@@ -117,17 +117,17 @@ class Barrier:
         return None
 
     def newest(self, arm: str) -> ReceivedCommand | None:
-        """The newest accepted command of the arm's present operator, used or not."""
+        """Return the newest accepted command of the arm's present operator, used or not."""
         return self._seats[arm].newest
 
     def restart(self, now_s: float) -> None:
-        """The world was reset: commands given for the old one are void, and the pace begins anew."""
+        """Void the commands given for the world before a reset, and begin the pace anew."""
         for seat in self._seats.values():
             seat.unused = False
         self.pace.restart(now_s)
 
     def advance(self, now_s: float, gate_open: bool) -> Decision:
-        """Decides. Where a tick fires, its commands count as used. `gate_open`: the episode lets the world run."""
+        """Decide. Where a tick fires, its commands count as used. `gate_open`: the episode lets the world run."""
         phase, waiting_for = self._phase(now_s)
         world_may_run = gate_open and phase in (BARRIER_PHASE_RUNNING, BARRIER_PHASE_STALLED)
         inputs = (
@@ -141,7 +141,7 @@ class Barrier:
         return Decision(phase, waiting_for, silent, inputs, self._next_s(now_s, world_may_run))
 
     def _complete(self) -> bool:
-        """Everyone who drives has given a new command."""
+        """Whether everyone who drives has given a new command."""
         return all(seat.unused for seat in self._driven.values())
 
     def _objection(self, received: ReceivedCommand) -> CommandRejection | None:
@@ -185,7 +185,7 @@ class Barrier:
         return TickInputs(commands, due_s, straggler, late_s)
 
     def _next_s(self, now_s: float, world_may_run: bool) -> float:
-        """When the answer may change without a new command; `now_s` where it has changed already."""
+        """Return when the answer may change without a new command; `now_s` where it has changed already."""
         moments = [
             moment
             for seat in self._driven.values()

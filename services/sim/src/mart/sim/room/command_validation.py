@@ -1,4 +1,4 @@
-"""What a command must look like to be heard at all: the sim's edge towards the bus. Pure."""
+"""Validate commands as they come from the bus: what one must look like to be heard at all. Pure."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NORM_TOLERANCE = 0.01
 
 
 class CommandRejection(StrEnum):
-    """Why a command was not used."""
+    """Name why a command was not used."""
 
     MALFORMED = "not a command"
     UNKNOWN_ARM = "unknown arm"
@@ -32,7 +32,7 @@ class CommandRejection(StrEnum):
 
 
 class CommandRejected(InvalidInput):
-    """A command that cannot be used, whoever holds the seat."""
+    """Refuse a command that cannot be used, whoever holds the seat; `reason` says why."""
 
     def __init__(self, reason: CommandRejection) -> None:
         super().__init__(f"A command was rejected: {reason}.")
@@ -41,7 +41,7 @@ class CommandRejected(InvalidInput):
 
 @dataclass(frozen=True)
 class ReceivedCommand:
-    """A well-formed command and when it came: monotonic seconds for decisions, wall nanoseconds for the record."""
+    """Hold a well-formed command and when it came: monotonic seconds to decide, wall nanoseconds to record."""
 
     command: Command
     target_tool_in_base: Pose
@@ -50,23 +50,27 @@ class ReceivedCommand:
 
     @property
     def arm(self) -> str:
+        """The arm that the command is for."""
         return self.command.arm
 
     @property
     def seat_epoch(self) -> int:
+        """The epoch of the seat under which it was given."""
         return self.command.seat_epoch
 
     @property
     def sequence(self) -> int:
+        """Its number; a later command of the same seat has a greater one."""
         return self.command.sequence
 
     @property
     def emergency_stop(self) -> bool:
+        """Whether it holds the emergency stop."""
         return self.command.emergency_stop
 
 
 def validate_command(payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> ReceivedCommand:
-    """The command in `payload`, which came on the key of `arm`. Raises Rejected with the reason."""
+    """Return the command in `payload`, which came on the key of `arm`; raises CommandRejected with the reason."""
     try:
         command = codec.decode(Command, payload, MAX_COMMAND_BYTES)
     except InvalidInput as error:

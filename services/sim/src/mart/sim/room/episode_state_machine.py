@@ -1,4 +1,4 @@
-"""Decide how an episode goes on. Pure: requests, ticks and `now` in, what to do next out.
+"""Decide how an episode goes on. Pure: requests, ticks and `now` in, effects out, which the room carries out.
 
     practice ── everyone ready ──► countdown ── 3 s, all present ──► recording ── outcome ──► ended ── 2 s ──► practice
 
@@ -39,7 +39,7 @@ ENDED_S = 2.0
 
 @dataclass(frozen=True)
 class Terms:
-    """What holds for every episode of a room, and is told when one starts. None: as long as the task allows."""
+    """Hold what is true of every episode of a room and told at its start; None: as long as the task allows."""
 
     lockstep: bool = False
     skill: str = ""
@@ -48,14 +48,14 @@ class Terms:
 
 @dataclass(frozen=True)
 class ResetWorld:
-    """The world is to be reset with `seed`."""
+    """Ask for the world to be reset with `seed`."""
 
     seed: int
 
 
 @dataclass(frozen=True)
 class BeginEpisode:
-    """Recording begins: the next state is the episode's first."""
+    """Ask for the recording to begin: the next state is the episode's first."""
 
     number: int
     seed: int
@@ -63,6 +63,8 @@ class BeginEpisode:
 
 @dataclass(frozen=True)
 class EndEpisode:
+    """Ask for the recording to end with this outcome."""
+
     number: int
     outcome: Outcome
     ticks: int
@@ -73,13 +75,13 @@ Effect = ResetWorld | BeginEpisode | EndEpisode
 
 
 def seed_of(room_seed: int, stream: str, number: int) -> int:
-    """The seed, below 2³², of a room's reset number `number`; `stream` keeps episodes apart from practice."""
+    """Return the seed, below 2³², of a room's reset number `number`; `stream` keeps episodes apart from practice."""
     entropy = (room_seed, *stream.encode(), number)
     return int(np.random.SeedSequence(entropy).generate_state(1, np.uint32)[0])
 
 
 class EpisodeStateMachine:
-    """Where a room stands. `number` is the newest episode's, 0 before the first."""
+    """Hold where a room stands between practice and outcome; `number` is the newest episode's, 0 before any."""
 
     def __init__(self, room_seed: int, horizon_ticks: int, number: int = 0) -> None:
         self.number = number
@@ -97,26 +99,29 @@ class EpisodeStateMachine:
 
     @property
     def recording(self) -> bool:
+        """Whether an episode is being recorded."""
         return self.phase == EPISODE_PHASE_RECORDING
 
     @property
     def world_runs(self) -> bool:
+        """Whether the world may tick: in practice and while recording."""
         return self.phase in (EPISODE_PHASE_PRACTICE, EPISODE_PHASE_RECORDING)
 
     def is_ready(self, arm: str) -> bool:
+        """Whether the arm's operator has said to be ready."""
         return arm in self._ready
 
     def remaining_s(self, now_s: float) -> float:
-        """Of the countdown."""
+        """Return the seconds left of the countdown, 0 outside one."""
         return max(0.0, self._until_s - now_s) if self.phase == EPISODE_PHASE_COUNTDOWN else 0.0
 
     def next_s(self, now_s: float) -> float:
-        """When `advance` may have something to do."""
+        """Return when `advance` may have something to do (monotonic seconds), infinity where it has not."""
         waits = self.phase in (EPISODE_PHASE_COUNTDOWN, EPISODE_PHASE_ENDED) and self._until_s > now_s
         return self._until_s if waits else float("inf")
 
     def answer(self, request: EpisodeRequest, seats: SeatTable, now_s: float) -> Sequence[Effect]:
-        """Does what a request asks. Raises Conflict, Forbidden, InvalidInput or NotFound."""
+        """Do what a request asks; raises Conflict, Forbidden, InvalidInput or NotFound."""
         match request.WhichOneof("what"):
             case "ready":
                 return self._answer_ready(request.ready, seats, now_s)
@@ -127,7 +132,7 @@ class EpisodeStateMachine:
         raise InvalidInput("An empty episode request was given; ask for ready, finish or reset.")
 
     def seats_changed(self, seats: SeatTable, now_s: float) -> Sequence[Effect]:
-        """Somebody came, left or was replaced."""
+        """Void all readiness, because somebody came, left or was replaced."""
         self._ready = frozenset()
         if self.phase == EPISODE_PHASE_COUNTDOWN:
             return self.abandon(OUTCOME_DISCARDED, "the seats changed", now_s)
@@ -136,7 +141,7 @@ class EpisodeStateMachine:
         return ()
 
     def advance(self, everyone_present: bool, now_s: float) -> Sequence[Effect]:
-        """Time has passed. A countdown waits at 0 until everyone is present."""
+        """Go on where time has passed. A countdown waits at 0 until everyone is present."""
         if now_s < self._until_s:
             return ()
         if self.phase == EPISODE_PHASE_COUNTDOWN and everyone_present:
@@ -147,7 +152,7 @@ class EpisodeStateMachine:
         return ()
 
     def ticked(self, success: bool, failed: str | None, now_s: float) -> Sequence[Effect]:
-        """The world advanced; `success` and `failed` are what the task says of this instant."""
+        """Count a tick; `success` and `failed` are what the task says of this instant."""
         if not self.recording:
             return ()
         self.ticks += 1
@@ -160,17 +165,18 @@ class EpisodeStateMachine:
         return ()
 
     def interrupt(self) -> None:
-        """The room was paused or stopped."""
+        """Mark a recording as interrupted, because the room was paused or stopped."""
         self.interrupted = self.interrupted or self.recording
 
     def end(self, outcome: Outcome, reason: str, now_s: float) -> Sequence[Effect]:
+        """End the recording with this outcome."""
         self.phase = EPISODE_PHASE_ENDED
         self.outcome, self.reason = outcome, reason
         self._until_s = now_s + ENDED_S
         return (EndEpisode(self.number, outcome, self.ticks, reason),)
 
     def abandon(self, outcome: Outcome, reason: str, now_s: float) -> Sequence[Effect]:
-        """Back to practice with a fresh world at once; a recording ends with this outcome."""
+        """Go back to practice with a fresh world at once; a recording ends with this outcome."""
         if self.recording:
             return (*self.end(outcome, reason, now_s), *self._practice())
         if self.phase == EPISODE_PHASE_COUNTDOWN:
@@ -233,7 +239,7 @@ class EpisodeStateMachine:
 
 
 def _require_say(seats: SeatTable, about: tuple[SeatHolder, ...], holder_id: str) -> None:
-    """Only who sits in one of the seats `about` has a say; where no human sits, anybody has."""
+    """Raise Forbidden unless the holder sits in one of the seats `about`; where no human sits, anybody may say."""
     if any(holder_id and seat.holder_id == holder_id for seat in about):
         return
     if holder_id or seats.of_operator(OPERATOR_HUMAN):

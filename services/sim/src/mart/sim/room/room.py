@@ -1,9 +1,4 @@
-"""One room: seats, barrier, episode and world, put together. Used by one thread at a time, which says what time it is
-(`now_s`, monotonic seconds).
-
-What it has to say goes to a `RoomPublisher`, what must survive a crash to `keep`, which may raise OSError. `explain`
-says in words what became of a world whose physics left its bounds.
-"""
+"""Put seats, barrier, episode and world together into one room."""
 
 from __future__ import annotations
 
@@ -50,19 +45,28 @@ REPEAT_S = 0.2  # status always; the newest state while no tick fires, for those
 
 
 class RoomPublisher(Protocol):
-    """Where a room speaks. None of these may block."""
+    """Publish what a room says. None of these may block."""
 
-    def state(self, state: State) -> None: ...
+    def state(self, state: State) -> None:
+        """Publish the state after a tick or a reset."""
 
     def repeat_state(self) -> None:
-        """The newest state once more, the very same bytes."""
+        """Publish the newest state once more, the very same bytes."""
 
-    def status(self, status: RoomStatus) -> None: ...
+    def status(self, status: RoomStatus) -> None:
+        """Publish how the room stands."""
 
-    def event(self, event: Event) -> None: ...
+    def event(self, event: Event) -> None:
+        """Publish what has just happened."""
 
 
 class Room:
+    """Run one room; used by one thread at a time, which says what time it is (`now_s`, monotonic seconds).
+
+    What it has to say goes to `publisher`, what must survive a crash to `keep`, which may raise OSError. `explain` says
+    in words what became of a world whose physics left its bounds.
+    """
+
     def __init__(
         self,
         name: str,
@@ -76,14 +80,8 @@ class Room:
         terms: Terms = Terms(),  # noqa: B008 - frozen
         explain: Callable[[Diverged], str] = str,
     ) -> None:
-        self._explain = explain
-        self._name, self._world, self._publisher, self._keep, self._record = (
-            name,
-            world,
-            publisher,
-            keep,
-            record,
-        )
+        self._name, self._world, self._record = name, world, record
+        self._publisher, self._keep, self._explain = publisher, keep, explain
         self._boot_ns = clock.wall_ns()
         self._seats = SeatTable(world.arms)
         self._seats.restore(record.holders())
@@ -104,16 +102,16 @@ class Room:
 
     @property
     def rejected(self) -> Counter[CommandRejection]:
-        """Commands that were not used, by reason, since the room opened."""
+        """Count the commands that were not used since the room opened, by reason."""
         return self._barrier.rejected
 
     @property
     def in_practice(self) -> bool:
-        """No episode is under way."""
+        """Whether no episode is under way."""
         return self._episode.phase == EPISODE_PHASE_PRACTICE
 
     def hear(self, payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> None:
-        """A command came on the key of `arm`."""
+        """Take a command that came on the key of `arm`, or count why it cannot be used."""
         try:
             received = validate_command(payload, arm, at_s, at_wall_ns)
         except CommandRejected as error:
@@ -123,6 +121,7 @@ class Room:
                 self._ticker.aim(received)
 
     def answer_seat(self, request: SeatRequest, now_s: float) -> RoomReply:
+        """Do what a seat request asks; the reply holds the status, and the seat or an error."""
         try:
             before = list(self._seats)
             seat = self._seats.answer(request)
@@ -133,6 +132,7 @@ class Room:
         return RoomReply(status=self.status(now_s), seat=self._seat_message(seat))
 
     def answer_episode(self, request: EpisodeRequest, now_s: float) -> RoomReply:
+        """Do what an episode request asks; the reply holds the status, and an error where it was refused."""
         try:
             self._do(self._episode.answer(request, self._seats, now_s), now_s)
         except MartError as error:
@@ -141,11 +141,12 @@ class Room:
         return RoomReply(status=self.status(now_s))
 
     def episode_saved(self, saved: Event.EpisodeSaved) -> None:
+        """Count an episode that the recorder has saved."""
         good = saved.verified and saved.outcome == OUTCOME_SUCCESS
         self._remember(self._record.with_changes(saved=self._record.saved + 1, good=self._record.good + good))
 
     def advance(self, now_s: float) -> float:
-        """Does what is due; returns the time at which to call again if nothing arrives before."""
+        """Do what is due; return the time at which to call again if nothing arrives before."""
         decision = self._barrier.advance(now_s, self._episode.world_runs)
         if decision.inputs is not None:
             self._fire(decision.inputs, now_s)
@@ -161,6 +162,7 @@ class Room:
         return min(decision.next_s, self._episode.next_s(now_s), self._status_due_s, self._repeat_due_s)
 
     def status(self, now_s: float) -> RoomStatus:
+        """Return how the room stands at `now_s`."""
         progress = self._ticker.progress
         return RoomStatus(
             room=self._name,
@@ -284,7 +286,7 @@ class Room:
         return room_messages.seat(seat, self._episode.is_ready(seat.arm), newest)
 
     def _remember(self, record: SavedRoom) -> None:
-        """A disk that is full must not stop the world."""
+        """Keep the record over a restart; a disk that is full must not stop the world."""
         self._record = record
         try:
             self._keep(record)

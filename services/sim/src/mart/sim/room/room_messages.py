@@ -1,4 +1,4 @@
-"""What the sim says: states, the room's status and events, as messages. Pure."""
+"""Build the messages that a room says: states, status and events. Pure."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Fields = dict[str, Any]
 def arm_state(
     seen: Seen, seat: SeatHolder, received: ReceivedCommand | None, action: Sequence[float]
 ) -> Fields:
-    """One arm after a tick, an ArmState.
+    """Return the fields of an ArmState: one arm after a tick.
 
     received: the command that moved it, None for a held arm. action: empty after a reset.
     """
@@ -60,12 +60,12 @@ def arm_state(
 
 
 def observations(seen: Seen) -> list[Fields]:
-    """Each one an Observation."""
+    """Return the fields of each Observation."""
     return [{"name": name, "value": value.ravel().tolist()} for name, value in seen.items()]
 
 
 def progress(progress: TaskProgress) -> Fields:
-    """The message of the same name."""
+    """Return the fields of a Progress message."""
     return {
         "subtasks": [{"name": name, "done": done} for name, done in progress.subtasks.items()],
         "success_now": progress.success_now,
@@ -76,7 +76,7 @@ def progress(progress: TaskProgress) -> Fields:
 
 
 def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None) -> Seat:
-    """`newest`: the newest command of this seat's operator."""
+    """Return the message of a seat; `newest`: the newest command of its operator."""
     return Seat(
         arm=holder.arm,
         operator=holder.operator,
@@ -91,6 +91,7 @@ def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None) -> Sea
 
 
 def episode(episode: EpisodeStateMachine, control_period_s: float, now_s: float) -> Episode:
+    """Return the message of where the episode stands."""
     return Episode(
         number=episode.number,
         phase=episode.phase,
@@ -105,20 +106,23 @@ def episode(episode: EpisodeStateMachine, control_period_s: float, now_s: float)
 
 
 def plan(record: SavedRoom) -> Plan | None:
+    """Return how many good episodes are wanted and there, None where nobody counts."""
     wanted = record.plan
     return Plan(episodes=wanted.episodes, good=record.good - wanted.good_before) if wanted else None
 
 
 def waiting(arms: Iterable[tuple[str, float]]) -> list[Waiting]:
+    """Return the arms that are waited for, and for how many seconds."""
     return [Waiting(arm=arm, since_s=since_s) for arm, since_s in arms]
 
 
 def barrier_changed(phase: BarrierPhase, arms: Iterable[tuple[str, float]]) -> Event:
+    """Return the event of a new barrier phase."""
     return Event(barrier_changed=Event.BarrierChanged(phase=phase, waiting_for=waiting(arms)))
 
 
 def notice(level: str, text: str) -> Event:
-    """`level`: info, warning or error."""
+    """Return an event that people read; `level`: info, warning or error."""
     event = Event()
     event.notice.level, event.notice.text = level, text
     setattr(event.notice, "from", "sim")  # a keyword in Python

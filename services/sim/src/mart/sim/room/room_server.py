@@ -1,4 +1,4 @@
-"""Everything that comes in from the bus for one room."""
+"""Receive everything that comes from the bus for one room."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ _MAX_EVENT_BYTES = 64 * 1024
 
 
 class RoomServer:
-    """Turns what comes in into work for the room, which `do` does now or later; never does any by itself.
+    """Turn what comes in into work for the room, which `submit` does now or later; never do any by itself.
 
-    `garbled` counts undecodable payloads by where they came.
+    garbled: counts undecodable payloads by where they came. looks: the same world with detailed meshes, to show.
     """
 
     def __init__(
@@ -34,14 +34,14 @@ class RoomServer:
         room: Room,
         world: World,
         *,
-        do: Callable[[Callable[[], None]], None],
+        submit: Callable[[Callable[[], None]], None],
         garbled: Counter[str],
         now_s: Callable[[], float] = clock.monotonic_s,
         looks: World | None = None,
     ) -> None:
         self._bus, self._name, self._now_s = bus, name, now_s
         self._room = room
-        self._do, self._garbled = do, garbled
+        self._submit, self._garbled = submit, garbled
         self._models = {
             what: codec.encode(model_message(shown))
             for what, shown in ((b"", world), (keys.DETAILED, looks or world))
@@ -54,10 +54,11 @@ class RoomServer:
         ]
 
     def hear_commands(self) -> None:
-        """Of operators that are elsewhere."""
+        """Receive the commands of operators in other processes too."""
         self._open.append(self._bus.subscribe(keys.commands(self._name), self._on_command))
 
     def close(self) -> None:
+        """Withdraw everything from the bus."""
         for declared in self._open:
             declared.close()
 
@@ -65,7 +66,7 @@ class RoomServer:
         hear = partial(
             self._room.hear, sample.payload, keys.arm_of(sample.key), self._now_s(), clock.wall_ns()
         )
-        self._do(hear)
+        self._submit(hear)
 
     def _on_event(self, sample: Sample) -> None:
         try:
@@ -74,18 +75,19 @@ class RoomServer:
             self._garbled["event"] += 1
             return
         if event.WhichOneof("what") == "episode_saved":
-            self._do(partial(self._room.episode_saved, event.episode_saved))
+            self._submit(partial(self._room.episode_saved, event.episode_saved))
 
     def _on_seat_request(self, request: Request) -> None:
-        self._do(partial(self._answer, request, SeatRequest, self._room.answer_seat))
+        self._submit(partial(self._answer, request, SeatRequest, self._room.answer_seat))
 
     def _on_episode_request(self, request: Request) -> None:
-        self._do(partial(self._answer, request, EpisodeRequest, self._room.answer_episode))
+        self._submit(partial(self._answer, request, EpisodeRequest, self._room.answer_episode))
 
     def _on_model_request(self, request: Request) -> None:
         request.reply(self._models.get(request.payload, self._models[b""]))
 
     def _answer(self, request: Request, kind: type[R], answer: Callable[[R, float], RoomReply]) -> None:
+        """Answer a request; what cannot be decoded is refused and counted."""
         try:
             reply = answer(codec.decode(kind, request.payload, MAX_REQUEST_BYTES), self._now_s())
         except MartError as error:

@@ -1,4 +1,4 @@
-"""What a room keeps over a restart, a crash included: its seed, its count of episodes, its seats with their epochs."""
+"""Keep what a room knows over a restart, a crash included: seed, count of episodes, seats with their epochs."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from mart.sim.room.seats import Driver, SeatHolder
 
 
 class SavedDriver(BaseModel):
+    """Store who drives, in words."""
+
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     operator: Literal["human", "policy", "script", "hold"]
@@ -24,22 +26,26 @@ class SavedDriver(BaseModel):
     policy: str = ""
 
     def driver(self) -> Driver:
+        """Return the driver that this stores."""
         return Driver(operator_from_word(self.operator), self.holder_id, self.name, self.policy)
 
 
 class SavedSeat(SavedDriver):
+    """Store one seat, and the machine that its human relieved."""
+
     arm: str
     epoch: int = Field(ge=1)
     relieved: SavedDriver | None = None
 
     def holder(self) -> SeatHolder:
+        """Return the seat that this stores."""
         return SeatHolder(
             self.arm, self.epoch, self.driver(), self.relieved.driver() if self.relieved else None
         )
 
 
 class SavedPlan(BaseModel):
-    """So many good `episodes` of `task` are wanted; `good_before`: the room's good ones when that was said."""
+    """Store that so many good `episodes` of `task` are wanted; `good_before`: the good ones when that was said."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -49,7 +55,7 @@ class SavedPlan(BaseModel):
 
 
 class SavedRoom(BaseModel):
-    """`episodes` is the newest number; `saved` and `good` count what the recorder reported."""
+    """Store one room: `episodes` is the newest number; `saved` and `good` count what the recorder reported."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -61,7 +67,7 @@ class SavedRoom(BaseModel):
     plan: SavedPlan | None = None
 
     def planned(self, task: str, episodes: int | None) -> SavedRoom:
-        """With so many good episodes of this task wanted: goes on with the same plan, begins anew with another."""
+        """Return it with so many good episodes of this task wanted: the same plan goes on, another begins anew."""
         if episodes is None:
             return self.with_changes(plan=None)
         if self.plan is not None and (self.plan.task, self.plan.episodes) == (task, episodes):
@@ -69,12 +75,15 @@ class SavedRoom(BaseModel):
         return self.with_changes(plan=SavedPlan(task=task, episodes=episodes, good_before=self.good))
 
     def holders(self) -> list[SeatHolder]:
+        """Return the stored seats."""
         return [seat.holder() for seat in self.seats]
 
     def with_seats(self, seats: Iterable[SeatHolder]) -> SavedRoom:
+        """Return it with these seats."""
         return self.with_changes(seats=tuple(_seat_record(seat) for seat in seats))
 
     def with_changes(self, **changes: Any) -> SavedRoom:
+        """Return it with some fields changed."""
         return self.model_copy(update=changes)
 
 
@@ -90,7 +99,7 @@ def _fields(driver: Driver) -> dict[str, str]:
 
 
 def load(path: Path) -> SavedRoom | None:
-    """None where the room never ran before. Raises Corrupt where the file is no record."""
+    """Read a room, None where it never ran before; raises Corrupt where the file is no record of one."""
     if not path.exists():
         return None
     try:
@@ -102,5 +111,5 @@ def load(path: Path) -> SavedRoom | None:
 
 
 def save(path: Path, record: SavedRoom) -> None:
-    """It names holders, so it is readable by its owner alone."""
+    """Write a room; it names holders, so the file is readable by its owner alone."""
     write_atomically(path, record.model_dump_json(indent=2).encode())

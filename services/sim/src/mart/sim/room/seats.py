@@ -1,4 +1,4 @@
-"""Who may drive which arm. Pure: requests in, a changed table or an error out.
+"""Decide who may drive which arm. Pure: requests in, a changed table or an error out.
 
 A seat's epoch grows with every change of its holder, so commands and tokens of an earlier holder are recognised.
 Machines (scripts and policies) make room for people: whoever claims a machine's seat takes over from it, also in
@@ -30,8 +30,10 @@ _POLICY_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
 
 @dataclass(frozen=True)
 class Driver:
-    """Who drives. `holder_id` is empty for hold, script and a promoted policy, which nobody in particular brought;
-    `name` is what others see; `policy` names a promoted policy."""
+    """Tell who drives; `name` is what others see, `policy` names a promoted policy.
+
+    `holder_id` is empty for hold, script and a promoted policy, which nobody in particular brought.
+    """
 
     operator: Operator = OPERATOR_HOLD
     holder_id: str = ""
@@ -40,11 +42,12 @@ class Driver:
 
     @property
     def is_machine(self) -> bool:
+        """Whether it is a script or a policy."""
         return self.operator in (OPERATOR_SCRIPT, OPERATOR_POLICY)
 
     @property
     def called(self) -> str:
-        """By name, or by what it is."""
+        """Return what people call it: its name, or what it is."""
         return self.name or operator_word(self.operator)
 
 
@@ -53,7 +56,7 @@ NOBODY = Driver()
 
 @dataclass(frozen=True)
 class SeatHolder:
-    """One seat. `relieved`: the machine that its human took over from, if any."""
+    """Hold one seat. `relieved`: the machine that its human took over from, if any."""
 
     arm: str
     epoch: int = 1
@@ -62,18 +65,23 @@ class SeatHolder:
 
     @property
     def operator(self) -> Operator:
+        """Which kind of operator drives."""
         return self.driver.operator
 
     @property
     def holder_id(self) -> str:
+        """Who holds the seat, empty where nobody in particular does."""
         return self.driver.holder_id
 
     @property
     def name(self) -> str:
+        """What others see."""
         return self.driver.name
 
 
 class SeatTaken(Conflict):
+    """Refuse a seat that somebody else holds."""
+
     def __init__(self, seat: SeatHolder) -> None:
         super().__init__(
             f"{seat.arm} was asked for, but {seat.name or 'someone'} ({operator_word(seat.operator)}) sits there; "
@@ -82,7 +90,7 @@ class SeatTaken(Conflict):
 
 
 class SeatTable:
-    """The seats of a room, in the order of its arms. Each change returns the seat as it is afterwards."""
+    """Hold the seats of a room, in the order of its arms. Each change returns the seat as it is afterwards."""
 
     def __init__(self, arms: Iterable[str]) -> None:
         self._seats = {arm: SeatHolder(arm) for arm in arms}
@@ -91,20 +99,21 @@ class SeatTable:
         return iter(self._seats.values())
 
     def __getitem__(self, arm: str) -> SeatHolder:
-        """Raises NotFound for an arm that the room does not have."""
+        """Return the seat of `arm`; raises NotFound for an arm that the room does not have."""
         if arm not in self._seats:
             raise NotFound.named("arm", arm, self._seats)
         return self._seats[arm]
 
     def of_holder(self, holder_id: str) -> tuple[SeatHolder, ...]:
-        """The seats that this person or policy holds."""
+        """Return the seats that this person or policy holds."""
         return tuple(seat for seat in self if seat.holder_id == holder_id) if holder_id else ()
 
     def of_operator(self, operator: Operator) -> tuple[SeatHolder, ...]:
+        """Return the seats that this kind of operator drives."""
         return tuple(seat for seat in self if seat.operator == operator)
 
     def answer(self, request: SeatRequest) -> SeatHolder:
-        """Does what a request asks. Raises what the methods for it raise; InvalidInput for an empty one."""
+        """Do what a request asks. Raises what the methods for it raise; InvalidInput for an empty one."""
         match request.WhichOneof("what"):
             case "claim":
                 claim = request.claim
@@ -120,7 +129,7 @@ class SeatTable:
         )
 
     def claim(self, arm: str, holder_id: str, name: str, operator: Operator) -> SeatHolder:
-        """Gives a seat that no other holds to `holder_id`; its holder gets it back unchanged.
+        """Give a seat that no other holds to `holder_id`; its holder gets it back unchanged.
 
         A human takes over from any machine. A policy comes in where nobody or a script sits, or in place of a promoted
         policy. Raises SeatTaken, InvalidInput or NotFound.
@@ -140,7 +149,7 @@ class SeatTable:
         )
 
     def hand_back(self, arm: str, holder_id: str) -> SeatHolder:
-        """Gives a seat back to the machine that its human took over from. Raises Forbidden, Conflict, NotFound."""
+        """Give a seat back to the machine that its human took over from. Raises Forbidden, Conflict, NotFound."""
         seat = self[arm]
         self._require_holder(seat, holder_id)
         if seat.relieved is None:
@@ -148,7 +157,7 @@ class SeatTable:
         return self._change(seat, seat.relieved)
 
     def release(self, arm: str, holder_id: str) -> SeatHolder:
-        """Leaves a seat: it goes on hold. A seat that is on hold already stays as it is. Raises Forbidden, NotFound."""
+        """Put a left seat on hold; one that is on hold already stays as it is. Raises Forbidden, NotFound."""
         seat = self[arm]
         if seat.operator == OPERATOR_HOLD:
             return seat
@@ -156,7 +165,7 @@ class SeatTable:
         return self._change(seat, NOBODY)
 
     def assign(self, arm: str, operator: Operator, policy: str = "") -> SeatHolder:
-        """Sets a seat that no human holds to script, hold or a promoted policy.
+        """Set a seat that no human holds to script, hold or a promoted policy.
 
         Raises SeatTaken, InvalidInput or NotFound.
         """
@@ -177,11 +186,11 @@ class SeatTable:
         return seat if seat.driver == driver else self._change(seat, driver)
 
     def free(self, arm: str) -> SeatHolder:
-        """Takes a seat from a holder who went silent."""
+        """Take a seat from a holder who went silent."""
         return self._change(self[arm], NOBODY)
 
     def restore(self, seats: Iterable[SeatHolder]) -> None:
-        """Takes over the kept seats of arms that still exist."""
+        """Take over the kept seats of arms that still exist."""
         self._seats.update((seat.arm, seat) for seat in seats if seat.arm in self._seats)
 
     def _require_holder(self, seat: SeatHolder, holder_id: str) -> None:

@@ -1,4 +1,4 @@
-"""Whose turn it is with a room: one thread at a time.
+"""Run work on a room on one thread at a time, whichever thread brings it.
 
 Work is done by the thread that brings it, so that the command which completes the barrier fires the tick at once:
 waking another thread for it took 0.15 ms more (median), and 0.7 ms more at the 99th percentile. Work that comes while
@@ -17,30 +17,30 @@ _LONGEST_REST_S = 1.0  # so that a stop is noticed
 
 
 class SerialExecutor:
-    """`advance` does what is due; it returns when to call it again if nothing comes in, in monotonic seconds."""
+    """Run work one after another; `advance` does what is due and returns when to call it again (monotonic s)."""
 
     def __init__(self, advance: Callable[[float], float]) -> None:
         self._advance = advance
         self._work_queue = WorkQueue()
-        self._turn = threading.Lock()
+        self._running = threading.Lock()
         self._changed = threading.Condition()
         self._next_s = clock.monotonic_s()
         self._failure: Exception | None = None
 
-    def do(self, work: Callable[[], None]) -> None:
-        """Now, or by whoever has the turn. For any thread."""
+    def submit(self, work: Callable[[], None]) -> None:
+        """Run `work` now, or leave it to the thread that is at work. For any thread."""
         self._work_queue.put(work)
         # Work that came after the holder's last look, but before its turn ended, is found by one of the two.
-        while not self._work_queue.is_empty and self._turn.acquire(blocking=False):
+        while not self._work_queue.is_empty and self._running.acquire(blocking=False):
             try:
-                self._take_turn()
+                self._run_pending()
             finally:
-                self._turn.release()
+                self._running.release()
 
     def run(self, stop: threading.Event) -> None:
-        """Until `stop` is set. Raises what work or `advance` raised, on whichever thread."""
+        """Do what falls due until `stop` is set; raises what work or `advance` raised, on whichever thread."""
         while not stop.is_set():
-            self.do(lambda: None)
+            self.submit(lambda: None)
             with self._changed:
                 if self._failure is not None:
                     raise self._failure
@@ -48,9 +48,9 @@ class SerialExecutor:
                 if rest_s > 0.0:
                     self._changed.wait(rest_s)
 
-    def _take_turn(self) -> None:
+    def _run_pending(self) -> None:
         try:
-            self._work_queue.work(timeout_s=0.0)
+            self._work_queue.run_all(timeout_s=0.0)
             next_s = self._advance(clock.monotonic_s())
         except Exception as error:  # noqa: BLE001 - raised again by `run`
             self._failure, next_s = error, 0.0

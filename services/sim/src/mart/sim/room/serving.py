@@ -1,4 +1,4 @@
-"""Starts a room: settings in, a running sim until it is asked to stop."""
+"""Serve a room: settings in, a running sim until it is asked to stop."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from mart.runtime.service import announced, connected
 from mart.runtime.throttled_log import ThrottledLog
 from mart.sim.experts import Skill, get_skill
 from mart.sim.room import saved_room
-from mart.sim.room.bus_publisher import BusPublisher
+from mart.sim.room.bus_publisher import BusPublisher, OrderedPublisher
 from mart.sim.room.episode_state_machine import Terms
 from mart.sim.room.room import Room
 from mart.sim.room.room_server import RoomServer
 from mart.sim.room.saved_room import SavedRoom
 from mart.sim.room.serial_executor import SerialExecutor
-from mart.sim.room.unpaced_room import OrderedPublisher, SimulatedTime, UnpacedRoom
+from mart.sim.room.unpaced_room import SimulatedTime, UnpacedRoom
 from mart.sim.room.work_queue import WorkQueue
 from mart.sim.settings import SimSettings
 from mart.sim.world import World
@@ -34,8 +34,9 @@ DEFAULT_SKILL = "expert"
 
 
 def serve_room(settings: SimSettings) -> None:
-    """Raises what building a world raises, NotFound for an unknown skill, Corrupt where the room's record cannot be
-    read.
+    """Build the world of `settings` and serve its room.
+
+    Raises what building a world raises, NotFound for an unknown skill, Corrupt where the room's record cannot be read.
     """
     skill = get_skill(settings.skill) if settings.skill else None
     world = World.build(settings.task, settings.control_hz, settings.arms)
@@ -46,7 +47,7 @@ def serve_room(settings: SimSettings) -> None:
 
 
 def serve_world(settings: SimSettings, world: World) -> None:
-    """The room of `settings` around a world that exists already."""
+    """Serve the room of `settings` around a world that exists already."""
     with connected(settings, ServiceKind.SIM, settings.room) as service, contextlib.ExitStack() as opened:
         publisher = opened.enter_context(contextlib.closing(BusPublisher(service.bus, settings.room)))
         room = Room(
@@ -69,7 +70,13 @@ def serve_world(settings: SimSettings, world: World) -> None:
 
         executor = SerialExecutor(advance)
         server = RoomServer(
-            service.bus, settings.room, room, world, do=executor.do, garbled=garbled, looks=_looks(settings)
+            service.bus,
+            settings.room,
+            room,
+            world,
+            submit=executor.submit,
+            garbled=garbled,
+            looks=_looks(settings),
         )
         opened.enter_context(contextlib.closing(server))
         server.hear_commands()
@@ -79,7 +86,7 @@ def serve_world(settings: SimSettings, world: World) -> None:
 
 
 def serve_unpaced(settings: SimSettings, world: World, skill: Skill) -> None:
-    """The same room on simulated time, with its scripts."""
+    """Serve the same room on simulated time, with its scripts."""
     with connected(settings, ServiceKind.SIM, settings.room) as service, contextlib.ExitStack() as opened:
         work_queue, garbled, time = WorkQueue(), Counter[str](), SimulatedTime()
         publisher = OrderedPublisher(service.bus, settings.room, world.arms)
@@ -96,7 +103,7 @@ def serve_unpaced(settings: SimSettings, world: World, skill: Skill) -> None:
             explain=_archive(settings).keep,
         )
         server = RoomServer(
-            service.bus, settings.room, room, world, do=work_queue.put, garbled=garbled, now_s=time.now_s
+            service.bus, settings.room, room, world, submit=work_queue.put, garbled=garbled, now_s=time.now_s
         )
         opened.enter_context(contextlib.closing(server))
         unpaced = UnpacedRoom(room, publisher, time)
@@ -107,7 +114,7 @@ def serve_unpaced(settings: SimSettings, world: World, skill: Skill) -> None:
 
 
 def _looks(settings: SimSettings) -> World | None:
-    """The same room to look at more closely; what happens in it is the other's."""
+    """Build the same room to look at more closely, or None; what happens in it is the other's."""
     if settings.quality == "fast":
         return None
     return World.build(settings.task, settings.control_hz, settings.arms, detail="detailed")

@@ -1,4 +1,4 @@
-"""What every arm is told to do in one tick: its operator's target, or to stay where it was left."""
+"""Work out the action of every arm in one tick: towards its operator's target, or to stay where it was left."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from mart.sim.world import World
 
 
 class Targets:
-    """Actions towards absolute targets. Between two ticks the world stands still, so an action is worked out when its
-    command arrives: the command that completes the barrier need not wait for the arithmetic of the others.
+    """Work out actions towards absolute targets.
 
-    A held arm has one fixed target, the pose in which it was let go: measured anew every tick, it would sink.
+    Between two ticks the world stands still, so an action is worked out when its command arrives: the command that
+    completes the barrier need not wait for the arithmetic of the others. A held arm has one fixed target, the pose in
+    which it was let go: measured anew every tick, it would sink.
     """
 
     def __init__(self, world: World) -> None:
@@ -26,19 +27,19 @@ class Targets:
         self._aimed: dict[str, tuple[ReceivedCommand, NDArray[np.float64]]] = {}
 
     def world_reset(self) -> None:
-        """Arms are somewhere else now, their grippers as the reset left them."""
+        """Forget the old targets: arms are elsewhere now, their grippers as the reset left them."""
         self._held.clear()
         self._aimed.clear()
         self._gripper = {arm: self._world.gripper(arm) for arm in self._world.arms}
 
     def aim(self, received: ReceivedCommand) -> NDArray[np.float64]:
-        """The action, shape (7,), that this command asks for in the world as it is now."""
+        """Return the action, shape (7,), that this command asks for in the world as it is now."""
         action = self._world.action_for(received.arm, received.target_tool_in_base, received.command.gripper)
         self._aimed[received.arm] = (received, action)
         return action
 
     def actions(self, commands: Mapping[str, ReceivedCommand]) -> NDArray[np.float64]:
-        """What is to be done next, shape (arms, 7).
+        """Return what is to be done next, shape (arms, 7).
 
         commands: the commands of the arms that are driven; the others hold, gripper included.
         """

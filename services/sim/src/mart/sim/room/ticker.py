@@ -1,4 +1,4 @@
-"""Advances the world by one tick, or resets it, and says how it is afterwards."""
+"""Advance the world by one tick, or reset it, and say how it is afterwards."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ NOBODY: Mapping[str, ReceivedCommand] = MappingProxyType({})
 
 
 class Ticker:
-    """`tick` counts the states of this run of the sim, those after resets included."""
+    """Step the world; `tick` counts the states of this run of the sim, those after resets included."""
 
     def __init__(self, room: str, world: World, boot_ns: int, now_s: float) -> None:
         self.tick = 0
@@ -35,29 +35,30 @@ class Ticker:
         self._real_time_factor = RealTimeFactor(world.control_period_s, now_s)
 
     def real_time_factor(self, now_s: float) -> float:
+        """Return simulated over wall time of about the last 2 s."""
         return self._real_time_factor.value(now_s)
 
     def reset(self, seed: int, seats: SeatTable, episode: EpisodeStateMachine, now_s: float) -> State:
-        """The state of the fresh world."""
+        """Reset the world; return the state of the fresh one."""
         self._world.reset(seed)
         self._targets.world_reset()
         return self.standing(seats, episode, now_s)
 
     def standing(self, seats: SeatTable, episode: EpisodeStateMachine, now_s: float) -> State:
-        """The world as it is, before it begins to run."""
+        """Return the state of the world as it is, before it begins to run."""
         self._real_time_factor.restart(now_s)
         wall_ns = clock.wall_ns()
         stamps = TickStamps(fired_ns=wall_ns, stepped_ns=wall_ns)
         return self._state(seats, episode, now_s, self._world.progress(), stamps=stamps)
 
     def aim(self, received: ReceivedCommand) -> None:
-        """Works out beforehand what an accepted command asks for."""
+        """Work out beforehand what an accepted command asks for."""
         self._targets.aim(received)
 
     def advance(
         self, inputs: TickInputs, seats: SeatTable, episode: EpisodeStateMachine, now_s: float
     ) -> State:
-        """One control period. Raises Diverged where the physics left its bounds."""
+        """Advance one control period and return the state; raises Diverged where the physics left its bounds."""
         fired_ns = clock.wall_ns()
         actions = self._targets.actions(inputs.commands)
         status = self._world.step(actions)

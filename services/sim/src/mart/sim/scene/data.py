@@ -1,4 +1,4 @@
-"""What scenes and arms read and write: the data of one world, or of a batch of them."""
+"""Read and write the data of one world, or of a batch of them: what scenes and arms share."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Flags = NDArray[np.bool_]
 
 
 def evenly(rows: Iterable[int]) -> slice:
-    """Rows that lie equally far apart, as a slice: what it chooses is a view that follows the data."""
+    """Return rows that lie equally far apart as a slice: what it chooses is a view that follows the data."""
     first, *others = rows
     step = others[0] - first if others else 1
     chosen = slice(first, first + step * len(others) + 1, step)
@@ -26,7 +26,7 @@ def evenly(rows: Iterable[int]) -> slice:
 
 
 def into_frame(rotation: Array, vectors: Array) -> Array:
-    """Vectors of the world, shape (..., 3), in a frame whose axes are the columns of `rotation`, (..., 3, 3).
+    """Turn vectors of the world, shape (..., 3), into a frame whose axes are the columns of `rotation`, (..., 3, 3).
 
     Sums in one fixed order, so that a world gives the same bits alone and in a batch; a matrix product does not.
     """
@@ -34,10 +34,10 @@ def into_frame(rotation: Array, vectors: Array) -> Array:
 
 
 def within(vectors: Array, limits: ArrayLike) -> Flags:
-    """Whether no component of a vector, shape (..., n), is further from 0 than its limit."""
+    """Return whether no component of a vector, shape (..., n), is further from 0 than its limit."""
     return np.logical_and.reduce(np.abs(vectors) < limits, axis=-1)
 
 
 def length(vectors: Array) -> Array:
-    """Of vectors of shape (..., n)."""
+    """Return the lengths of vectors of shape (..., n), shape (...)."""
     return np.sqrt(np.add.reduce(vectors * vectors, axis=-1))

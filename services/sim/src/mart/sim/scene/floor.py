@@ -1,4 +1,4 @@
-"""The pictures on the floor: a tile of boards that repeats, and the rug on which table and arms stand."""
+"""Draw the floor: a tile of boards that repeats, and the rug on which table and arms stand."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _JOINT_SHADE, _TONES = 0.84, 0.045
 
 
 def boards() -> NDArray[np.uint8]:
-    """sRGB, shape (rows, columns, 3): one tile, whose opposite edges fit."""
+    """Draw one tile, whose opposite edges fit: sRGB, shape (rows, columns, 3)."""
     random = np.random.default_rng(7)
     across, along = np.indices((_PIXELS, _PIXELS))
     height, length = _PIXELS // _ROWS, _PIXELS // _BOARDS_IN_ROW
@@ -28,7 +28,7 @@ def boards() -> NDArray[np.uint8]:
 
 
 def rug() -> NDArray[np.uint8]:
-    """sRGB, shape (rows, columns, 3): two woven lines along its edge, and the shade of what stands on it."""
+    """Draw the rug, its woven edge and the shade of what stands on it: sRGB, shape (rows, columns, 3)."""
     half_x, half_y = RUG_HALF_M
     x, y = np.meshgrid(np.linspace(-half_x, half_x, _PIXELS), np.linspace(half_y, -half_y, _PIXELS))
     from_edge = np.minimum(half_x - np.abs(x), half_y - np.abs(y))
@@ -38,7 +38,7 @@ def rug() -> NDArray[np.uint8]:
 
 
 def _grain(random: np.random.Generator) -> NDArray[np.float64]:
-    """Fine streaks along the boards, around 1."""
+    """Draw fine streaks along the boards, around 1."""
     spectrum = np.fft.rfft(random.standard_normal((_PIXELS, _PIXELS)), axis=1)
     spectrum[:, 10:] = 0.0
     streaks: NDArray[np.float64] = np.fft.irfft(spectrum, _PIXELS, axis=1)

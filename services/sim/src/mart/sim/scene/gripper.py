@@ -1,4 +1,4 @@
-"""The Franka Hand's fingers: two pads that hold by friction alone.
+"""Model the Franka Hand's fingers: two pads that hold by friction alone.
 
 One gripper serves every task. Settled by tests with a 4 cm, 0.1 kg cube: it creeps 0.03 mm in 10 s of holding and
 0.25 mm through 5 s of shaking by 3 cm.
@@ -31,13 +31,14 @@ _INERTIA = (2.375e-6, 2.375e-6, 7.5e-7, 0.0, 0.0, 0.0)
 
 
 def finger_target_m(gripper: float) -> float:
-    """Servo target for a gripper command, 0 open … 1 closed: beyond the middle it squeezes whatever is held."""
+    """Return the servo target for a gripper command, 0 open … 1 closed: beyond the middle it squeezes what is held."""
     return STROKE_M * (1.0 - 2.0 * gripper)
 
 
 def add_fingers(spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: str, masks: dict[str, int]) -> None:
     # Turned over, so that the tool's axes are the base's while the hand points straight down: its usual orientations
     # are then far from where a canonical quaternion (w >= 0) jumps.
+    """Add fingers, their servos and the site `{arm}/tool` to a hand; `masks`: the contact bits of their geoms."""
     hand.add_site(name=f"{arm}/tool", pos=(0, 0, TOOL_Z_M), quat=(0, 1, 0, 0), size=(0.005, 0, 0), group=4)
     for side, turn in (("left", (1.0, 0.0, 0.0, 0.0)), ("right", (0.0, 0.0, 0.0, 1.0))):
         finger = hand.add_body(name=f"{arm}/{side}_finger", pos=(0, 0, FINGER_Z_M), quat=turn)

@@ -1,4 +1,4 @@
-"""The Panda's link meshes, found inside the installed gymnasium-robotics wheel (Franka Emika's, Apache-2.0)."""
+"""Find the Panda's link meshes in the installed gymnasium-robotics wheel (Franka Emika's, Apache-2.0)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FOLDER = Path("envs", "assets", "kitchen_franka", "franka_assets", "meshes")
 
 
 def mesh_path(part: str, detail: Detail) -> Path:
-    """part: link0 … link7, hand or finger. Raises Unavailable where the wheel is not installed."""
+    """Return the file of a part (link0 … link7, hand, finger); raises Unavailable without the wheel."""
     # find_spec does not run the package: importing it would pull in gymnasium and register environments.
     package = find_spec("gymnasium_robotics")
     if package is None or package.origin is None:

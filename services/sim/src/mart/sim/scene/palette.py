@@ -1,4 +1,4 @@
-"""Colours and materials of the scene.
+"""Define colours and materials of the scene.
 
 A thing is made of a material: `add_geom(…, material="walnut")`. What belongs to an arm is painted in its colour:
 `add_geom(…, material="paint", rgba=rgba(arm.color))`; a geom's own rgba replaces the material's.
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Material:
-    """`color` is sRGB hex. `gloss`: how strong a highlight is, `shininess`: how small, both 0 to 1.
+    """Describe a material: `color` is sRGB hex; `gloss` how strong a highlight is, `shininess` how small, 0 to 1.
 
     An `alpha` below 1 is drawn last and blended: keep it to small things, since software rendering pays for each pixel.
     """
@@ -55,11 +55,12 @@ MATERIALS: Mapping[str, Material] = {
 
 
 def rgba(color: str, alpha: float = 1.0) -> NDArray[np.float64]:
-    """`#RRGGBB` as four numbers in [0, 1]."""
+    """Return `#RRGGBB` as four numbers in [0, 1]."""
     return np.array([*(int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)), alpha])
 
 
 def add_materials(spec: mujoco.MjSpec) -> None:
+    """Add every material of the palette."""
     for name, material in MATERIALS.items():
         spec.add_material(
             name=name,

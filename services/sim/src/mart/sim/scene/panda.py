@@ -1,4 +1,4 @@
-"""The Franka Emika Panda: published figures, and how they become part of a scene.
+"""Model the Franka Emika Panda: published figures, and how they become part of a scene.
 
 Kinematics: Franka Control Interface documentation, "Denavit-Hartenberg parameters" (Craig's convention).
 Limits: the same, "Limits for Panda": positions in radians, torques in newton metres.
@@ -24,7 +24,7 @@ _MINUS_X, _PLUS_X, _STRAIGHT = (1.0, -1.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0), (1.0
 
 @dataclass(frozen=True)
 class PandaLink:
-    """A link with the joint before it. `inertia`: xx yy zz xy xz yz at the centre of mass, kg m², link frame."""
+    """Describe link and joint before it; `inertia`: xx yy zz xy xz yz at its mass centre, kg m², link frame."""
 
     position_in_parent: tuple[float, float, float]
     quaternion_in_parent: tuple[float, float, float, float]
@@ -71,7 +71,7 @@ HOME_RAD = (0.0, 0.2, 0.0, -2.1, 0.0, 2.3, 0.785)
 
 
 def add_assets(spec: mujoco.MjSpec, detail: Detail) -> None:
-    """The meshes, once for all arms: `hull/…` for contacts and, where asked, `detailed/…` to look at."""
+    """Add the meshes, once for all arms: `hull/…` for contacts and, where asked, `detailed/…` to look at."""
     for level in dict.fromkeys(("hull", detail)):
         for part in (*(f"link{i}" for i in range(8)), "hand"):
             _add_mesh(spec, part, level)
@@ -86,7 +86,7 @@ def _add_mesh(spec: mujoco.MjSpec, part: str, level: Detail) -> None:
 
 
 def add_panda(spec: mujoco.MjSpec, arm: Arm, index: int, detail: Detail) -> None:
-    """Adds the arm with its gripper, joints, motors and the site `{arm}/tool` at the middle of the finger pads."""
+    """Add the arm with its gripper, joints, motors and the site `{arm}/tool` at the middle of the finger pads."""
     body = spec.worldbody.add_body(
         name=f"{arm.name}/base",
         pos=arm.pose_base_in_world.position,
@@ -118,8 +118,10 @@ def add_panda(spec: mujoco.MjSpec, arm: Arm, index: int, detail: Detail) -> None
 
 
 def _masks(index: int, *, reaches_objects: bool) -> dict[str, int]:
-    """Contact bits: things 1, arm i's far links 2 << i. Arms meet each other, never themselves; an arm's near links
-    cannot meet the things on the table."""
+    """Return contact bits: things 1, arm i's far links 2 << i.
+
+    Arms meet each other, never themselves; an arm's near links cannot meet the things on the table.
+    """
     own = 2 << index
     others = sum(2 << other for other in range(MAX_ARMS) if other != index)
     return (

@@ -1,4 +1,4 @@
-"""What the simulator needs to know about a task, beyond the catalogue's row."""
+"""Define what the simulator needs to know about a task, beyond the catalogue's row."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NARROW_GAP_RAD = 2.0
 
 @dataclass(frozen=True)
 class TaskStatus:
-    """How a task stands at one instant: flags of shape (...), one for each world.
+    """Tell how a task stands at one instant: flags of shape (...), one for each world.
 
     failed: what makes success impossible, in words, and where it has happened; of several, the first is told.
     """
@@ -34,16 +34,16 @@ class TaskStatus:
 
 
 class Scene(ABC):
-    """Geometry, resets, observations and success of one task.
+    """Define geometry, resets, observations and success of one task.
 
     Belongs to one world, or to a batch of them. Holds no state, which is all in the data; only, once attached, views of
     what it needs there. What an episode has to remember beyond positions and velocities is there too: `memory_size`
     numbers, 0 after a reset.
 
     `observe`, `remember` and `task_status` are written once for both: the arrays they see begin with the axis of the
-    worlds in a batch and have none for a single world, so they index from the end (`position[..., 2]`), reduce over `axis=-1`
-    and choose with `&`, `|` and `np.where` instead of `and`, `or` and `if`. They see what follows from positions
-    (qpos, xpos, xquat, xmat, site_xpos, …) and qvel; contacts and sensors are those of an earlier substep.
+    worlds in a batch and have none for a single world, so they index from the end (`position[..., 2]`), reduce over
+    `axis=-1` and choose with `&`, `|` and `np.where` instead of `and`, `or` and `if`. They see what follows from
+    positions (qpos, xpos, xquat, xmat, site_xpos, …) and qvel; contacts and sensors are those of an earlier substep.
     """
 
     memory_size = 0
@@ -53,54 +53,54 @@ class Scene(ABC):
 
     @abstractmethod
     def add_objects(self, spec: mujoco.MjSpec) -> None:
-        """Adds the things on the table."""
+        """Add the things on the table."""
 
     @abstractmethod
     def attach(self, data: Data) -> None:
-        """Looks everything up once, so that ticks need no names. Called when the model is compiled."""
+        """Look everything up once, so that ticks need no names. Called when the model is compiled."""
 
     @abstractmethod
     def place_objects(self, random: np.random.Generator) -> None:
-        """Puts them where an episode begins. Of a single world only."""
+        """Put the things where an episode begins, in a single world."""
 
     @abstractmethod
     def observe(self) -> dict[str, Array]:
-        """The declared observations that are not the arms' own, each of shape (..., *its own)."""
+        """Return the declared observations that are not the arms' own, each of shape (..., *its own)."""
 
     def remember(self) -> None:  # noqa: B027
         """Note in `memory` what has happened; called once a tick, before `task_status`. Most tasks note nothing."""
 
     def memory(self, data: Data) -> Array:
-        """A view of this scene's part of the state, shape (..., memory_size)."""
+        """Return a view of this scene's part of the state, shape (..., memory_size)."""
         return data.userdata[..., -1 - self.memory_size : -1]
 
     @abstractmethod
     def task_status(self) -> TaskStatus:
-        """Subtasks, success and failure at this instant."""
+        """Return subtasks, success and failure at this instant."""
 
     def start_pose_in_base(self, arm: Arm, random: np.random.Generator) -> Pose:
-        """Where the arm's tool is when an episode begins: up before its base, pointing down, give or take 3 cm."""
+        """Return where the arm's tool begins: up before its base, pointing down, give or take 3 cm."""
         position = np.array([0.45, 0.0, 0.20]) + random.uniform(-0.03, 0.03, 3)
         return Pose(position, Pose.identity().quaternion_wxyz)
 
     def cameras(self) -> tuple[FixedCamera, ...]:
-        """One for each seat, named like its arm, and the shared one."""
+        """Return one camera for each seat, named like its arm, and the shared one."""
         seats = tuple(seat_camera(arm, side=-1 if i % 2 == 0 else 1) for i, arm in enumerate(self.task.arms))
         return (*seats, shared_camera(self.task.arms))
 
 
 def any_of(flags: Iterable[Flags]) -> Flags:
-    """Where any of them holds, all of shape (...)."""
+    """Return where any of these flags holds, all of shape (...)."""
     return functools.reduce(operator.or_, flags)
 
 
 def all_of(flags: Iterable[Flags]) -> Flags:
-    """Where all of them hold, all of shape (...)."""
+    """Return where all of these flags hold, all of shape (...)."""
     return functools.reduce(operator.and_, flags)
 
 
 def seat_camera(arm: Arm, side: int) -> FixedCamera:
-    """Beside the own base, looking along the arm at the work; behind the shoulder the own elbow would be in the way.
+    """Place a camera beside the own base, looking along the arm; behind the shoulder the elbow would be in the way.
 
     side: -1 or +1, the sign of the camera's y in the base frame.
     """
@@ -111,7 +111,7 @@ def seat_camera(arm: Arm, side: int) -> FixedCamera:
 
 
 def shared_camera(arms: Sequence[Arm]) -> FixedCamera:
-    """Looks at the middle of the table through the widest gap between the arms, from the front where it can.
+    """Look at the middle of the table through the widest gap between the arms, from the front where it can.
 
     Where four arms leave no gap of more than a right angle, from higher up and further away, over their shoulders.
     """

@@ -1,4 +1,4 @@
-"""The room: floor, table, pedestals, light, cameras; and the solver settings that every task shares.
+"""Build the room: floor, table, pedestals, light, cameras; and the solver settings that every task shares.
 
 World z = 0 is the table top; the arms' bases stand level with it, just beyond the table's edges.
 """
@@ -29,7 +29,7 @@ _BOX, _PLANE, _CYLINDER = (
 
 @dataclass(frozen=True)
 class FixedCamera:
-    """A fixed camera at `position` that looks at `target` (both in the world frame, metres), upright."""
+    """Place a camera at `position`, looking at `target` (both in the world frame, metres), upright."""
 
     name: str
     position: tuple[float, float, float]
@@ -38,7 +38,7 @@ class FixedCamera:
 
 
 def configure(spec: mujoco.MjSpec, timestep_s: float) -> None:
-    """Solver and rendering. Newton's iteration limit stays at its default: capping it makes things fly apart."""
+    """Set solver and rendering. Newton's iteration limit stays at its default: capping it makes things fly apart."""
     option = spec.option
     option.timestep = timestep_s
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -57,6 +57,7 @@ def configure(spec: mujoco.MjSpec, timestep_s: float) -> None:
 
 
 def add_room(spec: mujoco.MjSpec, task: Task) -> None:
+    """Add table, pedestals, rug, floor and light."""
     _add_materials(spec, task)
     add_shadow_material(spec)
     _add_light(spec)
@@ -107,7 +108,7 @@ def add_room(spec: mujoco.MjSpec, task: Task) -> None:
 
 
 def _add_light(spec: mujoco.MjSpec) -> None:
-    """A warm window at the front left, a cool sky at the back right, and a little from where one looks."""
+    """Add a warm window at the front left, a cool sky at the back right, and a little from where one looks."""
     headlight = spec.visual.headlight
     headlight.ambient, headlight.diffuse, headlight.specular = (0.36, 0.37, 0.39), (0.14,) * 3, (0.0,) * 3
     for direction, strength, tint in (
@@ -126,6 +127,7 @@ def _add_light(spec: mujoco.MjSpec) -> None:
 
 
 def add_camera(spec: mujoco.MjSpec, camera: FixedCamera) -> None:
+    """Add a camera under its name."""
     position, target = np.array(camera.position), np.array(camera.target)
     back = position - target
     back /= np.linalg.norm(back)

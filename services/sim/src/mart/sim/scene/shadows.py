@@ -1,4 +1,4 @@
-"""Soft spots on the table under the tools and the things: they show height, which a single picture hides.
+"""Lay soft spots under the tools and the things: they show height, which a single picture hides.
 
 Real shadows would double the time of a software-rendered frame. The spots are mocap bodies, so they travel with the
 state and look the same to everybody who renders it; nothing collides with them.
@@ -20,7 +20,7 @@ _Z_M = 0.0008
 
 
 class Shadows:
-    """Keeps each spot under its caster, in one world or in every one of a batch."""
+    """Keep each spot under its caster, in one world or in every one of a batch."""
 
     def __init__(self, model: mujoco.MjModel, data: Data) -> None:
         spots = [i for i in range(model.nbody) if model.body(i).name.endswith("/shadow")]
@@ -34,11 +34,13 @@ class Shadows:
         self._follow = [(data.mocap_pos[..., casters[name], :2], place) for name, place in places.items()]
 
     def follow(self) -> None:
+        """Move every spot to its caster."""
         for spot, place in self._follow:
             np.copyto(spot, place)
 
 
 def add_shadow_material(spec: mujoco.MjSpec) -> None:
+    """Add the spots' texture and material."""
     image = _spot()
     texture = spec.add_texture(
         name="shadow", type=mujoco.mjtTexture.mjTEXTURE_2D, width=_PIXELS, height=_PIXELS, nchannel=4
@@ -50,7 +52,7 @@ def add_shadow_material(spec: mujoco.MjSpec) -> None:
 
 
 def add_shadow(spec: mujoco.MjSpec, caster: str, radius_m: float, tint: str = "#000000") -> None:
-    """caster: the name of an arm, whose tool casts it, or of a body. `radius_m` is where it has faded away."""
+    """Add a spot under `caster` (an arm, whose tool casts it, or a body); at `radius_m` it has faded away."""
     spot = spec.worldbody.add_body(name=f"{caster}/shadow", mocap=True)
     spot.add_geom(
         type=mujoco.mjtGeom.mjGEOM_PLANE,
@@ -64,7 +66,7 @@ def add_shadow(spec: mujoco.MjSpec, caster: str, radius_m: float, tint: str = "#
 
 
 def _spot() -> NDArray[np.uint8]:
-    """White, shape (rows, columns, 4), opaque in the middle and fading to nothing."""
+    """Draw a white spot, shape (rows, columns, 4), opaque in the middle and fading to nothing."""
     axis = np.linspace(-1, 1, _PIXELS)
     radius = np.hypot(*np.meshgrid(axis, axis))
     fade = np.clip(1.0 - radius, 0.0, 1.0)

@@ -1,4 +1,4 @@
-"""The arms' symbols as flat tiles, so that colour is never the only sign of who is who."""
+"""Show the arms' symbols as flat tiles, so that colour is never the only sign of who is who."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _WHITE = (0.98, 0.98, 0.98, 1.0)
 
 
 def outline(symbol: str, radius_m: float) -> NDArray[np.float64]:
-    """The corners, shape (n, 2), of a polygon with the area of a circle of this radius, counter-clockwise."""
+    """Return the corners, shape (n, 2), of a polygon with the area of a circle of this radius, counter-clockwise."""
     corners, first = _POLYGONS[symbol]
     angles = first + 2 * math.pi * np.arange(corners) / corners
     reach = radius_m * math.sqrt(2 * math.pi / (corners * math.sin(2 * math.pi / corners)))
@@ -37,7 +37,7 @@ def add_tile(
     position: tuple[float, float, float],
     normal: tuple[float, float, float],
 ) -> None:
-    """Puts a white tile on a surface of the body; `position` and `normal` in the body's frame."""
+    """Put a white tile on a surface of the body; `position` and `normal` in the body's frame."""
     mesh = f"symbol/{symbol}/{radius_m * 1000:g}mm"
     if spec.mesh(mesh) is None:
         flat = outline(symbol, radius_m)

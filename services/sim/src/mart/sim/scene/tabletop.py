@@ -1,4 +1,4 @@
-"""The picture on the table: a calm surface, each arm's side in its colour and with its symbol, shade at the bases."""
+"""Draw the table: a calm surface, each arm's side in its colour and with its symbol, shade at the bases."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SYMBOL_IN_BASE_M, _SYMBOL_RADIUS_M = 0.235, 0.038
 
 
 def picture(task: Task, half_x_m: float, half_y_m: float) -> NDArray[np.uint8]:
-    """sRGB, shape (rows, columns, 3); the first row is the edge at y = +half_y_m, the first column x = -half_x_m."""
+    """Draw sRGB, shape (rows, columns, 3); the first row is the edge y = +half_y_m, the first column x = -half_x_m."""
     x, y = np.meshgrid(np.linspace(-half_x_m, half_x_m, _PIXELS), np.linspace(half_y_m, -half_y_m, _PIXELS))
     image = np.broadcast_to(_SURFACE, (_PIXELS, _PIXELS, 3)).copy()
     for arm in task.arms:
@@ -48,7 +48,7 @@ def _paint_frame(image: Image, from_edge_m: Image) -> None:
 
 
 def _inside(corners: Image, x: Image, y: Image) -> Image:
-    """1 inside a convex counter-clockwise polygon, 0 outside, soft over one pixel."""
+    """Return 1 inside a convex counter-clockwise polygon, 0 outside, soft over one pixel."""
     distance = np.full_like(x, np.inf)
     for (x0, y0), (x1, y1) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         across = ((x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)) / np.hypot(x1 - x0, y1 - y0)

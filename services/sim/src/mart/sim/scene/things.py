@@ -1,4 +1,4 @@
-"""Views of things and tools in the data of a world or a batch, for scenes. Shapes (...) are as in `Scene`."""
+"""View things and tools in the data of a world or a batch, for scenes. Shapes (...) are as in `Scene`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mart.sim.scene.gripper import STROKE_M
 
 
 class Thing:
-    """A body with a free joint of its own name, or a mocap body, which nothing moves. The views follow it."""
+    """View a body with a free joint of its own name, or a mocap body, which nothing moves. The views follow it."""
 
     def __init__(self, data: Data, name: str) -> None:
         body = data.body(name)
@@ -24,7 +24,7 @@ class Thing:
         self._data = data
 
     def put(self, position: Sequence[float], yaw_rad: float = 0.0) -> None:
-        """Stands it upright at a position in the world; the views follow with the next forward kinematics.
+        """Stand it upright at a position in the world; the views follow with the next forward kinematics.
 
         Of a single world only.
         """
@@ -37,10 +37,11 @@ class Thing:
             data.mocap_pos[mocap], data.mocap_quat[mocap] = position, turn
 
     def frame(self, points_in_world: Array) -> Array:
-        """The same points in its own frame, shape (..., 3)."""
+        """Return the same points in its own frame, shape (..., 3)."""
         return into_frame(self.rotation, points_in_world - self.position)
 
     def observations(self) -> dict[str, Array]:
+        """Return its position and quaternion (wxyz) in the world, under the catalogue's names."""
         return {
             f"{self.name}/position_in_world": self.position,
             f"{self.name}/quaternion_in_world": self.quaternion,
@@ -48,7 +49,7 @@ class Thing:
 
 
 class Tool:
-    """An arm's tool. The views follow it."""
+    """View an arm's tool, which the views follow."""
 
     def __init__(self, data: Data, arm: str) -> None:
         self.position = data.site(f"{arm}/tool").xpos  # in the world, shape (..., 3)
@@ -56,5 +57,5 @@ class Tool:
 
     @property
     def width_m(self) -> Array:
-        """Between the pads, 0 to 8 cm, shape (...)."""
+        """Return the gap between the pads, 0 to 0.08 m, shape (...)."""
         return 2 * np.minimum(np.maximum(self._finger[..., 0], 0.0), STROKE_M)

@@ -1,4 +1,4 @@
-"""Scenes: geometry, resets, observations and success. One file for each task, found by the task's name."""
+"""Find the scene of a task: one file for each task, with the task's name."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ from mart.sim.scene.scene import Scene
 
 
 def scene_of(task: Task) -> Scene:
-    """A new one, of the class that the file `<task.name>.py` beside this one names as its `SCENE`."""
+    """Return a new scene, of the class that the file `<task.name>.py` beside this one names as its `SCENE`."""
     scene: Scene = import_module(f"{__name__}.{task.name}").SCENE(task)
     return scene

@@ -1,4 +1,4 @@
-"""Lift and wipe: a tray of drinks stands on a dirty table; beside it a rack for the tray, and a sponge."""
+"""Build lift and wipe: a tray of drinks stands on a dirty table; beside it a rack for the tray, and a sponge."""
 
 from __future__ import annotations
 
@@ -40,6 +40,8 @@ _BOX = mujoco.mjtGeom.mjGEOM_BOX
 
 
 class LiftWiping(Scene):
+    """Define the scene of lift and wipe."""
+
     memory_size = len(SPOTS_M)
 
     def add_objects(self, spec: mujoco.MjSpec) -> None:
@@ -103,7 +105,7 @@ SCENE = LiftWiping
 
 
 def _add_sponge(spec: mujoco.MjSpec, wiper: Arm) -> None:
-    """A sponge under a block to hold it by. Its own low friction counts (priority), or it would drag the hand back."""
+    """Add a sponge under a block to hold it by. Its own low friction counts, or it would drag the hand back."""
     sponge = spec.worldbody.add_body(name="sponge", pos=(0.3, 0.24, SPONGE_HALF_M[2]))
     sponge.add_freejoint(name="sponge")
     sponge.add_geom(

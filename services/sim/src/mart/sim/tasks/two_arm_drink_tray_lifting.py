@@ -1,4 +1,4 @@
-"""Drink tray lifting: a tray with four drinks between two arms."""
+"""Build drink tray lifting: a tray with four drinks between two arms."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ _SPREAD_M, _SPREAD_RAD = 0.06, 0.25
 
 
 class DrinkTrayLifting(Scene):
+    """Define the scene of drink tray lifting."""
+
     def add_objects(self, spec: mujoco.MjSpec) -> None:
         add_tray(spec, self.task.arms)
 

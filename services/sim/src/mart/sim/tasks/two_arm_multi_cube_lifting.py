@@ -1,4 +1,4 @@
-"""Multi-cube lifting: one cube of 4 cm in front of each arm, in the arm's colour."""
+"""Build multi-cube lifting: one cube of 4 cm in front of each arm, in the arm's colour."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FALLEN_Z_M = -0.05
 
 @dataclass(frozen=True)
 class Area:
-    """Where a cube may lie, in its arm's base frame."""
+    """Bound where a cube may lie, in its arm's base frame."""
 
     center_x_m: float
     forward_m: float  # to either side of the centre
@@ -35,6 +35,8 @@ _FACING, _AROUND = Area(0.54, 0.08, 0.20), Area(0.47, 0.05, 0.05)
 
 
 class MultiCubeLifting(Scene):
+    """Define the scene of multi-cube lifting."""
+
     def __init__(self, task: Task) -> None:
         super().__init__(task)
         self._area = _FACING if len(task.arms) == 2 else _AROUND
@@ -91,7 +93,7 @@ class MultiCubeLifting(Scene):
         return TaskStatus(subtasks, np.logical_and.reduce(lifted, axis=-1), failed)
 
     def _lowest_points_m(self) -> Array:
-        """Height of each cube's lowest corner over the table, shape (..., cubes)."""
+        """Return the height of each cube's lowest corner over the table, shape (..., cubes)."""
         return self._heights - CUBE_HALF_M * np.add.reduce(np.abs(self._upward), axis=-1)
 
     def _start(self, arm: Arm, forward_m: float, sideways_m: float) -> tuple[float, float]:
@@ -105,4 +107,5 @@ SCENE = MultiCubeLifting
 
 
 def cube_of(arm: str) -> str:
+    """Return the name of an arm's cube."""
     return arm.replace("arm", "cube")

@@ -1,4 +1,4 @@
-"""Pick-place handover: two shelves; a hammer under a lid on the one, a bin with a trash cube on the other."""
+"""Build the handover: two shelves; a hammer under a lid on the one, a bin with a trash cube on the other."""
 
 from __future__ import annotations
 
@@ -49,6 +49,8 @@ _BOX, _SPHERE = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_SPHERE
 
 
 class PickPlaceHandover(Scene):
+    """Define the scene of the handover."""
+
     memory_size = 1  # how far the handover has come
 
     def add_objects(self, spec: mujoco.MjSpec) -> None:
@@ -101,7 +103,7 @@ class PickPlaceHandover(Scene):
         return observations
 
     def remember(self) -> None:
-        """Handed over: both held it in the air, then arm 1 alone; in between nobody threw it or laid it down."""
+        """Note the handover: both held it in the air, then arm 1 alone; nobody threw it or laid it down between."""
         fetcher, receiver = (self._holds_hammer(tool) for tool in self._tools.values())
         up = self._hammer.position[..., 2] > LIFTED_M
         taken = up & receiver & ~fetcher & (self._stage == _HELD_BY_BOTH)
@@ -152,7 +154,7 @@ def _inside(thing: Thing, box: Thing, half_m: tuple[float, float]) -> Flags:
 
 
 def _add_open_box(spec: mujoco.MjSpec, name: str, half_m: tuple[float, float], **look: object) -> None:
-    """Four walls that nothing moves. Its frame is at the middle of its floor."""
+    """Add four walls that nothing moves. The box's frame is at the middle of its floor."""
     box = spec.worldbody.add_body(name=name, mocap=True)
     (half_x, half_y), wall, half_z = half_m, _WALL_HALF_M, _WALL_HEIGHT_M / 2
     for x, y, size_x, size_y in (
@@ -165,7 +167,7 @@ def _add_open_box(spec: mujoco.MjSpec, name: str, half_m: tuple[float, float], *
 
 
 def _add_lid(spec: mujoco.MjSpec) -> mujoco.MjsBody:
-    """The plate meets arms only: what it rests on are the balls, which cost eight contacts instead of thirty."""
+    """Add the lid. Its plate meets arms only: it rests on balls, which cost eight contacts instead of thirty."""
     lid = spec.worldbody.add_body(name="lid", pos=(*CONTAINER, _LID_Z_M))
     lid.add_freejoint(name="lid")
     arms = sum(2 << index for index in range(MAX_ARMS))

@@ -1,4 +1,4 @@
-"""Table assembly: a base with two sockets, a column for each, and a tabletop with a knob at either end.
+"""Build table assembly: a base with two sockets, a column for each, and a tabletop with a knob at either end.
 
 Everything goes together by its shape. The knobs are round, so that a tabletop held by one of them hangs down: it takes
 two arms to carry it level (bars instead of knobs would let one arm do it).
@@ -67,6 +67,8 @@ _RELEASED_WIDTH_M, _RELEASED_M = 0.06, 0.27
 
 
 class TableAssembly(Scene):
+    """Define the scene of table assembly."""
+
     def add_objects(self, spec: mujoco.MjSpec) -> None:
         self._add_base(spec)
         for arm, side in zip(self.task.arms, (-1, 1), strict=True):
@@ -183,11 +185,12 @@ SCENE = TableAssembly
 
 
 def column_of(arm: str) -> str:
+    """Return the name of an arm's column."""
     return arm.replace("arm", "column")
 
 
 def _add_column(spec: mujoco.MjSpec, arm: Arm, side: int) -> None:
-    """Its frame is at its foot."""
+    """Add the arm's column, whose frame is at its foot."""
     name = column_of(arm.name)
     half, height, foot, radius = _SHAFT_HALF_M, COLUMN_HEIGHT_M, _FOOT_HALF_M, _BALL_RADIUS_M
     column = spec.worldbody.add_body(name=name, pos=(0.20 * side, -0.25, 0))

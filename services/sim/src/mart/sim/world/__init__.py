@@ -1,4 +1,4 @@
-"""The shared world: room, arms, controller, state. Pure; see world.py."""
+"""Step the shared world of a task: arms, controller, state. Pure; see world.py."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Many worlds of one kind, stepped together on several threads.
+"""Step many worlds of one kind together on several threads.
 
 The same physics, controller and lines of Python as in `World`: a batch gives the same bits as its worlds alone. What
 they are between two steps is one integration state each; positions are worked out anew after every step.
@@ -26,7 +26,7 @@ _NOTHING, _POSITIONS = int(mujoco.mjtStage.mjSTAGE_NONE), int(mujoco.mjtStage.mj
 
 
 class WorldBatch:
-    """`size` worlds like `world`, which stays in use: it makes the states of resets. Reset before anything else.
+    """Step `size` worlds like `world`, which stays in use: it makes the states of resets. Reset before all else.
 
     A world whose physics leaves its bounds stays as it was before that, for good, and has failed; `explain` says in
     words why.
@@ -47,7 +47,7 @@ class WorldBatch:
         return int(self._batch.nsim)
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Begins an episode in every world, as `World.reset` does."""
+        """Begin an episode in every world, as `World.reset` does."""
         self._batch.reset(stage=_NOTHING)
         for row, seed in zip(self._batch.state, seeds, strict=True):
             self._world.reset(seed)
@@ -58,7 +58,7 @@ class WorldBatch:
         self._status = self._interface.task_status()
 
     def step(self, actions: Array, running: Flags) -> None:
-        """Advances the running worlds by one control period; actions: shape (worlds, arms, 7), finite."""
+        """Advance the running worlds by one control period; actions: shape (worlds, arms, 7), finite."""
         going = running.copy()
         going[list(self._diverged)] = False
         before = self._batch.state.copy()
@@ -84,7 +84,7 @@ class WorldBatch:
         return Diverged(float(self._batch.time[world]), self._world.last_states(states, actions))
 
     def _advance(self, going: NDArray[np.intp]) -> NDArray[np.intp]:
-        """Which of them left their bounds."""
+        """Step these worlds; return which of them left their bounds."""
         if not len(going):
             return going
         try:
@@ -97,12 +97,12 @@ class WorldBatch:
         return np.union1d(going[unstable], broken)
 
     def integration_states(self) -> Array:
-        """Shape (worlds, size): what `World.integration_state` gives. A copy."""
+        """Return a copy of all states, shape (worlds, size), each as `World.integration_state` gives it."""
         self._interface.cast_shadows()
         return self._batch.state.copy()
 
     def standing(self, *, integration_states: bool = False) -> BatchState:
-        """How every world stands."""
+        """Return how every world stands."""
         status = self._status
         reasons = first_reasons(status.failed, len(self))
         for world, reason in self._diverged.items():
@@ -121,5 +121,5 @@ class WorldBatch:
 
 
 def _bounded(velocities: Array) -> Flags:
-    """Whether MuJoCo will go on from these, shape (worlds, nv), as mj_checkVel finds for one world."""
+    """Return whether MuJoCo will go on from these, shape (worlds, nv), as mj_checkVel finds for one world."""
     return np.logical_and.reduce(np.abs(velocities) <= mujoco.mjMAXVAL, axis=-1)  # False for NaN

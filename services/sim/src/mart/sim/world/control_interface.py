@@ -1,4 +1,4 @@
-"""All that Python touches between two control periods: commands in; observations, memory and success out.
+"""Do all that Python touches between two control periods: commands in; observations, memory and success out.
 
 Written once for one world and for a batch; shapes (...) are () in a world and (worlds,) in a batch. Physics and
 controller lie below, in MuJoCo and osc.c.
@@ -18,7 +18,7 @@ from mart.sim.world.arm import MeasuredArms
 
 
 class ControlInterface:
-    """The scene must have been made for this data alone: it keeps views of it."""
+    """Command and observe one world or a batch; the scene must have been made for this data alone."""
 
     def __init__(self, scene: Scene, model: mujoco.MjModel, data: Data) -> None:
         scene.attach(data)
@@ -34,25 +34,27 @@ class ControlInterface:
         self.success_ticks = data.userdata[..., -1]  # here, so that it is saved and replayed with the state
 
     def command(self, actions: Array) -> None:
-        """actions: shape (..., arms, 7), clipped to [-1, 1]."""
+        """Set what the arms do next; actions: shape (..., arms, 7), clipped to [-1, 1]."""
         np.multiply(np.minimum(np.maximum(actions, -1.0), 1.0), self._action_scale, out=self.commands)
         self.modes.fill(osc.NEW_DELTA)
 
     def settle(self) -> TaskStatus:
-        """A control period is over: what it did is remembered, judged and counted."""
+        """End a control period: remember what it did, judge it and count successful ticks; return the status."""
         self._scene.remember()
         status = self.task_status()
         np.multiply(self.success_ticks + 1.0, status.success_now, out=self.success_ticks)
         return status
 
     def task_status(self) -> TaskStatus:
+        """Return subtasks, success and failure at this instant."""
         return self._scene.task_status()
 
     def cast_shadows(self) -> None:
+        """Move the soft shadows under their casters."""
         self._shadows.follow()
 
     def observations(self) -> dict[str, Array]:
-        """All that any operator sees, in the catalogue's order, each of shape (..., *its own). Copies."""
+        """Return copies of all that any operator sees, in the catalogue's order, each (..., *its own)."""
         seen = self._scene.observe()
         positions, quaternions = self._arms.tools_in_base()
         grippers = self._arms.grippers()
