@@ -156,5 +156,5 @@ def test_while_the_clutch_is_let_go_nothing_is_asked_to_move(
 
 
 def test_an_unknown_skill_is_refused() -> None:
-    with pytest.raises(NotFound, match="Did you mean 'expert'"):
+    with pytest.raises(NotFound):
         get_skill("expret")

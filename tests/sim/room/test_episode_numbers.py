@@ -52,5 +52,5 @@ def test_no_number_comes_twice(seats: SeatTable) -> None:
     episode = EpisodeStateMachine(7, horizon_ticks=5)
     play(episode, seats, 4)
     for number in (1, 4):
-        with pytest.raises(Conflict, match="give a later one or none"):
+        with pytest.raises(Conflict):
             play(episode, seats, number)

@@ -17,7 +17,7 @@ def test_work_is_done_in_the_order_in_which_it_came() -> None:
 
 def test_work_wakes_the_one_who_waits() -> None:
     work_queue, done = WorkQueue(), threading.Event()
-    worker = threading.Thread(target=work_queue.work, args=(30.0,))
+    worker = threading.Thread(target=work_queue.run_all, args=(30.0,))
     worker.start()
     work_queue.put(done.set)
     worker.join(10.0)

@@ -123,5 +123,5 @@ def test_a_folder_that_cannot_be_written_is_told(world: World, tmp_path: Path) -
 def test_another_file_is_refused(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "x.npz"
     path.write_bytes(content)
-    with pytest.raises(Corrupt, match="no last states"):
+    with pytest.raises(Corrupt):
         divergence.load(path)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import hashlib
+import io
 from collections.abc import Iterator
 from contextlib import closing
 from fractions import Fraction
 from pathlib import Path
+from typing import BinaryIO
 
 import av
 import mujoco
@@ -16,6 +18,7 @@ from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.messages import State
 from mart.protocol.recording import MODEL_ATTACHMENT, STATE
+from mart.runtime.atomic_file import PUBLIC, write_atomically
 from mart.sim.renderer import Renderer
 
 _QUALITY = {"crf": "20", "preset": "veryfast"}  # of x264: no difference to see, about 1 MB a minute
@@ -33,10 +36,10 @@ def render_episode(path: Path, out: Path, viewpoint: str, width_px: int, height_
     control_hz = file.room.control_hz
     if control_hz is None:
         raise Corrupt(f"{path} does not say how many ticks a second has: repair it.")
-    unfinished = out.with_name(f"{out.name}.part")
+    video = io.BytesIO()
     with closing(Renderer(_model(file), viewpoint, width_px, height_px)) as renderer:
-        frames = _encode(file, renderer, unfinished, Fraction(control_hz).limit_denominator(1000))
-    unfinished.rename(out)
+        frames = _encode(file, renderer, video, Fraction(control_hz).limit_denominator(1000))
+    write_atomically(out, video.getvalue(), PUBLIC)
     return frames
 
 
@@ -62,7 +65,7 @@ def _states(file: EpisodeFile) -> Iterator[bytes]:
             yield state.integration_state
 
 
-def _encode(file: EpisodeFile, renderer: Renderer, out: Path, frames_per_s: Fraction) -> int:
+def _encode(file: EpisodeFile, renderer: Renderer, out: BinaryIO, frames_per_s: Fraction) -> int:
     frames = 0
     with av.open(out, "w", format="mp4") as container:
         stream = container.add_stream("libx264", rate=frames_per_s, options=_QUALITY)

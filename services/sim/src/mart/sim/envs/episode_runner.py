@@ -9,11 +9,13 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import ArrayLike, NDArray
 
+from mart.protocol.batch_state import ACTION_SIZE
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
 from mart.protocol.tasks import SHARED_VIEWPOINT, Observation, Task
 from mart.sim.renderer import Image, Renderer
 from mart.sim.scene.meshes import Detail
-from mart.sim.world import ACTION_SIZE, Diverged, World
+from mart.sim.world import Diverged, World
 
 Observations = dict[str, NDArray[np.float64]]
 
@@ -31,7 +33,7 @@ class EnvOptions:
     """
 
     render_mode: str | None = None
-    control_hz: float = 20.0
+    control_hz: float = DEFAULT_CONTROL_HZ
     arms: int | None = None
     viewpoint: str = SHARED_VIEWPOINT
     width_px: int = 640

@@ -8,6 +8,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
@@ -28,7 +29,7 @@ class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integ
     irrecoverable failure, and is truncated at the task's horizon. `info`: subtasks (name → done), success, failed.
     """
 
-    metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 20}  # noqa: RUF012
+    metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": DEFAULT_CONTROL_HZ}  # noqa: RUF012
 
     def __init__(self, task: str, **options: Any) -> None:
         """Build the environment of a task; the options are the fields of `EnvOptions`. Raises as `EpisodeRunner`."""

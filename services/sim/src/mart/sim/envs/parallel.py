@@ -11,6 +11,7 @@ from gymnasium.utils import seeding
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
+from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Conflict, InvalidInput
 from mart.sim.envs.episode_runner import (
     MAX_SEED,
@@ -24,7 +25,6 @@ from mart.sim.envs.episode_runner import (
     observation_space,
 )
 from mart.sim.renderer import Image
-from mart.sim.world import ACTION_SIZE
 
 Infos = dict[str, dict[str, object]]
 

@@ -6,7 +6,6 @@ exactly when all its arms have been told what to do. The worlds are those of the
 
 from __future__ import annotations
 
-import hashlib
 import math
 import os
 import secrets
@@ -15,10 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mart.protocol.batch_state import Array, Flags, check_actions, pack
+from mart.protocol.batch_state import ACTION_SIZE, Array, Flags, check_actions, pack
 from mart.protocol.errors import Conflict, InvalidInput, NotFound, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest
-from mart.sim.world import ACTION_SIZE, Diverged, World, WorldBatch
+from mart.protocol.state_digest import state_digest
+from mart.sim.world import Diverged, World, WorldBatch
 from mart.sim.world.model_message import model_message
 
 MAX_SESSIONS = 8
@@ -26,7 +26,6 @@ MAX_SESSIONS = 8
 MAX_WORLDS = 4096
 MAX_TICKS = 100_000  # a re-simulation: over an hour at 20 Hz
 IDLE_S = 600.0
-_DIGEST_BYTES = 16
 
 
 @dataclass(frozen=True)
@@ -169,7 +168,7 @@ def _digests(world: World, first_state: bytes, actions: Array) -> bytes:
     digests = []
     for action in actions:
         world.step(action)
-        digests.append(hashlib.blake2b(world.integration_state(), digest_size=_DIGEST_BYTES).digest())
+        digests.append(state_digest(world.integration_state()))
     return b"".join(digests)
 
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import operator_from_word, operator_word
+from mart.protocol.vocabulary import OperatorKind
 from mart.runtime.atomic_file import write_atomically
 from mart.sim.room.seats import Driver, SeatHolder
 
@@ -20,7 +21,7 @@ class SavedDriver(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    operator: Literal["human", "policy", "script", "hold"]
+    operator: OperatorKind
     holder_id: str
     name: str
     policy: str = ""

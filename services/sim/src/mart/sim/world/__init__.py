@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from mart.protocol.batch_state import ACTION_SIZE
 from mart.sim.world.batch import WorldBatch
 from mart.sim.world.last_states import Diverged, LastStates
 from mart.sim.world.progress import TaskProgress
 from mart.sim.world.world import World
 
-__all__ = ["ACTION_SIZE", "Diverged", "LastStates", "TaskProgress", "World", "WorldBatch"]
+__all__ = ["Diverged", "LastStates", "TaskProgress", "World", "WorldBatch"]

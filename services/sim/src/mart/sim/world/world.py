@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mart.protocol.batch_state import ACTION_SIZE
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.errors import InvalidInput
 from mart.protocol.pose import Pose, quaternion_conjugate, quaternion_log, quaternion_multiply
 from mart.protocol.tasks import Task, get_task
@@ -67,7 +68,11 @@ class World:
 
     @classmethod
     def build(
-        cls, task_name: str, control_hz: float = 20.0, arms: int | None = None, detail: Detail = "hull"
+        cls,
+        task_name: str,
+        control_hz: float = DEFAULT_CONTROL_HZ,
+        arms: int | None = None,
+        detail: Detail = "hull",
     ) -> World:
         """Compile a task by name; raises NotFound for an unknown one, InvalidInput for an impossible rate or arms."""
         return cls(scene_of(get_task(task_name, arms)), control_hz, detail)
