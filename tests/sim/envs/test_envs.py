@@ -13,9 +13,12 @@ from gymnasium.utils.env_checker import check_env
 from numpy.typing import NDArray
 from pettingzoo.test import parallel_api_test, parallel_seed_test
 
+from mart.envs import register_envs
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
 from mart.protocol.tasks import get_task, task_names
-from mart.sim.envs import ArmsEnv, JointEnv, gymnasium_id
+from mart.sim.envs.joint import JointEnv
+from mart.sim.envs.parallel import ArmsEnv
+from mart.sim.envs.registration import gymnasium_id
 from mart.sim.world import World
 
 TASK = "two_arm_multi_cube_lifting"
@@ -36,6 +39,7 @@ def arms() -> Iterator[ArmsEnv]:
 
 @pytest.mark.parametrize("task", task_names())
 def test_gymnasiums_checker_is_content(task: str) -> None:
+    register_envs()
     env = gymnasium.make(gymnasium_id(task), **SMALL)
     check_env(env.unwrapped)
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
+from mart.protocol.pose import Pose
 from mart.protocol.tasks import SHARED_VIEWPOINT, Observation, Task
 from mart.sim.renderer import Image, Renderer
 from mart.sim.scene.meshes import Detail
@@ -93,6 +94,10 @@ class EpisodeRunner:
     def control_hz(self) -> float:
         """Steps a second of simulated time."""
         return self._options.control_hz
+
+    def action_for(self, arm: str, target_tool_in_base: Pose, gripper: float) -> NDArray[np.float64]:
+        """Return what `World.action_for` returns: the action, shape (7,), that goes towards an absolute target."""
+        return self._world.action_for(arm, target_tool_in_base, gripper)
 
     def reset(self, seed: int) -> StepResult:
         """Begin the episode that rooms and rollouts begin with this seed."""

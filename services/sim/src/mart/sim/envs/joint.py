@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Task
 from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
@@ -39,6 +41,18 @@ class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integ
         self.metadata = {**type(self).metadata, "render_fps": chosen.control_hz}
         self.observation_space = observation_space(self._runner.task.observations)
         self.action_space = action_space(len(self._runner.task.arms))
+
+    @property
+    def task(self) -> Task:
+        """The task as data: arms with their bases' poses in the world, subtasks, observations, limits, horizon."""
+        return self._runner.task
+
+    def action_for(self, arm: str, target_tool_in_base: Pose, gripper: float) -> NDArray[np.float64]:
+        """Return the action, shape (7,), that takes an arm's tool towards a pose in the arm's base frame.
+
+        It goes as far as one step and the workspace allow. gripper: 0 open … 1 closed. Raises NotFound for no such arm.
+        """
+        return self._runner.action_for(arm, target_tool_in_base, gripper)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

@@ -13,6 +13,8 @@ from pettingzoo import ParallelEnv
 
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Conflict, InvalidInput
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Task
 from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
@@ -41,7 +43,7 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
         """Build the environment of a task; the options are the fields of `EnvOptions`. Raises as `EpisodeRunner`."""
         chosen = EnvOptions(**options)
         self._runner = EpisodeRunner(task, chosen)
-        facts = self._runner.task
+        facts = self.task
         self.render_mode = chosen.render_mode
         self.metadata = {**type(self).metadata, "name": facts.name, "render_fps": chosen.control_hz}
         self.possible_agents = list(facts.arm_names)
@@ -52,6 +54,18 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
         self.state_space = spaces.flatten_space(self._joint)
         self._random, _ = seeding.np_random()
         self._result: StepResult | None = None
+
+    @property
+    def task(self) -> Task:
+        """The task as data: arms with their bases' poses in the world, subtasks, observations, limits, horizon."""
+        return self._runner.task
+
+    def action_for(self, arm: str, target_tool_in_base: Pose, gripper: float) -> NDArray[np.float64]:
+        """Return the action, shape (7,), that takes an arm's tool towards a pose in the arm's base frame.
+
+        It goes as far as one step and the workspace allow. gripper: 0 open … 1 closed. Raises NotFound for no such arm.
+        """
+        return self._runner.action_for(arm, target_tool_in_base, gripper)
 
     def observation_space(self, agent: str) -> spaces.Dict:
         """Return the space of what this arm's operator sees."""
