@@ -46,7 +46,7 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Bus, Publisher
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.service import announced, connected
-from mart.sim.serving import serve_world
+from mart.sim.room.serving import serve_world
 from mart.sim.settings import SimSettings
 from mart.sim.world import World
 

@@ -39,7 +39,7 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.rollouts.client import RolloutClient
 from mart.runtime.bus import Bus
 from mart.runtime.bus.zenoh_bus import ZenohBus
-from mart.sim.lockstep import Lockstep
+from mart.sim.rollout.rollout_server import RolloutServer
 from mart.sim.world import World, osc
 
 ENDPOINT = "tcp/127.0.0.1:17561"
@@ -105,17 +105,17 @@ def measure(bus: Bus, task: str) -> Measured:
     states = np.stack([episodes[number].states[:ticks] for number in of_world], axis=1)
     controls = np.stack([episodes[number].controls[:ticks] for number in of_world], axis=1)
     bare_batch = Batch(world.model, WORLDS)
-    lockstep = Lockstep()
+    server = RolloutServer()
     times: list[list[float]] = []
     with RolloutClient(bus, [REPLICA]) as client:
         client.reset(task, of_world)
         begin = RolloutRequest(reset=RolloutRequest.Reset(task=task, control_hz=20.0, seeds=of_world))
-        session = lockstep.answer(begin, 0.0).session
+        session = server.answer(begin, 0.0).session
         for tick in range(ticks):
             step = RolloutRequest.Step(session=session, actions=actions[tick].tobytes())
             turns: list[Callable[[], object]] = [
                 partial(client.step, actions[tick]),
-                partial(lockstep.answer, RolloutRequest(step=step), 0.0),
+                partial(server.answer, RolloutRequest(step=step), 0.0),
                 partial(bare_step, bare_batch, states[tick], controls[tick], world.substeps),
             ]
             times.append(in_turn(turns, tick))

@@ -9,8 +9,8 @@ from pathlib import Path
 from PIL import Image, ImageDraw, ImageFont
 
 from mart.protocol.tasks import SHARED_VIEWPOINT, Task, arm_counts, get_task, task_names
-from mart.sim.envs import gymnasium_id
-from mart.sim.experts.rehearsal import rehearse
+from mart.sim.envs.registration import gymnasium_id
+from mart.sim.experts.run_experts import run_experts
 from mart.sim.renderer import Renderer
 from mart.sim.world import World
 
@@ -112,8 +112,8 @@ def _view(world: World, viewpoint: str) -> Image.Image:
 def _in_the_middle(task: Task) -> World:
     """The world when scripts have done about half."""
     world = World.build(task.name)
-    rehearse(world, _SEED)
-    rehearse(world, _SEED, until_s=_MIDDLE * world.sim_time_s)
+    run_experts(world, _SEED)
+    run_experts(world, _SEED, until_s=_MIDDLE * world.sim_time_s)
     return world
 
 

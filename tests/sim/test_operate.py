@@ -6,9 +6,9 @@ import pytest
 
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import OPERATOR_SCRIPT, ArmState, State
-from mart.sim import publish
 from mart.sim.experts import get_skill
 from mart.sim.operate import ScriptedOperator, sight_of
+from mart.sim.room import room_messages
 from mart.sim.world import World
 
 
@@ -33,7 +33,7 @@ def state_of(world: World, tick: int, sequence: int = 0, after_reset: bool = Fal
             ArmState(arm=arm, sequence=sequence, action=() if after_reset else [0.0] * 7)
             for arm in world.arms
         ],
-        observations=publish.observations(world.observations()),
+        observations=room_messages.observations(world.observations()),
     )
 
 

@@ -19,8 +19,8 @@ from mart.protocol.messages import (
 from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.base import Bus, Request
-from mart.sim.episode import EpisodeCourse
-from mart.sim.seats import SeatHolder, SeatTable
+from mart.sim.room.episode_state_machine import EpisodeStateMachine
+from mart.sim.room.seats import SeatHolder, SeatTable
 
 TASK = "two_arm_multi_cube_lifting"
 
@@ -32,7 +32,7 @@ class Room:
         task = get_task(TASK, arms)
         self.name = name
         self.seats = SeatTable(task.arm_names)
-        self.course = EpisodeCourse(room_seed=1, horizon_ticks=task.horizon_ticks)
+        self.course = EpisodeStateMachine(room_seed=1, horizon_ticks=task.horizon_ticks)
         self.tick = 1
         self._subtasks = task.subtasks
         with contextlib.ExitStack() as opened:

@@ -5,7 +5,7 @@ import pytest
 
 from mart.protocol.pose import Pose
 from mart.sim.experts import Expert, get_skill
-from mart.sim.experts.rehearsal import rehearse
+from mart.sim.experts.run_experts import run_experts
 from mart.sim.world import World
 
 TRAY, WIPING = "two_arm_drink_tray_lifting", "three_arm_lift_wiping"
@@ -19,7 +19,7 @@ def worlds() -> dict[str, World]:
 @pytest.mark.parametrize(("task", "longest_s"), [(TRAY, 7.0), (WIPING, 16.0)])
 def test_experts_succeed(worlds: dict[str, World], task: str, longest_s: float) -> None:
     for seed in range(3):
-        progress = rehearse(worlds[task], seed)
+        progress = run_experts(worlds[task], seed)
         assert progress.success
         assert progress.failed is None
         assert worlds[task].sim_time_s < longest_s
@@ -27,7 +27,7 @@ def test_experts_succeed(worlds: dict[str, World], task: str, longest_s: float) 
 
 @pytest.mark.parametrize("control_hz", [30.0, 60.0])
 def test_at_every_rate(control_hz: float) -> None:
-    assert rehearse(World.build(TRAY, control_hz=control_hz), 0).success
+    assert run_experts(World.build(TRAY, control_hz=control_hz), 0).success
 
 
 @pytest.mark.parametrize("task", [TRAY, WIPING])
@@ -35,7 +35,7 @@ def test_no_grasp_makes_the_solver_work_long(worlds: dict[str, World], task: str
     """A tick that takes longer than its period would stall a room; iterations times contacts is what it costs."""
     world = worlds[task]
     most_contacts = most_iterations = 0
-    rehearse(world, 0, until_s=0.0)
+    run_experts(world, 0, until_s=0.0)
     experts = {a: Expert(world.task, a, get_skill("expert"), np.random.default_rng(0)) for a in world.arms}
     for _ in range(100):
         step(world, experts)

@@ -11,10 +11,10 @@ import pytest
 from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
-from mart.sim.experts.rehearsal import rehearse
-from mart.sim.experts.seeing import upright
-from mart.sim.tasks.scene import Judgement
-from mart.sim.world import Progress, World
+from mart.sim.experts.perception import upright
+from mart.sim.experts.run_experts import run_experts
+from mart.sim.scene.scene import TaskStatus
+from mart.sim.world import TaskProgress, World
 
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 LYING = (0.5**0.5, 0.5**0.5, 0.0, 0.0)
@@ -50,13 +50,13 @@ def tool_over(
 
 def steps(
     world: World, targets: Mapping[str, Pose], ticks: int, grippers: Mapping[str, float]
-) -> Iterator[Progress]:
+) -> Iterator[TaskProgress]:
     for _ in range(ticks):
         world.step([world.action_for(arm, targets[arm], grippers.get(arm, 0.0)) for arm in world.arms])
         yield world.progress()
 
 
-def drive(world: World, targets: Mapping[str, Pose], ticks: int, **grippers: float) -> Progress:
+def drive(world: World, targets: Mapping[str, Pose], ticks: int, **grippers: float) -> TaskProgress:
     """The last of `steps`."""
     *_, progress = steps(world, targets, ticks, grippers)
     return progress
@@ -91,7 +91,7 @@ class Watched:
     """An episode: the state before each action, the actions, how it ended; what the physics of each tick took."""
 
     task: str
-    progress: Progress
+    progress: TaskProgress
     states: list[bytes]
     actions: list[Vector]
     constraint_rows: list[int]
@@ -102,16 +102,16 @@ def watch(world: World, seed: int) -> Watched:
     """An episode of experts, which succeeds."""
     states, actions, rows, iterations, step = [], [], [], [], world.step
 
-    def watched(action: Vector) -> Judgement:
+    def watched(action: Vector) -> TaskStatus:
         states.append(world.integration_state())
         actions.append(np.array(action))
-        judgement = step(action)
+        status = step(action)
         rows.append(world.data.nefc)
         iterations.append(int(world.data.solver_niter[0]))
-        return judgement
+        return status
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(world, "step", watched)
-        progress = rehearse(world, seed)
+        progress = run_experts(world, seed)
     assert progress.success
     return Watched(world.task.name, progress, states, actions, rows, iterations)

@@ -17,7 +17,7 @@ _PAGE = (ROOT / "docs" / "how-to-add-a-task.md").read_text()
 _FILES = dict(re.findall(r"^```python file=(\S+)\n(.*?)^```", _PAGE, re.MULTILINE | re.DOTALL))
 _SOURCES = ("protocol/src", "services/sim/src")
 _CHECKERS = (
-    "tests/sim/envs/test_envs.py tests/protocol/tasks/test_catalogue.py tests/sim/world/test_cameras.py"
+    "tests/sim/envs/test_envs.py tests/protocol/tasks/test_catalogue.py tests/sim/scene/test_cameras.py"
 )
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from mart.protocol.pose import Pose
-from mart.sim.experts.rehearsal import rehearse
+from mart.sim.experts.run_experts import run_experts
 from mart.sim.world import World
 from tests.sim.tasks.tray import lift_alone, shift, tilt
 
@@ -71,7 +71,7 @@ def test_success_is_held_for_one_and_a_half_seconds(world: World) -> None:
 
 
 def test_a_lifted_tray_is_held_for_half_a_minute_by_friction_alone(world: World) -> None:
-    rehearse(world, 0)
+    run_experts(world, 0)
     targets = {arm: world.tool_pose_in_base(arm) for arm in world.arms}
     settled = world.observations()
     for tick in range(600):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mart.protocol.pose import Pose
-from mart.sim.experts.rehearsal import rehearse
+from mart.sim.experts.run_experts import run_experts
 from mart.sim.world import World
 from tests.sim.tasks.driving import (
     drive,
@@ -151,4 +151,4 @@ def test_arm_0_reaches_no_bin_and_arm_1_no_container(world: World) -> None:
 
 @pytest.mark.parametrize("control_hz", [20.0, 30.0, 60.0])
 def test_experts_hand_it_over_at_every_rate(control_hz: float) -> None:
-    assert rehearse(World.build(TASK, control_hz), seed=1, until_s=30.0).success
+    assert run_experts(World.build(TASK, control_hz), seed=1, until_s=30.0).success

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mart.protocol.pose import quaternion_exp, quaternion_multiply
-from mart.sim.experts.rehearsal import rehearse
+from mart.sim.experts.run_experts import run_experts
 from mart.sim.world import World
 from tests.sim.tasks.driving import (
     LYING,
@@ -186,4 +186,4 @@ def test_neither_arm_reaches_the_other_s_knob_or_socket(world: World) -> None:
 
 @pytest.mark.parametrize("control_hz", [20.0, 30.0, 60.0])
 def test_experts_assemble_it_at_every_rate(control_hz: float) -> None:
-    assert rehearse(World.build(TASK, control_hz), seed=1, until_s=25.0).success
+    assert run_experts(World.build(TASK, control_hz), seed=1, until_s=25.0).success

@@ -7,7 +7,7 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks.tray import DRINKS
-from mart.sim.experts.seeing import upright
+from mart.sim.experts.perception import upright
 from mart.sim.world import World
 
 THINGS = ("tray", *(f"drink{i}" for i in range(DRINKS)))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
-from mart.sim.experts.hand import difference
+from mart.sim.experts.hand_motion import difference
 from mart.sim.world import World, osc
 from tests.sim.world import osc_oracle
 

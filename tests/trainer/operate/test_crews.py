@@ -25,7 +25,7 @@ from mart.protocol.messages import (
 )
 from mart.protocol.pose import Pose
 from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
-from mart.sim.seats import SeatTable
+from mart.sim.room.seats import SeatTable
 from mart.trainer.operate.crews import Crews
 from mart.trainer.operate.service import OwnSeats
 from tests.support.mailbox import Mailbox

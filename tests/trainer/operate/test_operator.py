@@ -22,7 +22,7 @@ from mart.protocol.messages import (
 )
 from mart.sim.world import World
 from mart.trainer.operate.operator import PolicyOperator, parts_of, target_of
-from tests.sim.stage import ARMS, PERIOD_S, Stage
+from tests.sim.room.room_harness import ARMS, PERIOD_S, RoomHarness
 from tests.trainer.operate.toys import TASK, Wanderer, one_action
 
 
@@ -32,14 +32,14 @@ def world() -> World:
 
 
 @pytest.fixture
-def stage(world: World) -> Stage:
-    return Stage(world)
+def stage(world: World) -> RoomHarness:
+    return RoomHarness(world)
 
 
 class Seated:
     """A policy at the arms that are its own in a stage."""
 
-    def __init__(self, stage: Stage, policy: Wanderer) -> None:
+    def __init__(self, stage: RoomHarness, policy: Wanderer) -> None:
         self.stage, self.policy = stage, policy
         self.operators = [PolicyOperator(part, stage.world.task) for part in parts_of(policy)]
 
@@ -91,7 +91,7 @@ def test_an_action_comes_out_of_the_sim_as_it_went_in(world: World, seed: int) -
 
 
 @pytest.mark.parametrize("joint", [False, True])
-def test_the_recorded_action_is_the_policys_output(stage: Stage, joint: bool) -> None:
+def test_the_recorded_action_is_the_policys_output(stage: RoomHarness, joint: bool) -> None:
     seated = Seated(stage, Wanderer(joint=joint))
     for arm in ARMS:
         seated.assign(arm)
@@ -103,7 +103,9 @@ def test_the_recorded_action_is_the_policys_output(stage: Stage, joint: bool) ->
 
 
 @pytest.mark.parametrize("joint", [False, True])
-def test_a_person_takes_one_arm_over_in_mid_episode_and_hands_it_back(stage: Stage, joint: bool) -> None:
+def test_a_person_takes_one_arm_over_in_mid_episode_and_hands_it_back(
+    stage: RoomHarness, joint: bool
+) -> None:
     seated = Seated(stage, Wanderer(joint=joint))
     for arm in ARMS:
         seated.assign(arm)
@@ -129,7 +131,7 @@ def test_a_person_takes_one_arm_over_in_mid_episode_and_hands_it_back(stage: Sta
     assert [arm.seat_epoch for arm in stage.newest.arms] == [epochs[0], epochs[1] + 2]
 
 
-def test_what_is_handed_back_begins_anew_and_what_goes_on_does_not(stage: Stage) -> None:
+def test_what_is_handed_back_begins_anew_and_what_goes_on_does_not(stage: RoomHarness) -> None:
     per_arm, joint = Seated(stage, Wanderer()), Seated(stage, Wanderer(joint=True))
     state = State.FromString(stage.newest.SerializeToString())
     for arm in state.arms:
@@ -143,7 +145,7 @@ def test_what_is_handed_back_begins_anew_and_what_goes_on_does_not(stage: Stage)
     assert len(joint.policy.seeds) == 1
 
 
-def test_a_reset_begins_the_policy_anew_with_the_episodes_number(stage: Stage) -> None:
+def test_a_reset_begins_the_policy_anew_with_the_episodes_number(stage: RoomHarness) -> None:
     seated = Seated(stage, Wanderer(joint=True))
     for arm in ARMS:
         seated.assign(arm)
@@ -154,7 +156,7 @@ def test_a_reset_begins_the_policy_anew_with_the_episodes_number(stage: Stage) -
     assert seated.policy.seeds[-1] == 1
 
 
-def test_the_same_state_again_is_no_news_and_repeats_have_new_numbers(stage: Stage) -> None:
+def test_the_same_state_again_is_no_news_and_repeats_have_new_numbers(stage: RoomHarness) -> None:
     operator = PolicyOperator(Wanderer(("arm0",)), stage.world.task)
     operator.seat({"arm0": 3})
     assert operator.commands(0) == []
@@ -171,7 +173,7 @@ def test_the_same_state_again_is_no_news_and_repeats_have_new_numbers(stage: Sta
     assert second.target_tool_in_base == first.target_tool_in_base
 
 
-def test_without_a_seat_it_neither_acts_nor_speaks(stage: Stage) -> None:
+def test_without_a_seat_it_neither_acts_nor_speaks(stage: RoomHarness) -> None:
     policy = Wanderer(("arm0",))
     operator = PolicyOperator(policy, stage.world.task)
     operator.seat({"arm1": 3})
@@ -181,7 +183,7 @@ def test_without_a_seat_it_neither_acts_nor_speaks(stage: Stage) -> None:
 
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf")])
-def test_an_action_that_is_no_number_is_never_sent(stage: Stage, bad: float) -> None:
+def test_an_action_that_is_no_number_is_never_sent(stage: RoomHarness, bad: float) -> None:
     policy = Wanderer(("arm0",))
     policy.spoilt = bad
     operator = PolicyOperator(policy, stage.world.task)
@@ -191,7 +193,7 @@ def test_an_action_that_is_no_number_is_never_sent(stage: Stage, bad: float) -> 
 
 
 @pytest.mark.parametrize("spoil", ["observation", "short", "arm"])
-def test_a_state_that_does_not_show_enough_is_refused(stage: Stage, spoil: str) -> None:
+def test_a_state_that_does_not_show_enough_is_refused(stage: RoomHarness, spoil: str) -> None:
     operator = PolicyOperator(Wanderer(("arm0",)), stage.world.task)
     operator.seat({"arm0": 1})
     state = State.FromString(stage.newest.SerializeToString())

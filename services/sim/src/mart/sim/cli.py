@@ -1,4 +1,4 @@
-"""The sim's commands. Heavy modules are imported inside them: `mart --help` loads this file."""
+"""Offer the sim's commands. Heavy modules are imported inside them: `mart --help` loads this file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mart.sim.settings import ExpertsSettings, ReplicaSettings, SimSettings
 
 
 def _given(**options: Any) -> dict[str, Any]:
-    """Options that were given; the others come from the environment or have defaults."""
+    """Return the options that were given; the others come from the environment or have defaults."""
     return {name: value for name, value in options.items() if value is not None}
 
 
@@ -33,7 +33,7 @@ def _given(**options: Any) -> dict[str, Any]:
 @click.option("--skill", help="Of the scripts that drive here, kept in the files: expert, average or novice.")
 def sim(**options: Any) -> None:
     """Run a room: one shared world that advances when every operator has given a new command."""
-    from mart.sim.serving import serve_room
+    from mart.sim.room.serving import serve_room
 
     serve_room(SimSettings(**_given(**options)))
 
@@ -55,7 +55,7 @@ def experts(**options: Any) -> None:
 @click.option("--name", help="Id of the replica.  [default: replica-1]")
 def replica(**options: Any) -> None:
     """Step worlds on request, as fast as the machine allows: for evaluation and re-simulation."""
-    from mart.sim.replica import serve_replica
+    from mart.sim.rollout.replica import serve_replica
 
     serve_replica(ReplicaSettings(**_given(**options)))
 
@@ -74,12 +74,12 @@ def render(
 ) -> None:
     """Draw an episode anew from its states, from any viewpoint, as a video."""
     try:
-        from mart.sim.film import film
+        from mart.sim.render_episode import render_episode
     except ImportError as error:  # of PyOpenGL, PyAV or the system's EGL
         raise Unavailable(
             f"Drawing needs what this installation lacks ({error}): pip install 'mart-sim[render]', and libegl1."
         ) from error
 
     video = out or Path(f"{file.stem}-{viewpoint}.mp4")
-    frames = film(file, video, viewpoint, width_px, height_px)
+    frames = render_episode(file, video, viewpoint, width_px, height_px)
     print_result({"video": str(video), "frames": frames}, f"{video}: {frames} pictures.", as_json)

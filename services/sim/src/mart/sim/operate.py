@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import OPERATOR_SCRIPT, Command, CommandStamps, State, pose_message
 from mart.protocol.tasks import Observation, Task
-from mart.sim.experts import Expert, Intent, Skill
+from mart.sim.experts import Expert, ExpertIntent, Skill
 
 REPEAT_S = 0.1
 
@@ -27,7 +27,7 @@ class ScriptedOperator:
         self._task, self._arm, self._skill, self._seed = task, arm, skill, seed
         self._index = task.arm_names.index(arm)
         self._expert: Expert | None = None
-        self._intent: Intent | None = None
+        self._intent: ExpertIntent | None = None
         self._seen = (0, 0)  # boot, tick
         self._sequence = 0
 

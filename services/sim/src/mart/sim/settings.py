@@ -1,4 +1,4 @@
-"""Settings of the sim's commands; each is an option and an environment variable."""
+"""Define the settings of the sim's commands; each is an option and an environment variable."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class _WorldSettings(Settings):
 
 
 class SimSettings(_WorldSettings):
-    """One room."""
+    """Configure one room."""
 
     room: str = Field("room-1", description="Id of the room.")
     task: str = Field(DEFAULT_TASK, description="Name of the task.")
@@ -51,19 +51,19 @@ class SimSettings(_WorldSettings):
 
     @property
     def room_path(self) -> Path:
-        """What the room keeps over a restart."""
+        """The file that keeps the room over a restart."""
         return self.data_dir / "rooms" / f"{self.room}.json"
 
 
 class ReplicaSettings(_WorldSettings):
-    """Worlds stepped by requests."""
+    """Configure a replica: worlds stepped by requests."""
 
     name: str = Field("replica-1", description="Id of the replica.")
     niceness: int = Field(10, ge=0, le=19, description="Added to the process's niceness: rooms go first.")
 
 
 class ExpertsSettings(Settings):
-    """Scripted operators."""
+    """Configure scripted operators."""
 
     room: str | None = Field(None, description="Only this room; default: every room.")
     arm: str | None = Field(None, description="Only this arm; default: every arm.")
@@ -73,5 +73,5 @@ class ExpertsSettings(Settings):
 
     @property
     def id(self) -> str:
-        """Of the service: tells apart the experts of one machine."""
+        """Return the id of the service, which tells the experts of one machine apart."""
         return "-".join(("experts", *(part for part in (self.room, self.arm) if part)))

@@ -1,4 +1,4 @@
-"""A task as a Gymnasium environment: one agent that sees everything and moves every arm."""
+"""Offer a task as a Gymnasium environment: one agent that sees everything and moves every arm."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from mart.sim.envs.course import (
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Task
+from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
-    Course,
+    EnvOptions,
+    EpisodeRunner,
     Observations,
-    Options,
     action_space,
     checked_seed,
     observation_space,
@@ -22,40 +25,55 @@ from mart.sim.renderer import Image
 
 
 class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integer[Any]]]):
-    """Actions: shape (arms, 7) in [-1, 1]. Observations: a dictionary of all that any operator sees.
+    """Step a task as one agent: actions of shape (arms, 7) in [-1, 1]; observations are all that any operator sees.
 
     The reward is 1 for the step that completes the task and 0 for every other. An episode terminates with success or
     irrecoverable failure, and is truncated at the task's horizon. `info`: subtasks (name → done), success, failed.
     """
 
-    metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 20}  # noqa: RUF012
+    metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": DEFAULT_CONTROL_HZ}  # noqa: RUF012
 
     def __init__(self, task: str, **options: Any) -> None:
-        """options: fields of `Options`."""
-        chosen = Options(**options)
-        self._course = Course(task, chosen)
+        """Build the environment of a task; the options are the fields of `EnvOptions`. Raises as `EpisodeRunner`."""
+        chosen = EnvOptions(**options)
+        self._runner = EpisodeRunner(task, chosen)
         self.render_mode = chosen.render_mode
         self.metadata = {**type(self).metadata, "render_fps": chosen.control_hz}
-        self.observation_space = observation_space(self._course.task.observations)
-        self.action_space = action_space(len(self._course.task.arms))
+        self.observation_space = observation_space(self._runner.task.observations)
+        self.action_space = action_space(len(self._runner.task.arms))
+
+    @property
+    def task(self) -> Task:
+        """The task as data: arms with their bases' poses in the world, subtasks, observations, limits, horizon."""
+        return self._runner.task
+
+    def action_for(self, arm: str, target_tool_in_base: Pose, gripper: float) -> NDArray[np.float64]:
+        """Return the action, shape (7,), that takes an arm's tool towards a pose in the arm's base frame.
+
+        It goes as far as one step and the workspace allow. gripper: 0 open … 1 closed. Raises NotFound for no such arm.
+        """
+        return self._runner.action_for(arm, target_tool_in_base, gripper)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observations, dict[str, Any]]:
-        """`seed` begins the very episode that it begins in a room; without one, the next is drawn."""
+        """Begin the very episode that `seed` begins in a room; without one, the next seed is drawn."""
         super().reset(seed=seed)
         drawn = int(self.np_random.integers(MAX_SEED)) if seed is None else checked_seed(seed)
-        moment = self._course.reset(drawn)
-        return moment.observations, moment.info()
+        result = self._runner.reset(drawn)
+        return result.observations, result.info()
 
     def step(
         self, action: NDArray[np.floating[Any] | np.integer[Any]]
     ) -> tuple[Observations, float, bool, bool, dict[str, Any]]:
-        moment = self._course.step(action)
-        return moment.observations, moment.reward, moment.terminated, moment.truncated, moment.info()
+        """Advance one control period; return observations, reward, terminated, truncated, info."""
+        result = self._runner.step(action)
+        return result.observations, result.reward, result.terminated, result.truncated, result.info()
 
     def render(self) -> Image | None:
-        return self._course.render()
+        """Draw the chosen viewpoint: uint8, shape (height, width, 3); None without a render mode."""
+        return self._runner.render()
 
     def close(self) -> None:
-        self._course.close()
+        """Let the renderer go."""
+        self._runner.close()

@@ -1,8 +1,8 @@
-"""Scripted operators: one per arm, seeing only what that arm's operator sees."""
+"""Drive arms by script: one operator per arm, which sees only what that arm's operator sees."""
 
 from __future__ import annotations
 
-from mart.sim.experts.expert import Expert, Intent
+from mart.sim.experts.expert import Expert, ExpertIntent
 from mart.sim.experts.skill import Skill, get_skill, skill_names
 
-__all__ = ["Expert", "Intent", "Skill", "get_skill", "skill_names"]
+__all__ = ["Expert", "ExpertIntent", "Skill", "get_skill", "skill_names"]

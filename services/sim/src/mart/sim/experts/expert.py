@@ -1,4 +1,4 @@
-"""A scripted operator of one arm. Pure: it is shown what that arm's operator sees and says what it wants."""
+"""Drive one arm by script. Pure: it is shown what that arm's operator sees and says what it wants."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Task
-from mart.sim.experts.hand import Hand
-from mart.sim.experts.person import Person
-from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Waypoint
+from mart.sim.experts.hand_motion import HandMotion
+from mart.sim.experts.human_error import HumanErrorModel
+from mart.sim.experts.plan import CLOSED, OPEN, ExpertPlan, OperatorObservation, Waypoint
 from mart.sim.experts.plans import plan_of
 from mart.sim.experts.skill import Skill
 
@@ -21,8 +21,8 @@ _SLIP_S = 0.4  # how long a hand that slipped stays open
 
 
 @dataclass(frozen=True)
-class Intent:
-    """What the operator wants now. While not `engaged` the clutch is let go, and the arm should hold."""
+class ExpertIntent:
+    """Say what the operator wants now. While not `engaged` the clutch is let go, and the arm should hold."""
 
     target_tool_in_base: Pose
     gripper: float
@@ -30,7 +30,7 @@ class Intent:
 
 
 class Expert:
-    """Good for one episode. Copes with sights that arrive some ticks late, repeatedly or not at all.
+    """Drive one arm for one episode. Copes with observations that arrive some ticks late, repeatedly or not at all.
 
     Time is the sim's: an expert that is shown the same moment again wants the same thing again.
     """
@@ -38,33 +38,35 @@ class Expert:
     def __init__(self, task: Task, arm: str, skill: Skill, random: np.random.Generator) -> None:
         self._arm = task.arm(arm)
         self._plan_of = plan_of(task)
-        self._person = Person(skill, random)
-        self._hand = Hand(self._person)
-        self._plan: Plan | None = None
+        self._human = HumanErrorModel(skill, random)
+        self._hand = HandMotion(self._human)
+        self._plan: ExpertPlan | None = None
         self._waypoint: Waypoint | None = None
-        self._intent: Intent | None = None
+        self._intent: ExpertIntent | None = None
         self._seen_s = 0.0
         self._rest_until_s = 0.0
         self._slip_until_s = 0.0
 
-    def act(self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float) -> Intent:
-        """observations: what the task declares for this arm; see `World.observations_for`."""
+    def act(self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float) -> ExpertIntent:
+        """Return what the operator wants; observations: what the task declares for this arm."""
         if self._intent is None or sim_time_s > self._seen_s:
             self._intent = self._want(self._look(observations, sim_time_s))
             self._seen_s = sim_time_s
         return self._intent
 
-    def _want(self, sight: Sight) -> Intent:
-        now_s, measured = sight.sim_time_s, sight.pose_tool_in_base
+    def _want(self, obs: OperatorObservation) -> ExpertIntent:
+        now_s, measured = obs.sim_time_s, obs.pose_tool_in_base
         elapsed_s = now_s - self._seen_s if self._intent is not None else 0.0
-        waypoint = self._waypoint = self._next_waypoint(sight)
+        waypoint = self._waypoint = self._next_waypoint(obs)
         gripper = self._grip(waypoint, now_s, elapsed_s)
         if now_s < self._rest_until_s:
-            return Intent(self._hand.rest(measured), gripper, engaged=False)
+            return ExpertIntent(self._hand.rest(measured), gripper, engaged=False)
         target = self._hand.move(waypoint.pose_tool_in_base, measured, waypoint.pace, elapsed_s)
-        return Intent(target, gripper, engaged=True)
+        return ExpertIntent(target, gripper, engaged=True)
 
-    def _look(self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float) -> Sight:
+    def _look(
+        self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float
+    ) -> OperatorObservation:
         name = self._arm.name
         tool = Pose(
             observations[f"{name}/tool_position_in_base"], observations[f"{name}/tool_quaternion_in_base"]
@@ -72,23 +74,25 @@ class Expert:
         arrived = self._waypoint is not None and self._hand.has_reached(
             self._waypoint.pose_tool_in_base, tool
         )
-        return Sight(observations, sim_time_s, tool, float(observations[f"{name}/gripper"][0]), arrived)
+        return OperatorObservation(
+            observations, sim_time_s, tool, float(observations[f"{name}/gripper"][0]), arrived
+        )
 
-    def _next_waypoint(self, sight: Sight) -> Waypoint:
+    def _next_waypoint(self, obs: OperatorObservation) -> Waypoint:
         if self._plan is None or self._waypoint is None:
-            self._plan = self._plan_of(self._arm, self._person, sight)
-            self._rest_until_s = sight.sim_time_s + self._person.reacts_s()
+            self._plan = self._plan_of(self._arm, self._human, obs)
+            self._rest_until_s = obs.sim_time_s + self._human.reacts_s()
             return next(self._plan)
-        if sight.sim_time_s < self._rest_until_s:
+        if obs.sim_time_s < self._rest_until_s:
             return self._waypoint
-        waypoint = self._plan.send(sight)
+        waypoint = self._plan.send(obs)
         if _is_new(waypoint, self._waypoint):
-            self._rest_until_s = sight.sim_time_s + self._person.pauses_s()
+            self._rest_until_s = obs.sim_time_s + self._human.pauses_s()
         return waypoint
 
     def _grip(self, waypoint: Waypoint, now_s: float, elapsed_s: float) -> float:
-        """What the gripper is told: a hand that should stay closed opens now and then for a moment."""
-        if waypoint.gripper >= CLOSED and self._person.lets_slip(elapsed_s):
+        """Say what the gripper is told: a hand that should stay closed opens now and then for a moment."""
+        if waypoint.gripper >= CLOSED and self._human.lets_slip(elapsed_s):
             self._slip_until_s = now_s + _SLIP_S
         return OPEN if now_s < self._slip_until_s else waypoint.gripper
 

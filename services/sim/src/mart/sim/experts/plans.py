@@ -1,4 +1,4 @@
-"""Which plan belongs to which task."""
+"""Find the plan of a task by the task's name."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from importlib.util import find_spec
 
 from mart.protocol.errors import NotFound
 from mart.protocol.tasks import Arm, Task
-from mart.sim.experts.person import Person
-from mart.sim.experts.plan import Plan, Sight
+from mart.sim.experts.human_error import HumanErrorModel
+from mart.sim.experts.plan import ExpertPlan, OperatorObservation
 
-PlanOf = Callable[[Arm, Person, Sight], Plan]
+PlanOf = Callable[[Arm, HumanErrorModel, OperatorObservation], ExpertPlan]
 
 
 def plan_of(task: Task) -> PlanOf:
-    """`plan` in the file `<task.name>.py` beside this one. Raises NotFound for a task that no script can do."""
+    """Return `plan` of the file `<task.name>.py` beside this one; raises NotFound for a task that no script can do."""
     name = f"{__package__}.{task.name}"
     if find_spec(name) is None:
         raise NotFound(

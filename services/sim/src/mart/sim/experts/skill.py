@@ -1,4 +1,4 @@
-"""How well a scripted person drives, as data.
+"""Say as data how well a scripted person drives.
 
 The levels follow the paper's user groups. What separates them is what separates people: a novice is slower and shakier,
 acts later on what is seen, overshoots, aims beside the thing, closes or lifts too early, lets things slip, rests more.
@@ -14,7 +14,7 @@ from mart.protocol.errors import NotFound
 
 @dataclass(frozen=True, kw_only=True)
 class Skill:
-    """Times are means of what is drawn anew each time; noise is a standard deviation."""
+    """Hold the numbers of a skill: times are means of what is drawn anew each time, noise is a standard deviation."""
 
     name: str
     reaction_s: float  # before the first movement
@@ -92,11 +92,12 @@ _SKILLS = {
 
 
 def skill_names() -> tuple[str, ...]:
+    """Return the names of the skills, the best first."""
     return tuple(_SKILLS)
 
 
 def get_skill(name: str) -> Skill:
-    """Raises NotFound with the names that exist."""
+    """Return the skill of this name; raises NotFound with the names that exist."""
     if name not in _SKILLS:
         raise NotFound.named("skill", name, _SKILLS)
     return _SKILLS[name]

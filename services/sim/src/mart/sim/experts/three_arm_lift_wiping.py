@@ -1,4 +1,4 @@
-"""Two carry the tray onto the rack, in step; the third takes the sponge, waits until they are aside, and wipes."""
+"""Plan lift and wipe: two carry the tray to the rack in step; the third waits with the sponge, then wipes."""
 
 from __future__ import annotations
 
@@ -9,9 +9,19 @@ from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
 from mart.protocol.tasks.three_arm_lift_wiping import ASIDE_Y_M, RACK_TOP_M, SPOTS_M, WIPER
 from mart.sim.experts.carrying import Carrier, raised
-from mart.sim.experts.person import Person
-from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, pick, stay, wait
-from mart.sim.experts.seeing import apart_m, at, seen
+from mart.sim.experts.human_error import HumanErrorModel
+from mart.sim.experts.perception import apart_m, at, seen
+from mart.sim.experts.plan import (
+    CLOSED,
+    OPEN,
+    ExpertPlan,
+    OperatorObservation,
+    PlanStep,
+    Waypoint,
+    pick,
+    stay,
+    wait,
+)
 
 _RACK_TRAY_M = np.add(RACK_TOP_M, (0.0, 0.0, 0.002))  # of the tray on it, put down with a little force
 _CARRY_Z_M = 0.105  # of the tray, on its way: not higher than the rack asks for, in case somebody lets go
@@ -28,81 +38,82 @@ _PACE = 0.8
 Vector = NDArray[np.float64]
 
 
-def plan(arm: Arm, person: Person, sight: Sight) -> Plan:
-    return _wipe(arm, person, sight) if arm.name == WIPER else _carry(arm, person, sight)
+def plan(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPlan:
+    """Yield the waypoints of one arm: the wiper's, or a carrier's."""
+    return _wipe(arm, human, obs) if arm.name == WIPER else _carry(arm, human, obs)
 
 
-def _carry(arm: Arm, person: Person, sight: Sight) -> Plan:
-    carrier, tray = Carrier(arm, person), seen(arm, "tray")
+def _carry(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPlan:
+    carrier, tray = Carrier(arm, human), seen(arm, "tray")
     rack = arm.pose_base_in_world.inverse().transform_points(_RACK_TRAY_M)
 
-    def beside(now: Sight) -> Vector:
+    def beside(now: OperatorObservation) -> Vector:
         return (rack - tray(now).position) * (1, 1, 0)
 
-    def is_up(now: Sight) -> bool:
+    def is_up(now: OperatorObservation) -> bool:
         return bool(tray(now).position[2] > _CARRY_Z_M - _NEAR_M)
 
-    def is_over_rack(now: Sight) -> bool:
+    def is_over_rack(now: OperatorObservation) -> bool:
         return float(np.linalg.norm(beside(now))) < _NEAR_M
 
     while True:
-        sight = yield from carrier.pick(sight)
-        sight = yield from carrier.await_partner(sight)
-        if not is_over_rack(sight):
-            up = np.array([0.0, 0.0, _CARRY_Z_M - tray(sight).position[2]])
-            sight = yield from carrier.along(sight, up, is_up)
-            sight = yield from carrier.along(sight, beside(sight), is_over_rack)
-        down = np.array([0.0, 0.0, rack[2] - tray(sight).position[2]])
-        sight = yield from carrier.along(sight, down, lambda _: False)
+        obs = yield from carrier.pick(obs)
+        obs = yield from carrier.await_partner(obs)
+        if not is_over_rack(obs):
+            up = np.array([0.0, 0.0, _CARRY_Z_M - tray(obs).position[2]])
+            obs = yield from carrier.along(obs, up, is_up)
+            obs = yield from carrier.along(obs, beside(obs), is_over_rack)
+        down = np.array([0.0, 0.0, rack[2] - tray(obs).position[2]])
+        obs = yield from carrier.along(obs, down, lambda _: False)
 
 
-def _wipe(arm: Arm, person: Person, sight: Sight) -> Plan:
-    wiper = _Wiper(arm, person)
+def _wipe(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPlan:
+    wiper = _Wiper(arm, human)
     while True:
-        sight = yield from pick(sight, person, wiper.grip)
-        sight = yield from wiper.wait_aside(sight)
-        sight = yield from wiper.rub(sight)
-        sight = yield from stay(sight, Waypoint(sight.pose_tool_in_base, OPEN), person.settles_s())
+        obs = yield from pick(obs, human, wiper.grip)
+        obs = yield from wiper.wait_aside(obs)
+        obs = yield from wiper.rub(obs)
+        obs = yield from stay(obs, Waypoint(obs.pose_tool_in_base, OPEN), human.settles_s())
 
 
 class _Wiper:
-    """What the third operator sees and does; everything is in the arm's own base frame."""
+    """Wipe as the third operator; all poses are in the arm's own base frame."""
 
-    def __init__(self, arm: Arm, person: Person) -> None:
-        self._person = person
+    def __init__(self, arm: Arm, human: HumanErrorModel) -> None:
+        self._human = human
         self._sponge = seen(arm, "sponge")
         self._spots = arm.pose_base_in_world.inverse().transform_points(_SPOTS_M)
 
-    def grip(self, now: Sight) -> Pose:
+    def grip(self, now: OperatorObservation) -> Pose:
         return self._sponge(now) @ _BLOCK
 
-    def wait_aside(self, sight: Sight) -> Step:
-        """Holds the sponge up until the tray has left the dirt."""
-        up = Waypoint(raised(sight.pose_tool_in_base, _OVER_M), CLOSED, _PACE)
+    def wait_aside(self, obs: OperatorObservation) -> PlanStep:
+        """Hold the sponge up until the tray has left the dirt."""
+        up = Waypoint(raised(obs.pose_tool_in_base, _OVER_M), CLOSED, _PACE)
 
-        def has_news(now: Sight) -> bool:
+        def has_news(now: OperatorObservation) -> bool:
             return _is_aside(now) or self.has_lost(now)
 
-        return (yield from wait(sight, up, self._person, has_news))
+        return (yield from wait(obs, up, self._human, has_news))
 
-    def rub(self, sight: Sight) -> Step:
-        """Over whatever is nearest and still dirty, pressed harder where it does not come off; then up, and stay so."""
-        since_s, left = sight.sim_time_s, len(self._spots)
-        offset = sight.pose_tool_in_base.position - self._sponge(sight).position
-        turn = sight.pose_tool_in_base.quaternion_wxyz
-        while not self.has_lost(sight):
-            dirty = self._spots[sight.observations["dirt/wiped"] < 1]
+    def rub(self, obs: OperatorObservation) -> PlanStep:
+        """Rub what is nearest and still dirty, harder where it does not come off; then go up, and stay so."""
+        since_s, left = obs.sim_time_s, len(self._spots)
+        offset = obs.pose_tool_in_base.position - self._sponge(obs).position
+        turn = obs.pose_tool_in_base.quaternion_wxyz
+        while not self.has_lost(obs):
+            dirty = self._spots[obs.observations["dirt/wiped"] < 1]
             if len(dirty) < left:
-                since_s, left = sight.sim_time_s, len(dirty)
-            place = self._next_place(sight, dirty, sight.sim_time_s - since_s)
-            sight = yield Waypoint(Pose(place + offset, turn), CLOSED, _PACE)
-        return sight
+                since_s, left = obs.sim_time_s, len(dirty)
+            place = self._next_place(obs, dirty, obs.sim_time_s - since_s)
+            obs = yield Waypoint(Pose(place + offset, turn), CLOSED, _PACE)
+        return obs
 
-    def has_lost(self, now: Sight) -> bool:
+    def has_lost(self, now: OperatorObservation) -> bool:
         return apart_m(self.grip(now), now.pose_tool_in_base) > _LOST_M
 
-    def _next_place(self, now: Sight, dirty: Vector, stuck_s: float) -> Vector:
-        """Where the sponge's middle should be."""
+    def _next_place(self, now: OperatorObservation, dirty: Vector, stuck_s: float) -> Vector:
+        """Return where the sponge's middle should be, shape (3,), metres."""
         x, y, _ = self._sponge(now).position
         if len(dirty) == 0 or not _is_aside(now):
             return np.array([x, y, _OVER_M])
@@ -114,5 +125,5 @@ class _Wiper:
         return np.array([nearest_x, nearest_y, _SPONGE_Z_M - press_m])
 
 
-def _is_aside(now: Sight) -> bool:
+def _is_aside(now: OperatorObservation) -> bool:
     return bool(now.observations["tray/position_in_world"][1] < ASIDE_Y_M)

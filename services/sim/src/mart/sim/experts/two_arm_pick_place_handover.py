@@ -1,4 +1,4 @@
-"""Arm 0 opens the container and holds the hammer out; arm 1 clears the bin, takes the hammer over and lays it there.
+"""Plan the handover: arm 0 opens the container and holds the hammer out; arm 1 clears the bin and lays it there.
 
 The two agree by what they see: arm 1 comes when the hammer hangs still in the air, arm 0 lets go when the other tool
 has rested at the far end of the handle for a while, arm 1 leaves when the other tool has gone.
@@ -13,10 +13,20 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.sim.experts.grip import Grip
-from mart.sim.experts.person import Person
-from mart.sim.experts.plan import CLOSED, OPEN, Plan, Sight, Step, Waypoint, go, wait
-from mart.sim.experts.seeing import Still, across, apart_m, at, level, seen, seen_tool, standing, upright
+from mart.sim.experts.human_error import HumanErrorModel
+from mart.sim.experts.perception import (
+    StillnessDetector,
+    across,
+    apart_m,
+    at,
+    level,
+    seen,
+    seen_tool,
+    standing,
+    upright,
+)
+from mart.sim.experts.pick_and_place import PickAndPlace
+from mart.sim.experts.plan import CLOSED, OPEN, ExpertPlan, OperatorObservation, PlanStep, Waypoint, go, wait
 
 _LID_KNOB = at(0.0, 0.0, 0.024)
 _HEAD_END, _FREE_END = at(-0.055, 0.0, 0.0), at(0.075, 0.0, 0.0)  # where a hammer's handle is gripped
@@ -45,158 +55,161 @@ _PARTNER_M, _PARTNER_S = 0.04, 0.6
 _PARTNER_OFF_M, _PARTNER_GONE_M = 0.045, 0.09  # of a tool that has let go, and of one that is out of the way
 
 
-def plan(arm: Arm, person: Person, sight: Sight) -> Plan:
+def plan(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPlan:
+    """Yield the waypoints of one arm: the fetcher's (arm 0), or the receiver's (arm 1)."""
     if arm.name == "arm0":
-        fetcher = _Fetcher(arm, person)
+        fetcher = _Fetcher(arm, human)
         while True:
-            while not fetcher.is_open(sight):
-                sight = yield from fetcher.remove_lid(sight)
-            while fetcher.has_to_fetch(sight):
-                sight = yield from fetcher.offer_hammer(sight)
-            sight = yield fetcher.retreat
-    receiver = _Receiver(arm, person)
+            while not fetcher.is_open(obs):
+                obs = yield from fetcher.remove_lid(obs)
+            while fetcher.has_to_fetch(obs):
+                obs = yield from fetcher.offer_hammer(obs)
+            obs = yield fetcher.retreat
+    receiver = _Receiver(arm, human)
     while True:
-        while not receiver.is_clear(sight):
-            sight = yield from receiver.clear_trash(sight)
-        while not receiver.has_placed(sight):
-            sight = yield from receiver.take_hammer(sight)
-        sight = yield receiver.retreat
+        while not receiver.is_clear(obs):
+            obs = yield from receiver.clear_trash(obs)
+        while not receiver.has_placed(obs):
+            obs = yield from receiver.take_hammer(obs)
+        obs = yield receiver.retreat
 
 
 class _Fetcher:
-    """Arm 0."""
+    """Act as arm 0: open the container, hold the hammer out."""
 
-    def __init__(self, arm: Arm, person: Person) -> None:
-        self._person = person
+    def __init__(self, arm: Arm, human: HumanErrorModel) -> None:
+        self._human = human
         to_base = arm.pose_base_in_world.inverse()
         self._lid, self._container = seen(arm, "lid"), seen(arm, "container")
         self._hammer, self._partner = seen(arm, "hammer"), seen_tool(arm, "arm1")
-        self._knob = Grip(person, self._lid, lambda now: across(self._lid(now) @ _LID_KNOB))
-        self._handle = Grip(person, self._hammer, lambda now: across(_own_end(self._hammer(now))))
+        self._knob = PickAndPlace(human, self._lid, lambda now: across(self._lid(now) @ _LID_KNOB))
+        self._handle = PickAndPlace(human, self._hammer, lambda now: across(_own_end(self._hammer(now))))
         self._sides = cycle(_BESIDE_M)
         self._lid_place, self._offer = to_base @ _LID_PLACE, to_base @ _OFFER
         self.retreat = Waypoint(across(to_base @ _RETREAT), OPEN)
 
-    def is_open(self, now: Sight) -> bool:
-        """The lid is away, and down."""
+    def is_open(self, now: OperatorObservation) -> bool:
+        """Whether the lid is away, and down."""
         x, y, z = self._lid(now).position - self._container(now).position
         return math.hypot(x, y) > _OPEN_M and z < _LOW_M
 
-    def remove_lid(self, sight: Sight) -> Step:
-        """One attempt."""
-        sight = yield from self._knob.pick(sight)
-        return (yield from self._knob.put(sight, self._place_of_lid, _CLEAR_M, self.is_open))
+    def remove_lid(self, obs: OperatorObservation) -> PlanStep:
+        """Try once to lay the lid aside."""
+        obs = yield from self._knob.pick(obs)
+        return (yield from self._knob.put(obs, self._place_of_lid, _CLEAR_M, self.is_open))
 
-    def has_to_fetch(self, now: Sight) -> bool:
-        """The hammer lies where this arm can reach it."""
+    def has_to_fetch(self, now: OperatorObservation) -> bool:
+        """Whether the hammer lies where this arm can reach it."""
         x, _, z = self._hammer(now).position
         return z < _IN_THE_AIR_Z_M and x < self._offer.position[0] + _FETCHED_TO_M
 
-    def offer_hammer(self, sight: Sight) -> Step:
-        """One attempt: out of the container, held out until the partner has it, let go."""
-        sight = yield from self._handle.pick(sight, beside_m=next(self._sides))
-        sight = yield from self._handle.raise_to(sight, self._offer.position[2])
-        still = Still(self._partner, _STILL_M, _PARTNER_S)
-        sight = yield from self._handle.bring(
-            sight, self._place_of_offer, lambda now: still(now) and self._is_gripped_by_partner(now)
+    def offer_hammer(self, obs: OperatorObservation) -> PlanStep:
+        """Try once: out of the container, held out until the partner has it, let go."""
+        obs = yield from self._handle.pick(obs, beside_m=next(self._sides))
+        obs = yield from self._handle.raise_to(obs, self._offer.position[2])
+        still = StillnessDetector(self._partner, _STILL_M, _PARTNER_S)
+        obs = yield from self._handle.bring(
+            obs, self._place_of_offer, lambda now: still(now) and self._is_gripped_by_partner(now)
         )
-        sight = yield from self._handle.let_go(sight)
-        if self.has_to_fetch(sight):
-            return sight
-        return (yield from go(sight, lambda _: self.retreat, patience_s=2.0))
+        obs = yield from self._handle.let_go(obs)
+        if self.has_to_fetch(obs):
+            return obs
+        return (yield from go(obs, lambda _: self.retreat, patience_s=2.0))
 
-    def _place_of_lid(self, now: Sight) -> Pose:
+    def _place_of_lid(self, now: OperatorObservation) -> Pose:
         return standing(self._lid_place, self._lid(now), math.pi)
 
-    def _place_of_offer(self, now: Sight) -> Pose:
+    def _place_of_offer(self, now: OperatorObservation) -> Pose:
         return level(self._offer, self._hammer(now))
 
-    def _is_gripped_by_partner(self, now: Sight) -> bool:
+    def _is_gripped_by_partner(self, now: OperatorObservation) -> bool:
         return apart_m(_other_end(self._hammer(now)), self._partner(now)) < _PARTNER_M
 
 
 class _Receiver:
-    """Arm 1."""
+    """Act as arm 1: clear the bin, take the hammer over, lay it there."""
 
-    def __init__(self, arm: Arm, person: Person) -> None:
-        self._person = person
+    def __init__(self, arm: Arm, human: HumanErrorModel) -> None:
+        self._human = human
         to_base = arm.pose_base_in_world.inverse()
         self._trash, self._tray, self._bin = (seen(arm, name) for name in ("trash", "trash_tray", "bin"))
         self._hammer, self._partner = seen(arm, "hammer"), seen_tool(arm, "arm0")
-        along = Grip(person, self._trash, lambda now: across(self._trash(now), math.pi / 2))
-        athwart = Grip(person, self._trash, lambda now: across(self._trash(now), math.pi / 2) @ _QUARTER_TURN)
+        along = PickAndPlace(human, self._trash, lambda now: across(self._trash(now), math.pi / 2))
+        athwart = PickAndPlace(
+            human, self._trash, lambda now: across(self._trash(now), math.pi / 2) @ _QUARTER_TURN
+        )
         self._grips = cycle((along, athwart))
-        self._handle = Grip(person, self._hammer, lambda now: across(_own_end(self._hammer(now))))
+        self._handle = PickAndPlace(human, self._hammer, lambda now: across(_own_end(self._hammer(now))))
         self._sides = cycle(_BESIDE_M)
         self._back, self._taken = to_base @ _BACK, False
         self._reach_x_m = float((to_base @ _OFFER).position[0]) - _FETCHED_TO_M
         self.retreat = Waypoint(across(to_base @ _AWAIT), OPEN)
 
-    def is_clear(self, now: Sight) -> bool:
+    def is_clear(self, now: OperatorObservation) -> bool:
         return _lies_in(self._trash(now), self._tray(now), _TRAY_HALF_M)
 
-    def clear_trash(self, sight: Sight) -> Step:
-        """One attempt, each across the other two sides of the cube: a wall may be in the way."""
+    def clear_trash(self, obs: OperatorObservation) -> PlanStep:
+        """Try once to move the trash, each time across the other two sides of the cube: a wall may be in the way."""
         grip = next(self._grips)
-        sight = yield from grip.pick(sight)
-        return (yield from grip.put(sight, self._place_of_trash, _CLEAR_M, self.is_clear))
+        obs = yield from grip.pick(obs)
+        return (yield from grip.put(obs, self._place_of_trash, _CLEAR_M, self.is_clear))
 
-    def has_placed(self, now: Sight) -> bool:
+    def has_placed(self, now: OperatorObservation) -> bool:
         return _lies_in(self._hammer(now), self._bin(now), _BIN_HALF_M)
 
-    def take_hammer(self, sight: Sight) -> Step:
-        """One attempt: out of the partner's hand into the bin.
+    def take_hammer(self, obs: OperatorObservation) -> PlanStep:
+        """Try once: out of the partner's hand into the bin.
 
         From where it fell on this arm's shelf as well; only, a hammer that has not been handed over goes back first.
         """
-        still = Still(self._hammer, _STILL_M, _STILL_S)
-        sight = yield from wait(
-            sight, self.retreat, self._person, lambda now: still(now) and self._is_within_reach(now)
+        still = StillnessDetector(self._hammer, _STILL_M, _STILL_S)
+        obs = yield from wait(
+            obs, self.retreat, self._human, lambda now: still(now) and self._is_within_reach(now)
         )
-        offered = self._is_in_the_air(sight)
-        sight = yield from self._handle.pick(
-            sight,
+        offered = self._is_in_the_air(obs)
+        obs = yield from self._handle.pick(
+            obs,
             unless=lambda now: not self._is_within_reach(now),
             beside_m=0.0 if offered else next(self._sides),
         )
-        here = Waypoint(sight.pose_tool_in_base, CLOSED)
+        here = Waypoint(obs.pose_tool_in_base, CLOSED)
 
-        def is_alone(now: Sight) -> bool:
+        def is_alone(now: OperatorObservation) -> bool:
             lost, off_m = self._handle.is_lost(now), self._partner_off_m(now)
             self._taken |= offered and not lost and off_m > _PARTNER_OFF_M
             return lost or off_m > _PARTNER_GONE_M
 
-        sight = yield from wait(sight, here, self._person, is_alone)
+        obs = yield from wait(obs, here, self._human, is_alone)
         if self._taken:
-            return (yield from self._handle.put(sight, self._place_of_hammer, _CLEAR_M, self.has_placed))
-        return (yield from self._handle.put(sight, self._place_back, _CLEAR_M, self._is_back))
+            return (yield from self._handle.put(obs, self._place_of_hammer, _CLEAR_M, self.has_placed))
+        return (yield from self._handle.put(obs, self._place_back, _CLEAR_M, self._is_back))
 
-    def _is_within_reach(self, now: Sight) -> bool:
-        """Held out, or on the own shelf."""
+    def _is_within_reach(self, now: OperatorObservation) -> bool:
+        """Whether the hammer is held out, or lies on the own shelf."""
         return self._is_in_the_air(now) or self._hammer(now).position[0] < self._reach_x_m
 
-    def _is_in_the_air(self, now: Sight) -> bool:
+    def _is_in_the_air(self, now: OperatorObservation) -> bool:
         return bool(self._hammer(now).position[2] > _IN_THE_AIR_Z_M)
 
-    def _is_back(self, now: Sight) -> bool:
+    def _is_back(self, now: OperatorObservation) -> bool:
         x, _, z = self._hammer(now).position
         return bool(x > self._reach_x_m and z < self._back.position[2] + 0.01)
 
-    def _partner_off_m(self, now: Sight) -> float:
+    def _partner_off_m(self, now: OperatorObservation) -> float:
         return apart_m(_other_end(self._hammer(now)), self._partner(now))
 
-    def _place_of_trash(self, now: Sight) -> Pose:
+    def _place_of_trash(self, now: OperatorObservation) -> Pose:
         return standing(self._tray(now) @ _ON_FLOOR, self._trash(now), math.pi / 2)
 
-    def _place_back(self, now: Sight) -> Pose:
+    def _place_back(self, now: OperatorObservation) -> Pose:
         return level(self._back, self._hammer(now))
 
-    def _place_of_hammer(self, now: Sight) -> Pose:
+    def _place_of_hammer(self, now: OperatorObservation) -> Pose:
         return level(self._bin(now) @ _ON_FLOOR, self._hammer(now))
 
 
 def _own_end(hammer: Pose) -> Pose:
-    """What is nearer to the own base: mostly the head's for arm 0, but it may have fallen the other way round."""
+    """Return the end nearer to the own base: mostly the head's for arm 0, but it may have fallen the other way."""
     return hammer @ (_HEAD_END if _points_away(hammer) else _FREE_END)
 
 
@@ -205,7 +218,7 @@ def _other_end(hammer: Pose) -> Pose:
 
 
 def _points_away(hammer: Pose) -> bool:
-    """Its head is nearer to the own base than its handle."""
+    """Whether the hammer's head is nearer to the own base than its handle."""
     return bool(hammer.rotation_matrix()[0, 0] > 0.0)
 
 

@@ -1,4 +1,4 @@
-"""Dirt on the table: overlapping spots, each of which is gone once a sponge has been over it.
+"""Lay dirt on the table: overlapping spots, each of which is gone once a sponge has been over it.
 
 What has been wiped is in the scene's memory. To look at, spots are mocap bodies: a wiped one moves into the table top,
 so that everybody who renders the state sees it gone, and the physics has nothing to do with it.
@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.tasks.three_arm_lift_wiping import SPOTS_M
-from mart.sim.world.data import Array, Data, Flags, into_frame, within
-from mart.sim.world.palette import MATERIALS, rgba
+from mart.sim.scene.data import Array, Data, Flags, into_frame, within
+from mart.sim.scene.palette import MATERIALS, rgba
 
 _RADIUS_M = 0.046  # of what is painted
 _PIXELS = 64
@@ -25,6 +25,7 @@ _TOUCHING_M = 0.003  # sponges give
 
 
 def add_dirt(spec: mujoco.MjSpec) -> None:
+    """Add the spots, all of them visible."""
     texture = spec.add_texture(
         name="dirt", type=mujoco.mjtTexture.mjTEXTURE_2D, width=_PIXELS, height=_PIXELS, nchannel=4
     )
@@ -52,12 +53,12 @@ def add_dirt(spec: mujoco.MjSpec) -> None:
 
 
 class Dirt:
-    """The spots in a world's state, or in a batch's: shapes (...) are () or (worlds,)."""
+    """View the spots in a world's state, or in a batch's: shapes (...) are () or (worlds,)."""
 
     def __init__(
         self, data: Data, wiped: Array, sponge: Any, sponge_half_m: tuple[float, float, float]
     ) -> None:
-        """wiped: 1 where it is, shape (..., spots), in the state. sponge: a view of its body."""
+        """Attach; wiped: 1 where it is, shape (..., spots), in the state. sponge: a view of its body."""
         self.wiped = wiped
         self._position = sponge.xpos
         self._rotation = sponge.xmat.reshape(*sponge.xmat.shape[:-1], 3, 3)
@@ -68,21 +69,23 @@ class Dirt:
         self._heights = data.mocap_pos[..., first : first + len(SPOTS_M), 2]
 
     def wipe(self) -> None:
+        """Mark what the sponge touches as wiped, and hide it."""
         np.maximum(self.wiped, self._touched(), out=self.wiped)
         self._heights[self.wiped > 0] = _HIDDEN_Z_M
 
     def is_gone(self) -> Flags:
+        """Return whether every spot is wiped, shape (...)."""
         return np.logical_and.reduce(self.wiped, axis=-1)
 
     def _touched(self) -> Flags:
-        """Which spots lie under the sponge's face and against it, shape (..., spots)."""
+        """Return which spots lie under the sponge's face and against it, shape (..., spots)."""
         from_sponge = self._spots - self._position[..., None, :]
         from_face = into_frame(self._rotation[..., None, :, :], from_sponge) - self._face_in_sponge
         return within(from_face, self._reach_m)
 
 
 def _smudge() -> NDArray[np.uint8]:
-    """White, shape (rows, columns, 4): a blot with a ragged, fading edge."""
+    """Draw a white blot with a ragged, fading edge, shape (rows, columns, 4)."""
     axis = np.linspace(-1, 1, _PIXELS)
     x, y = np.meshgrid(axis, axis)
     angle = np.arctan2(y, x)

@@ -1,4 +1,4 @@
-"""Lift and wipe: a tray of drinks stands on a dirty table; beside it a rack for the tray, and a sponge."""
+"""Build lift and wipe: a tray of drinks stands on a dirty table; beside it a rack for the tray, and a sponge."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
 from mart.protocol.tasks.three_arm_lift_wiping import ASIDE_Y_M, RACK_TOP_M, SPOTS_M, WIPER
 from mart.protocol.tasks.tray import CARRIERS
+from mart.sim.scene.data import Array, Data
+from mart.sim.scene.gripper import GRASPABLE
+from mart.sim.scene.palette import rgba
+from mart.sim.scene.scene import Scene, TaskStatus, any_of
+from mart.sim.scene.shadows import add_shadow
+from mart.sim.scene.symbols import add_tile
 from mart.sim.tasks.dirt import Dirt, add_dirt
-from mart.sim.tasks.scene import Judgement, Scene, any_of
 from mart.sim.tasks.tray import Tray, across, add_tray
-from mart.sim.world.data import Array, Data
-from mart.sim.world.gripper import GRASPABLE
-from mart.sim.world.palette import rgba
-from mart.sim.world.shadows import add_shadow
-from mart.sim.world.symbols import add_tile
 
 _RACK_HALF_M = (0.13, 0.07, RACK_TOP_M[2] / 2)
 LIFTED_M = 0.04  # of the tray's lowest corner: a tray that is dragged over the table stays under it
@@ -40,6 +40,8 @@ _BOX = mujoco.mjtGeom.mjGEOM_BOX
 
 
 class LiftWiping(Scene):
+    """Define the scene of lift and wipe."""
+
     memory_size = len(SPOTS_M)
 
     def add_objects(self, spec: mujoco.MjSpec) -> None:
@@ -86,7 +88,7 @@ class LiftWiping(Scene):
     def remember(self) -> None:
         self._dirt.wipe()
 
-    def judge(self) -> Judgement:
+    def task_status(self) -> TaskStatus:
         failed = {
             **self._tray.spills(),
             "The sponge fell off the table.": self._sponge_position[..., 2] < FALLEN_Z_M,
@@ -94,7 +96,7 @@ class LiftWiping(Scene):
         lifted = (self._tray.lowest_point_m() > LIFTED_M) & ~any_of(failed.values())
         aside = lifted & (self._tray.position[..., 1] < ASIDE_Y_M)
         clean = self._dirt.is_gone()
-        return Judgement(
+        return TaskStatus(
             {"lift_tray": lifted, "carry_tray": aside, "wipe_table": clean}, aside & clean, failed
         )
 
@@ -103,7 +105,7 @@ SCENE = LiftWiping
 
 
 def _add_sponge(spec: mujoco.MjSpec, wiper: Arm) -> None:
-    """A sponge under a block to hold it by. Its own low friction counts (priority), or it would drag the hand back."""
+    """Add a sponge under a block to hold it by. Its own low friction counts, or it would drag the hand back."""
     sponge = spec.worldbody.add_body(name="sponge", pos=(0.3, 0.24, SPONGE_HALF_M[2]))
     sponge.add_freejoint(name="sponge")
     sponge.add_geom(

@@ -1,4 +1,4 @@
-"""A wooden tray with two handles, each in the colour of the arm it belongs to, and drinks that stand free on it.
+"""Build a wooden tray with two handles in the colours of the arms they belong to, and drinks that stand free on it.
 
 The handles' bars lie across the tray's length, so that fingers straddle them from above. Plain cylinders are the
 steadiest drinks: they topple when the tray leans by 26 degrees, which is one handle 21 cm above the other.
@@ -15,11 +15,11 @@ import numpy as np
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
 from mart.protocol.tasks.tray import DRINKS, handle_of
-from mart.sim.world.data import Array, Data, Flags, into_frame
-from mart.sim.world.gripper import GRASPABLE
-from mart.sim.world.palette import rgba
-from mart.sim.world.shadows import add_shadow
-from mart.sim.world.symbols import add_tile
+from mart.sim.scene.data import Array, Data, Flags, into_frame
+from mart.sim.scene.gripper import GRASPABLE
+from mart.sim.scene.palette import rgba
+from mart.sim.scene.shadows import add_shadow
+from mart.sim.scene.symbols import add_tile
 
 HALF_M = (0.17, 0.13, 0.005)  # of the plate, about the tray's origin
 HANDLE_M = (0.235, 0.0, 0.045)  # of the middle of a bar, in the tray's frame, or with -x
@@ -42,7 +42,7 @@ _LOOKS = {"contype": 0, "conaffinity": 0, "mass": 0}
 
 
 def add_tray(spec: mujoco.MjSpec, carriers: Sequence[Arm]) -> None:
-    """carriers: whose handle is at -x and whose at +x of the tray's frame."""
+    """Add tray and drinks; carriers: whose handle is at -x and whose at +x of the tray's frame."""
     # With drinks, the solver needs a quarter fewer iterations like this; a tray held for half a minute creeps 0.3 mm.
     spec.option.impratio, spec.option.tolerance = 50, 1e-9
     tray = spec.worldbody.add_body(name="tray", pos=(0, 0, HALF_M[2]))
@@ -102,7 +102,7 @@ def _add_drink(spec: mujoco.MjSpec, index: int, position: tuple[float, float, fl
 
 
 class Tray:
-    """The tray and its drinks in a world's state, or in a batch's: shapes (...) are () or (worlds,)."""
+    """View the tray and its drinks in a world's state, or in a batch's: shapes (...) are () or (worlds,)."""
 
     def __init__(self, data: Data, carriers: Sequence[Arm]) -> None:
         tray, drink = data.body("tray"), data.body("drink0").id
@@ -121,7 +121,7 @@ class Tray:
         }
 
     def place(self, x_m: float, y_m: float, yaw_rad: float, random: np.random.Generator) -> None:
-        """On the table, each drink near its place. Of a single world."""
+        """Put it on the table of a single world, each drink near its place."""
         tray, *drinks = self._joints
         turn = np.array([math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2)])
         placed = Pose(np.array([x_m, y_m, HALF_M[2]]), turn)
@@ -132,15 +132,16 @@ class Tray:
             drink[:] = *foot, 1.0, 0.0, 0.0, 0.0
 
     def observe(self) -> dict[str, Array]:
+        """Return what is seen of tray, handles, tools and drinks."""
         return {**self._seen, "drinks/positions_in_world": self._drinks.reshape(*self._drinks.shape[:-2], -1)}
 
     def lowest_point_m(self) -> Array:
-        """Height of the plate's lowest corner over the table, shape (...)."""
+        """Return the height of the plate's lowest corner over the table, shape (...)."""
         leaning = np.add.reduce(np.abs(self._rotation[..., 2, :]) * HALF_M, axis=-1)
         return self.position[..., 2] - leaning
 
     def spills(self) -> dict[str, Flags]:
-        """What may have become of a drink, in words, and where it has."""
+        """Return what may have become of a drink, in words, and where it has."""
         tipped = self._uprightness < _UPRIGHT_MIN
         from_tray = self._drinks - self.position[..., None, :]
         in_tray = into_frame(self._rotation[..., None, :, :], from_tray)
@@ -154,5 +155,5 @@ class Tray:
 
 
 def across(pose_tool_in_base: Pose) -> Pose:
-    """Turned by a quarter, so that the fingers close along the arm's reach: a handle's bar lies across it."""
+    """Return the tool turned by a quarter: the fingers then close along the arm's reach, across a handle's bar."""
     return pose_tool_in_base @ Pose(np.zeros(3), np.array([math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)]))

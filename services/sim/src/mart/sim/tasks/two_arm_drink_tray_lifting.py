@@ -1,4 +1,4 @@
-"""Drink tray lifting: a tray with four drinks between two arms."""
+"""Build drink tray lifting: a tray with four drinks between two arms."""
 
 from __future__ import annotations
 
@@ -7,15 +7,17 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.sim.tasks.scene import Judgement, Scene, any_of
+from mart.sim.scene.data import Array, Data
+from mart.sim.scene.scene import Scene, TaskStatus, any_of
 from mart.sim.tasks.tray import Tray, across, add_tray
-from mart.sim.world.data import Array, Data
 
 LIFTED_M = 0.10  # of the tray's lowest corner over the table
 _SPREAD_M, _SPREAD_RAD = 0.06, 0.25
 
 
 class DrinkTrayLifting(Scene):
+    """Define the scene of drink tray lifting."""
+
     def add_objects(self, spec: mujoco.MjSpec) -> None:
         add_tray(spec, self.task.arms)
 
@@ -32,10 +34,10 @@ class DrinkTrayLifting(Scene):
     def observe(self) -> dict[str, Array]:
         return self._tray.observe()
 
-    def judge(self) -> Judgement:
+    def task_status(self) -> TaskStatus:
         spills = self._tray.spills()
         lifted = (self._tray.lowest_point_m() > LIFTED_M) & ~any_of(spills.values())
-        return Judgement({"lift_tray": lifted}, lifted, spills)
+        return TaskStatus({"lift_tray": lifted}, lifted, spills)
 
 
 SCENE = DrinkTrayLifting

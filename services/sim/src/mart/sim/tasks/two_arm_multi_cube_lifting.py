@@ -1,4 +1,4 @@
-"""Multi-cube lifting: one cube of 4 cm in front of each arm, in the arm's colour."""
+"""Build multi-cube lifting: one cube of 4 cm in front of each arm, in the arm's colour."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import mujoco
 import numpy as np
 
 from mart.protocol.tasks import Arm, Task
-from mart.sim.tasks.scene import Judgement, Scene
-from mart.sim.world.data import Array, Data, evenly
-from mart.sim.world.gripper import GRASPABLE
-from mart.sim.world.palette import rgba
-from mart.sim.world.shadows import add_shadow
-from mart.sim.world.symbols import add_tile
+from mart.sim.scene.data import Array, Data, evenly
+from mart.sim.scene.gripper import GRASPABLE
+from mart.sim.scene.palette import rgba
+from mart.sim.scene.scene import Scene, TaskStatus
+from mart.sim.scene.shadows import add_shadow
+from mart.sim.scene.symbols import add_tile
 
 CUBE_HALF_M = 0.02
 CUBE_MASS_KG = 0.1
@@ -23,7 +23,7 @@ FALLEN_Z_M = -0.05
 
 @dataclass(frozen=True)
 class Area:
-    """Where a cube may lie, in its arm's base frame."""
+    """Bound where a cube may lie, in its arm's base frame."""
 
     center_x_m: float
     forward_m: float  # to either side of the centre
@@ -35,6 +35,8 @@ _FACING, _AROUND = Area(0.54, 0.08, 0.20), Area(0.47, 0.05, 0.05)
 
 
 class MultiCubeLifting(Scene):
+    """Define the scene of multi-cube lifting."""
+
     def __init__(self, task: Task) -> None:
         super().__init__(task)
         self._area = _FACING if len(task.arms) == 2 else _AROUND
@@ -84,14 +86,14 @@ class MultiCubeLifting(Scene):
             observations[f"{cube_of(arm)}/quaternion_in_world"] = self._quaternions[index]
         return observations
 
-    def judge(self) -> Judgement:
+    def task_status(self) -> TaskStatus:
         lifted, fallen = self._lowest_points_m() > LIFTED_M, self._heights < FALLEN_Z_M
         subtasks = {subtask.name: lifted[..., index] for index, subtask in enumerate(self.task.subtasks)}
         failed = {text: fallen[..., index] for index, text in enumerate(self._failures)}
-        return Judgement(subtasks, np.logical_and.reduce(lifted, axis=-1), failed)
+        return TaskStatus(subtasks, np.logical_and.reduce(lifted, axis=-1), failed)
 
     def _lowest_points_m(self) -> Array:
-        """Height of each cube's lowest corner over the table, shape (..., cubes)."""
+        """Return the height of each cube's lowest corner over the table, shape (..., cubes)."""
         return self._heights - CUBE_HALF_M * np.add.reduce(np.abs(self._upward), axis=-1)
 
     def _start(self, arm: Arm, forward_m: float, sideways_m: float) -> tuple[float, float]:
@@ -105,4 +107,5 @@ SCENE = MultiCubeLifting
 
 
 def cube_of(arm: str) -> str:
+    """Return the name of an arm's cube."""
     return arm.replace("arm", "cube")

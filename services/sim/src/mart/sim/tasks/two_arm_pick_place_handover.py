@@ -1,4 +1,4 @@
-"""Pick-place handover: two shelves; a hammer under a lid on the one, a bin with a trash cube on the other."""
+"""Build the handover: two shelves; a hammer under a lid on the one, a bin with a trash cube on the other."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import mujoco
 import numpy as np
 
 from mart.protocol.tasks import MAX_ARMS
-from mart.sim.tasks.scene import Judgement, Scene, all_of
-from mart.sim.tasks.things import Thing, Tool
-from mart.sim.world.data import Array, Data, Flags, length, within
-from mart.sim.world.gripper import GRASPABLE
-from mart.sim.world.palette import rgba
-from mart.sim.world.shadows import add_shadow
-from mart.sim.world.symbols import add_tile
+from mart.sim.scene.data import Array, Data, Flags, length, within
+from mart.sim.scene.gripper import GRASPABLE
+from mart.sim.scene.palette import rgba
+from mart.sim.scene.scene import Scene, TaskStatus, all_of
+from mart.sim.scene.shadows import add_shadow
+from mart.sim.scene.symbols import add_tile
+from mart.sim.scene.things import Thing, Tool
 
 SHELF_Z_M = 0.06
 _SHELF_X_M, _SHELF_HALF_M = 0.27, (0.23, 0.36)
@@ -49,6 +49,8 @@ _BOX, _SPHERE = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_SPHERE
 
 
 class PickPlaceHandover(Scene):
+    """Define the scene of the handover."""
+
     memory_size = 1  # how far the handover has come
 
     def add_objects(self, spec: mujoco.MjSpec) -> None:
@@ -101,7 +103,7 @@ class PickPlaceHandover(Scene):
         return observations
 
     def remember(self) -> None:
-        """Handed over: both held it in the air, then arm 1 alone; in between nobody threw it or laid it down."""
+        """Note the handover: both held it in the air, then arm 1 alone; nobody threw it or laid it down between."""
         fetcher, receiver = (self._holds_hammer(tool) for tool in self._tools.values())
         up = self._hammer.position[..., 2] > LIFTED_M
         taken = up & receiver & ~fetcher & (self._stage == _HELD_BY_BOTH)
@@ -111,7 +113,7 @@ class PickPlaceHandover(Scene):
             np.where(up & fetcher & receiver, _HELD_BY_BOTH, self._stage * (fetcher | receiver)),
         )
 
-    def judge(self) -> Judgement:
+    def task_status(self) -> TaskStatus:
         handed_over = self._stage == _HANDED_OVER
         cleared = _inside(self._trash, self._trash_tray, TRASH_TRAY_HALF_M)
         placed = _inside(self._hammer, self._bin, BIN_HALF_M) & handed_over
@@ -124,7 +126,7 @@ class PickPlaceHandover(Scene):
             "hammer_placed": placed,
         }
         let_go = [self._let_go(tool) for tool in self._tools.values()]
-        return Judgement(subtasks, all_of([placed, cleared, *let_go]), self._failures())
+        return TaskStatus(subtasks, all_of([placed, cleared, *let_go]), self._failures())
 
     def _holds_hammer(self, tool: Tool) -> Flags:
         narrow, wide = _GRIP_WIDTH_M
@@ -152,7 +154,7 @@ def _inside(thing: Thing, box: Thing, half_m: tuple[float, float]) -> Flags:
 
 
 def _add_open_box(spec: mujoco.MjSpec, name: str, half_m: tuple[float, float], **look: object) -> None:
-    """Four walls that nothing moves. Its frame is at the middle of its floor."""
+    """Add four walls that nothing moves. The box's frame is at the middle of its floor."""
     box = spec.worldbody.add_body(name=name, mocap=True)
     (half_x, half_y), wall, half_z = half_m, _WALL_HALF_M, _WALL_HEIGHT_M / 2
     for x, y, size_x, size_y in (
@@ -165,7 +167,7 @@ def _add_open_box(spec: mujoco.MjSpec, name: str, half_m: tuple[float, float], *
 
 
 def _add_lid(spec: mujoco.MjSpec) -> mujoco.MjsBody:
-    """The plate meets arms only: what it rests on are the balls, which cost eight contacts instead of thirty."""
+    """Add the lid. Its plate meets arms only: it rests on balls, which cost eight contacts instead of thirty."""
     lid = spec.worldbody.add_body(name="lid", pos=(*CONTAINER, _LID_Z_M))
     lid.add_freejoint(name="lid")
     arms = sum(2 << index for index in range(MAX_ARMS))

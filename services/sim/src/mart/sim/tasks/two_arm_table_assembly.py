@@ -1,4 +1,4 @@
-"""Table assembly: a base with two sockets, a column for each, and a tabletop with a knob at either end.
+"""Build table assembly: a base with two sockets, a column for each, and a tabletop with a knob at either end.
 
 Everything goes together by its shape. The knobs are round, so that a tabletop held by one of them hangs down: it takes
 two arms to carry it level (bars instead of knobs would let one arm do it).
@@ -12,13 +12,13 @@ import mujoco
 import numpy as np
 
 from mart.protocol.tasks import Arm
-from mart.sim.tasks.scene import Judgement, Scene, all_of
-from mart.sim.tasks.things import Thing, Tool
-from mart.sim.world.data import Array, Data, Flags, length, within
-from mart.sim.world.palette import rgba
-from mart.sim.world.scenery import TABLE_HALF_M
-from mart.sim.world.shadows import add_shadow
-from mart.sim.world.symbols import add_tile
+from mart.sim.scene.data import Array, Data, Flags, length, within
+from mart.sim.scene.palette import rgba
+from mart.sim.scene.scene import Scene, TaskStatus, all_of
+from mart.sim.scene.scenery import TABLE_HALF_M
+from mart.sim.scene.shadows import add_shadow
+from mart.sim.scene.symbols import add_tile
+from mart.sim.scene.things import Thing, Tool
 
 BASE_HALF_M = (0.18, 0.06, 0.005)
 SOCKET_X_M = 0.12  # of the sockets in the base, of the columns and of the tabletop's holes
@@ -67,6 +67,8 @@ _RELEASED_WIDTH_M, _RELEASED_M = 0.06, 0.27
 
 
 class TableAssembly(Scene):
+    """Define the scene of table assembly."""
+
     def add_objects(self, spec: mujoco.MjSpec) -> None:
         self._add_base(spec)
         for arm, side in zip(self.task.arms, (-1, 1), strict=True):
@@ -143,7 +145,7 @@ class TableAssembly(Scene):
             observations |= thing.observations()
         return observations
 
-    def judge(self) -> Judgement:
+    def task_status(self) -> TaskStatus:
         column0, column1 = (
             self._column_seated(*of_one) for of_one in zip(self._columns, (-1, 1), strict=True)
         )
@@ -156,7 +158,7 @@ class TableAssembly(Scene):
             "tabletop_seated": seated,
         }
         let_go = [self._let_go(tool) for tool in self._tools.values()]
-        return Judgement(subtasks, all_of([seated, *let_go]), self._failures())
+        return TaskStatus(subtasks, all_of([seated, *let_go]), self._failures())
 
     def _column_seated(self, column: Thing, side: int) -> Flags:
         off = self._base.frame(column.position) - (SOCKET_X_M * side, 0.0, SEAT_Z_M)
@@ -183,11 +185,12 @@ SCENE = TableAssembly
 
 
 def column_of(arm: str) -> str:
+    """Return the name of an arm's column."""
     return arm.replace("arm", "column")
 
 
 def _add_column(spec: mujoco.MjSpec, arm: Arm, side: int) -> None:
-    """Its frame is at its foot."""
+    """Add the arm's column, whose frame is at its foot."""
     name = column_of(arm.name)
     half, height, foot, radius = _SHAFT_HALF_M, COLUMN_HEIGHT_M, _FOOT_HALF_M, _BALL_RADIUS_M
     column = spec.worldbody.add_body(name=name, pos=(0.20 * side, -0.25, 0))

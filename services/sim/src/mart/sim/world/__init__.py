@@ -1,11 +1,10 @@
-"""The shared world: room, arms, controller, state. Pure; see world.py."""
+"""Step the shared world of a task: arms, controller, state. Pure; see world.py."""
 
 from __future__ import annotations
 
-from mart.protocol.batch_state import ACTION_SIZE
 from mart.sim.world.batch import WorldBatch
 from mart.sim.world.last_states import Diverged, LastStates
-from mart.sim.world.progress import Progress
+from mart.sim.world.progress import TaskProgress
 from mart.sim.world.world import World
 
-__all__ = ["ACTION_SIZE", "Diverged", "LastStates", "Progress", "World", "WorldBatch"]
+__all__ = ["Diverged", "LastStates", "TaskProgress", "World", "WorldBatch"]

@@ -1,4 +1,4 @@
-"""The arms' part of a world's state, measured in their own frames."""
+"""Measure the arms' part of a world's state, in their own frames."""
 
 from __future__ import annotations
 
@@ -7,13 +7,15 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from mart.sim.world.data import Array, Data, evenly, into_frame
-from mart.sim.world.gripper import STROKE_M
+from mart.sim.scene.data import Array, Data, evenly, into_frame
+from mart.sim.scene.gripper import STROKE_M
 
 
 class MeasuredArms:
-    """Several arms at once, each in its own frames: shapes are (..., arms, n). Views into the data of a world or a
-    batch; they follow it."""
+    """Measure several arms at once, each in its own frames: shapes are (..., arms, n).
+
+    It holds views into the data of a world or a batch, which follow it.
+    """
 
     def __init__(self, model: mujoco.MjModel, data: Data, names: Sequence[str]) -> None:
         bases = [model.body(f"{name}/base").id for name in names]
@@ -35,19 +37,19 @@ class MeasuredArms:
         self.joint_positions = [data.qpos[..., start : start + 7] for start in first]  # radians; of each arm
 
     def tools_in_base(self) -> tuple[Array, Array]:
-        """Positions, shape (..., arms, 3); quaternions wxyz, shape (..., arms, 4), w >= 0."""
+        """Return positions, shape (..., arms, 3), and quaternions wxyz, shape (..., arms, 4), w >= 0."""
         positions = into_frame(self._axes, self._tool_positions - self._positions_base_in_world)
         quaternions = into_frame(self._hands_to_tools, self._hand_quaternions)
         return positions, quaternions * np.copysign(1.0, quaternions[..., :1])
 
     def grippers(self) -> Array:
-        """0 open … 1 closed, shape (..., arms)."""
+        """Return how far each is closed, 0 open … 1 closed, shape (..., arms)."""
         left, right = self._fingers
         return np.minimum(np.maximum(1.0 - (left + right) / (2 * STROKE_M), 0.0), 1.0)
 
 
 class MeasuredArm:
-    """One arm of a single world."""
+    """Measure one arm of a single world."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, name: str) -> None:
         self._alone = MeasuredArms(model, data, [name])
@@ -55,16 +57,16 @@ class MeasuredArm:
         self._fingers = data.qpos[fingers : fingers + 2]
 
     def tool_in_base(self) -> tuple[Array, Array]:
-        """Position, shape (3,); quaternion wxyz, shape (4,), w >= 0."""
+        """Return position, shape (3,), and quaternion wxyz, shape (4,), w >= 0."""
         positions, quaternions = self._alone.tools_in_base()
         return positions[0], quaternions[0]
 
     def gripper(self) -> float:
-        """0 open … 1 closed."""
+        """Return how far it is closed, 0 open … 1 closed."""
         return float(self._alone.grippers()[0])
 
     def place(self, joint_positions: Array) -> None:
-        """At rest at these joint positions, shape (7,), gripper open."""
+        """Set the arm to rest at these joint positions, shape (7,), radians, gripper open."""
         self._alone.joint_positions[0][:] = joint_positions
         self._fingers[:] = STROKE_M
 
@@ -76,14 +78,14 @@ def _conjugate(quaternion_wxyz: Array) -> Array:
 
 
 def _matrix(quaternion_wxyz: Array) -> Array:
-    """The rotation matrix of a quaternion, shape (3, 3)."""
+    """Return the rotation matrix of a quaternion, shape (3, 3)."""
     matrix = np.empty(9)
     mujoco.mju_quat2Mat(matrix, quaternion_wxyz)
     return matrix.reshape(3, 3)
 
 
 def _between(left_wxyz: Array, right_wxyz: Array) -> Array:
-    """The matrix, shape (4, 4), that takes a quaternion q to left * q * right."""
+    """Return the matrix, shape (4, 4), that takes a quaternion q to left * q * right."""
     columns = []
     for unit in np.eye(4):
         product = np.empty(4)

@@ -1,4 +1,4 @@
-"""Many worlds of one kind, stepped together on several threads.
+"""Step many worlds of one kind together on several threads.
 
 The same physics, controller and lines of Python as in `World`: a batch gives the same bits as its worlds alone. What
 they are between two steps is one integration state each; positions are worked out anew after every step.
@@ -15,18 +15,18 @@ from mujoco.batch import Batch, SimulationError
 from numpy.typing import NDArray
 
 from mart.protocol.batch_state import BatchState
+from mart.sim.scene.data import Array, Flags
 from mart.sim.tasks import scene_of
-from mart.sim.world.data import Array, Flags
+from mart.sim.world.control_interface import ControlInterface
 from mart.sim.world.last_states import KEPT, Diverged
 from mart.sim.world.progress import first_reasons
-from mart.sim.world.surface import Surface
 from mart.sim.world.world import FATAL_WARNINGS, World
 
 _NOTHING, _POSITIONS = int(mujoco.mjtStage.mjSTAGE_NONE), int(mujoco.mjtStage.mjSTAGE_POS)
 
 
 class WorldBatch:
-    """`size` worlds like `world`, which stays in use: it makes the states of resets. Reset before anything else.
+    """Step `size` worlds like `world`, which stays in use: it makes the states of resets. Reset before all else.
 
     A world whose physics leaves its bounds stays as it was before that, for good, and has failed; `explain` says in
     words why.
@@ -37,52 +37,54 @@ class WorldBatch:
     ) -> None:
         self._world, self._explain = world, explain
         self._batch = Batch(world.model, size, threads)
-        self._surface = Surface(scene_of(world.task), world.model, self._batch)
-        self._judgement = self._surface.judge()
+        self._interface = ControlInterface(scene_of(world.task), world.model, self._batch)
+        self._status = self._interface.task_status()
         self._fatal_warnings = self._batch.warning[:, FATAL_WARNINGS, 1]
         self._diverged: dict[int, str] = {}
-        self._trail: deque[tuple[Array, Array, Flags]] = deque(maxlen=KEPT)  # states, actions, who went on
+        self._history: deque[tuple[Array, Array, Flags]] = deque(maxlen=KEPT)  # states, actions, who went on
 
     def __len__(self) -> int:
         return int(self._batch.nsim)
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Begins an episode in every world, as `World.reset` does."""
+        """Begin an episode in every world, as `World.reset` does."""
         self._batch.reset(stage=_NOTHING)
         for row, seed in zip(self._batch.state, seeds, strict=True):
             self._world.reset(seed)
             row[:] = np.frombuffer(self._world.integration_state(), "<f8")
         self._diverged.clear()
-        self._trail.clear()
+        self._history.clear()
         self._batch.forward(stage=_POSITIONS)
-        self._judgement = self._surface.judge()
+        self._status = self._interface.task_status()
 
     def step(self, actions: Array, running: Flags) -> None:
-        """Advances the running worlds by one control period; actions: shape (worlds, arms, 7), finite."""
+        """Advance the running worlds by one control period; actions: shape (worlds, arms, 7), finite."""
         going = running.copy()
         going[list(self._diverged)] = False
         before = self._batch.state.copy()
-        self._trail.append((before, actions, going.copy()))
-        self._surface.command(actions)
+        self._history.append((before, actions, going.copy()))
+        self._interface.command(actions)
         diverged = self._advance(np.flatnonzero(going))
         if len(diverged):
             self._batch.state[diverged] = before[diverged]
             self._batch.forward(diverged, stage=_POSITIONS)
             going[diverged] = False
-        self._judgement = self._surface.settle()
+        self._status = self._interface.settle()
         if not going.all():
             self._batch.state[~going] = before[~going]
-            self._judgement = self._surface.judge()
+            self._status = self._interface.task_status()
         for world in diverged.tolist():
             self._diverged[world] = self._explain(self._divergence(world))
 
     def _divergence(self, world: int) -> Diverged:
-        trail = [(states[world], actions[world]) for states, actions, going in self._trail if going[world]]
-        states, actions = (np.array(part) for part in zip(*trail, strict=True))
+        history = [
+            (states[world], actions[world]) for states, actions, going in self._history if going[world]
+        ]
+        states, actions = (np.array(part) for part in zip(*history, strict=True))
         return Diverged(float(self._batch.time[world]), self._world.last_states(states, actions))
 
     def _advance(self, going: NDArray[np.intp]) -> NDArray[np.intp]:
-        """Which of them left their bounds."""
+        """Step these worlds; return which of them left their bounds."""
         if not len(going):
             return going
         try:
@@ -95,20 +97,20 @@ class WorldBatch:
         return np.union1d(going[unstable], broken)
 
     def integration_states(self) -> Array:
-        """Shape (worlds, size): what `World.integration_state` gives. A copy."""
-        self._surface.cast_shadows()
+        """Return a copy of all states, shape (worlds, size), each as `World.integration_state` gives it."""
+        self._interface.cast_shadows()
         return self._batch.state.copy()
 
     def standing(self, *, integration_states: bool = False) -> BatchState:
-        """How every world stands."""
-        judgement = self._judgement
-        reasons = first_reasons(judgement.failed, len(self))
+        """Return how every world stands."""
+        status = self._status
+        reasons = first_reasons(status.failed, len(self))
         for world, reason in self._diverged.items():
             reasons[world] = reason
-        ticks = self._surface.success_ticks
+        ticks = self._interface.success_ticks
         return BatchState(
-            observations=self._surface.observations(),
-            subtasks=np.stack([judgement.subtasks[s.name] for s in self._world.task.subtasks], axis=-1),
+            observations=self._interface.observations(),
+            subtasks=np.stack([status.subtasks[s.name] for s in self._world.task.subtasks], axis=-1),
             success=ticks >= self._world.task.success_hold_ticks,
             failed=np.array([bool(reason) for reason in reasons]),
             sim_time_s=self._batch.time.copy(),
@@ -119,5 +121,5 @@ class WorldBatch:
 
 
 def _bounded(velocities: Array) -> Flags:
-    """Whether MuJoCo will go on from these, shape (worlds, nv), as mj_checkVel finds for one world."""
+    """Return whether MuJoCo will go on from these, shape (worlds, nv), as mj_checkVel finds for one world."""
     return np.logical_and.reduce(np.abs(velocities) <= mujoco.mjMAXVAL, axis=-1)  # False for NaN

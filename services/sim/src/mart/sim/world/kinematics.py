@@ -1,4 +1,4 @@
-"""Inverse kinematics by damped least squares (Wampler, 1986), for placing arms at a reset."""
+"""Place arms at a reset: inverse kinematics by damped least squares (Wampler, 1986)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LARGEST_STEP_RAD = 0.3
 def solve(
     model: mujoco.MjModel, arm: str, pose_tool_in_world: Pose, start_rad: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Joint positions, shape (7,), that put the arm's tool at the pose, near `start_rad`.
+    """Return joint positions, shape (7,), radians, that put the arm's tool at the pose, near `start_rad`.
 
     Raises InvalidInput where the arm cannot reach it.
     """

@@ -1,4 +1,4 @@
-"""What led a world out of its bounds: its last good states, and what was done in each."""
+"""Remember what led a world out of its bounds: its last good states, and what was done in each."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from mart.protocol.errors import Corrupt
-from mart.sim.world.data import Array
+from mart.sim.scene.data import Array
 
 KEPT = 5
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
@@ -16,7 +16,7 @@ _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
 @dataclass(frozen=True, eq=False)
 class LastStates:
-    """states: shape (n, size), oldest first; actions: shape (n, arms, 7), the last of which led out of bounds.
+    """Hold states, shape (n, size), oldest first, and actions, shape (n, arms, 7), whose last led out of bounds.
 
     A world of the same model, set to one of the states and stepped with the actions from there on, goes the same way.
     """
@@ -29,15 +29,15 @@ class LastStates:
 
 
 class Diverged(Corrupt):
-    """The simulation went out of numerical bounds; only a reset helps."""
+    """Tell that the simulation went out of numerical bounds; only a reset helps."""
 
     def __init__(self, sim_time_s: float, last: LastStates) -> None:
         super().__init__(f"The world ran out of numerical bounds after {sim_time_s:.3f} s: reset it.")
         self.last = last
 
 
-class Trail:
-    """The last states of one world, as they come."""
+class StateHistory:
+    """Keep the last states of one world, as they come."""
 
     def __init__(self, model: mujoco.MjModel, action_shape: tuple[int, ...]) -> None:
         self._states = np.zeros((KEPT, mujoco.mj_stateSize(model, _STATE)))
@@ -45,15 +45,17 @@ class Trail:
         self._count = 0
 
     def clear(self) -> None:
+        """Forget them."""
         self._count = 0
 
     def note(self, data: mujoco.MjData, actions: Array) -> None:
-        """The state before a step, and what is to be done in it."""
+        """Note the state before a step, and what is to be done in it."""
         place = self._count % KEPT
         mujoco.mj_getState(data.model, data, self._states[place], _STATE)
         self._actions[place] = actions
         self._count += 1
 
     def states_and_actions(self) -> tuple[Array, Array]:
+        """Return what is kept, oldest first: shapes (n, size) and (n, arms, 7)."""
         order = [number % KEPT for number in range(max(self._count - KEPT, 0), self._count)]
         return self._states[order], self._actions[order]

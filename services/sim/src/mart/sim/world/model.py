@@ -1,24 +1,22 @@
-"""Puts room, arms and a task's things together and compiles them."""
+"""Put room, arms and a task's things together and compile them."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import mujoco
 
 from mart.protocol.control_rate import require_control_hz
-from mart.sim.world import osc, panda, scenery
-from mart.sim.world.meshes import Detail
-
-if TYPE_CHECKING:  # scenes are built from parts of this package
-    from mart.sim.tasks.scene import Scene
+from mart.sim.scene import panda, scenery
+from mart.sim.scene.meshes import Detail
+from mart.sim.scene.scene import Scene
+from mart.sim.world import osc
 
 _LARGEST_TIMESTEP_S = 0.002
 
 
 def substeps(control_hz: float) -> tuple[int, float]:
-    """How one control period is cut: (number of substeps, seconds of each).
+    """Cut one control period: return the number of substeps and the seconds of each.
 
     The substep is 2 ms or the longest shorter one that divides the period: 20 Hz 25 x 2 ms, 30 Hz 17 x 1.961 ms,
     60 Hz 9 x 1.852 ms. Raises InvalidInput outside 5 to 100 Hz.
@@ -31,6 +29,7 @@ def substeps(control_hz: float) -> tuple[int, float]:
 def build(
     scene: Scene, timestep_s: float, detail: Detail = "hull", gains: osc.Gains | None = None
 ) -> mujoco.MjModel:
+    """Compile a scene with its arms and their controller; `timestep_s`: of a substep."""
     spec = mujoco.MjSpec()
     spec.modelname = scene.task.name
     spec.compiler.degree = False

@@ -1,4 +1,4 @@
-"""Installs osc.c as MuJoCo's control callback and describes to it the arms of a model. Read osc.c first."""
+"""Install osc.c as MuJoCo's control callback and describe to it the arms of a model. Read osc.c first."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ BLOCK_SIZE = 27
 
 @dataclass(frozen=True)
 class Gains:
-    """kp in 1/s²; damping is critical. Errors beyond the largest are pulled in, so that no goal makes a whip.
+    """Set the controller: kp in 1/s², damping critical. Larger errors are pulled in, so that no goal makes a whip.
 
     The regular mobilities are the inverse effective mass (1/kg) and inertia (1/(kg m²)) below which a direction counts
     as nearly lost and is damped.
@@ -46,6 +46,7 @@ class Gains:
     regular_mobility_orientation: float = 0.3
 
     def as_row(self) -> tuple[float, ...]:
+        """Return the numbers in the order in which osc.c reads them."""
         return (
             self.kp_position,
             self.kp_orientation,
@@ -58,7 +59,7 @@ class Gains:
 
 
 def describe(spec: mujoco.MjSpec, arms: Sequence[str], gains: Gains) -> None:
-    """Adds the numeric that osc.c looks for; userdata must begin with one block for each arm, in this order.
+    """Add the numeric that osc.c looks for; userdata must begin with one block for each arm, in this order.
 
     Call when the spec has all its parts: the numeric holds their indices.
     """
@@ -87,7 +88,7 @@ def _row(model: mujoco.MjModel, arm: str, userdata_start: int) -> list[float]:
 
 
 def install() -> None:
-    """Makes osc.c the control callback of this process; models of others are left alone by it.
+    """Make osc.c the control callback of this process; models of others are left alone by it.
 
     Raises Unavailable where it was not compiled, or was compiled against another MuJoCo: struct offsets differ.
     """

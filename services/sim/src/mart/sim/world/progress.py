@@ -1,4 +1,4 @@
-"""How far a task has come: a judgement of this instant plus how long success has lasted."""
+"""Tell how far a task has come: how it stands at this instant, plus how long success has lasted."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mart.sim.world.data import Flags
+from mart.sim.scene.data import Flags
 
 
 @dataclass(frozen=True)
-class Progress:
-    """`success_ticks` counts ticks of `success_now` in a row; `success` once they reach the task's hold.
+class TaskProgress:
+    """Tell how far one world's task is: `success_ticks` of success in a row; `success` once they reach the hold.
 
     `failed` says in words why the task can no longer succeed, None while it can.
     """
@@ -25,7 +25,7 @@ class Progress:
 
 
 def first_reasons(failed: Mapping[str, Flags], worlds: int) -> list[str]:
-    """For each world the first of the reasons that hold there, "" where none does."""
+    """Return for each world the first of the reasons that hold there, "" where none does."""
     reasons = [""] * worlds
     for reason, flags in reversed(list(failed.items())):
         for world in np.flatnonzero(flags):

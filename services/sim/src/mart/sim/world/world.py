@@ -1,4 +1,4 @@
-"""One world: a task's scene, its arms and their controller, advanced one control period at a time.
+"""Step one world: a task's scene, its arms and their controller, one control period at a time.
 
 Pure: no wall clock, no threads, no bus; randomness comes from the seed given to `reset`. Everything that decides the
 future is in the integration state (positions, velocities, warm start, commands, what the scene remembers, the count of
@@ -11,27 +11,26 @@ import hashlib
 import logging
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mart.protocol.batch_state import ACTION_SIZE
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.errors import InvalidInput
 from mart.protocol.pose import Pose, quaternion_conjugate, quaternion_log, quaternion_multiply
 from mart.protocol.tasks import Task, get_task
+from mart.sim.scene import panda
+from mart.sim.scene.data import Array
+from mart.sim.scene.meshes import Detail
+from mart.sim.scene.scene import Scene, TaskStatus
 from mart.sim.tasks import scene_of
-from mart.sim.world import kinematics, model, osc, panda
+from mart.sim.world import kinematics, model, osc
 from mart.sim.world.arm import MeasuredArm
-from mart.sim.world.data import Array
-from mart.sim.world.last_states import Diverged, LastStates, Trail
-from mart.sim.world.meshes import Detail
-from mart.sim.world.progress import Progress, first_reasons
-from mart.sim.world.surface import Surface
-
-if TYPE_CHECKING:  # scenes are built from parts of this package
-    from mart.sim.tasks.scene import Judgement, Scene
+from mart.sim.world.control_interface import ControlInterface
+from mart.sim.world.last_states import Diverged, LastStates, StateHistory
+from mart.sim.world.progress import TaskProgress, first_reasons
 
 # As a number: looking an enumeration up takes longer than what is called with it.
 STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
@@ -41,12 +40,12 @@ _HOLD_OPEN = np.array([0.0] * 6 + [-1.0])
 
 
 def _log_warning(message: str) -> None:
-    """In place of MuJoCo's own habit: writing MUJOCO_LOG.TXT to wherever the process happens to run."""
+    """Log a warning of MuJoCo, whose own habit is to write MUJOCO_LOG.TXT to wherever the process runs."""
     logging.getLogger(__name__).warning("MuJoCo: %s", message)
 
 
 class World:
-    """A compiled task and its state. Build with `World.build`, then `reset` before anything else.
+    """Hold a compiled task and its state. Build with `World.build`, then `reset` before anything else.
 
     Actions: shape (arms, 7), each number in [-1, 1] (clipped): translation along the arm's base axes over
     `task.limits.step_m`, rotation vector about them over `task.limits.step_rad`, gripper -1 open … +1 closed. They
@@ -61,29 +60,36 @@ class World:
         self.control_hz, self.control_period_s = control_hz, 1.0 / control_hz
         self.model = model.build(scene, timestep_s, detail)
         self.data = mujoco.MjData(self.model)
-        self._surface = Surface(scene, self.model, self.data)
+        self._interface = ControlInterface(scene, self.model, self.data)
         self._measured = {arm: MeasuredArm(self.model, self.data, arm) for arm in self.arms}
         self._action_shape = (len(self.arms), ACTION_SIZE)
-        self._trail = Trail(self.model, self._action_shape)
+        self._history = StateHistory(self.model, self._action_shape)
         self._fatal_warnings = self.data.warning.number[FATAL_WARNINGS]
 
     @classmethod
     def build(
-        cls, task_name: str, control_hz: float = 20.0, arms: int | None = None, detail: Detail = "hull"
+        cls,
+        task_name: str,
+        control_hz: float = DEFAULT_CONTROL_HZ,
+        arms: int | None = None,
+        detail: Detail = "hull",
     ) -> World:
-        """Raises NotFound for an unknown task, InvalidInput for a rate or a number of arms that cannot be."""
+        """Compile a task by name; raises NotFound for an unknown one, InvalidInput for an impossible rate or arms."""
         return cls(scene_of(get_task(task_name, arms)), control_hz, detail)
 
     @property
     def task(self) -> Task:
+        """The catalogue's row of the task."""
         return self._scene.task
 
     @property
     def arms(self) -> tuple[str, ...]:
+        """The arms' names, in order."""
         return self.task.arm_names
 
     @property
     def sim_time_s(self) -> float:
+        """Simulated seconds since the reset."""
         return float(self.data.time)
 
     @cached_property
@@ -93,37 +99,38 @@ class World:
         return buffer.tobytes()
 
     def model_bytes(self) -> bytes:
-        """The compiled model (MJB), as it goes over the wire and into episode files."""
+        """Return the compiled model (MJB), as it goes over the wire and into episode files."""
         return self._mjb
 
     @cached_property
     def model_sha256(self) -> str:
+        """The compiled model's SHA-256 in hex: what tells versions of a world apart."""
         return hashlib.sha256(self._mjb).hexdigest()
 
     def reset(self, seed: int) -> None:
-        """Begins an episode: things and arms where this seed puts them, arms at rest and holding."""
+        """Begin an episode: things and arms where this seed puts them, arms at rest and holding."""
         random = np.random.default_rng(seed)
         mujoco.mj_resetData(self.model, self.data)
-        self._trail.clear()
+        self._history.clear()
         self._scene.place_objects(random)
         for index, arm in enumerate(self.task.arms):
             tool_in_world = arm.pose_base_in_world @ self._scene.start_pose_in_base(arm, random)
             joints = kinematics.solve(self.model, arm.name, tool_in_world, np.array(panda.HOME_RAD))
             self._measured[arm.name].place(joints)
-            self._surface.postures[index] = joints
-        self._surface.command(np.tile(_HOLD_OPEN, (len(self.arms), 1)))
+            self._interface.postures[index] = joints
+        self._interface.command(np.tile(_HOLD_OPEN, (len(self.arms), 1)))
         mujoco.mj_forward(self.model, self.data)
 
     def tool_pose_in_base(self, arm: str) -> Pose:
-        """Measured."""
+        """Return the measured pose of the arm's tool in its base frame."""
         return Pose(*self._arm(arm).tool_in_base())
 
     def gripper(self, arm: str) -> float:
-        """Measured, 0 open … 1 closed."""
+        """Return how far the gripper is measured to be closed, 0 open … 1 closed."""
         return self._arm(arm).gripper()
 
     def action_for(self, arm: str, target_tool_in_base: Pose, gripper: float) -> Array:
-        """The action, shape (7,), that goes towards an absolute target as far as workspace and limits allow.
+        """Return the action, shape (7,), that goes towards an absolute target as far as workspace and limits allow.
 
         gripper: 0 open … 1 closed. To hold an arm, keep asking with one fixed target: taking the measured pose as the
         target every tick lets a loaded arm sink.
@@ -140,17 +147,17 @@ class World:
             ]
         )
 
-    def step(self, actions: ArrayLike) -> Judgement:
-        """Advances one control period; returns how the task stands then.
+    def step(self, actions: ArrayLike) -> TaskStatus:
+        """Advance one control period; return how the task stands then.
 
         Raises InvalidInput where the shape is not (arms, 7) or a number is not finite, Diverged where the physics left
         its bounds.
         """
         self.drive(actions)
-        return self._surface.settle()
+        return self._interface.settle()
 
     def drive(self, actions: ArrayLike) -> None:
-        """The part of a step that moves the arms: physics and control; nothing is remembered or judged."""
+        """Do the part of a step that moves the arms, physics and control; nothing is remembered or judged."""
         actions = np.asarray(actions, dtype=np.float64)
         if actions.shape != self._action_shape:
             raise InvalidInput(
@@ -159,28 +166,28 @@ class World:
         if not math.isfinite(sum(actions.ravel().tolist())):
             raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
         begun_s = self.sim_time_s
-        self._trail.note(self.data, actions)
-        self._surface.command(actions)
+        self._history.note(self.data, actions)
+        self._interface.command(actions)
         mujoco.mj_step(self.model, self.data, self.substeps)
         # Poses of the new state: mj_step leaves those of its last substep's beginning.
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_checkVel(self.model, self.data)  # what MuJoCo would find bad next time is told this time
         if any(self._fatal_warnings.tolist()):
-            raise Diverged(begun_s, self.last_states(*self._trail.states_and_actions()))
+            raise Diverged(begun_s, self.last_states(*self._history.states_and_actions()))
 
     def last_states(self, states: Array, actions: Array) -> LastStates:
-        """Of a world of this model; shapes (n, size) and (n, arms, 7)."""
+        """Describe states of this model, shape (n, size), and actions in them, shape (n, arms, 7)."""
         return LastStates(self.task.name, self.control_hz, self.model_sha256, states, actions)
 
     def integration_state(self) -> bytes:
-        """MuJoCo's full integration state, float64 little-endian: all that decides the future, and the shadows."""
-        self._surface.cast_shadows()
+        """Return MuJoCo's full integration state, float64 little-endian: what decides the future, and shadows."""
+        self._interface.cast_shadows()
         state = np.empty(mujoco.mj_stateSize(self.model, STATE))
         mujoco.mj_getState(self.model, self.data, state, STATE)
         return state.astype("<f8", copy=False).tobytes()
 
     def set_integration_state(self, state: bytes) -> None:
-        """Raises InvalidInput where the size is not this model's or a number is not finite."""
+        """Set the whole state; raises InvalidInput where its size is not this model's or a number is not finite."""
         expected = 8 * mujoco.mj_stateSize(self.model, STATE)
         if len(state) != expected:
             raise InvalidInput(f"A state of {len(state)} bytes was given; this model's has {expected}.")
@@ -188,27 +195,27 @@ class World:
         if not np.isfinite(numbers).all():
             raise InvalidInput("A state with NaN or infinity was given; every number must be finite.")
         mujoco.mj_resetData(self.model, self.data)
-        self._trail.clear()
+        self._history.clear()
         mujoco.mj_setState(self.model, self.data, numbers, STATE)
         mujoco.mj_kinematics(self.model, self.data)
 
     def observations(self) -> dict[str, Array]:
-        """All that any operator sees, in the catalogue's order."""
-        return self._surface.observations()
+        """Return all that any operator sees, in the catalogue's order."""
+        return self._interface.observations()
 
     def observations_for(self, arm: str) -> dict[str, Array]:
-        """What this arm's operator sees."""
+        """Return what this arm's operator sees."""
         seen = self.observations()
         return {observation.name: seen[observation.name] for observation in self.task.observations_of(arm)}
 
-    def progress(self, judgement: Judgement | None = None) -> Progress:
-        """judgement: what `step` returned, where nothing has changed since; without it, this instant is judged."""
-        judgement = judgement or self._surface.judge()
-        ticks = int(self._surface.success_ticks)
-        (reason,) = first_reasons(judgement.failed, worlds=1)
-        return Progress(
-            subtasks={name: bool(done) for name, done in judgement.subtasks.items()},
-            success_now=bool(judgement.success_now),
+    def progress(self, status: TaskStatus | None = None) -> TaskProgress:
+        """Return how far the task is; status: what `step` returned, if nothing changed since; else judged now."""
+        status = status or self._interface.task_status()
+        ticks = int(self._interface.success_ticks)
+        (reason,) = first_reasons(status.failed, worlds=1)
+        return TaskProgress(
+            subtasks={name: bool(done) for name, done in status.subtasks.items()},
+            success_now=bool(status.success_now),
             success_ticks=ticks,
             success=ticks >= self.task.success_hold_ticks,
             failed=reason or None,
@@ -219,5 +226,5 @@ class World:
 
 
 def _within_unit(vector: Array) -> Array:
-    """The vector, shortened to length 1 where it is longer."""
+    """Return the vector, shortened to length 1 where it is longer."""
     return vector / max(1.0, float(np.linalg.norm(vector)))

@@ -1,0 +1,1 @@
+"""Step many worlds on request, for training, evaluation and re-simulation."""

@@ -1,0 +1,197 @@
+"""Advance the world only when every operator has given a new command: the barrier.
+
+A pure state machine: commands, seats and `now` in, decisions out. No bus, no threads, no clock. Times are seconds on
+one monotonic clock.
+
+A tick fires when every seat that is not `hold` has a command newer than the one used before and the pace allows it.
+The newest command wins by its sequence; nothing is queued. A seat without a command for `STALLED_AFTER_S` stalls the
+room (everyone is told who is being waited for); after `PAUSED_AFTER_S` the room is paused and no tick fires until that
+seat speaks again or changes; after `FREED_AFTER_S` a human's or policy's seat is given up. An emergency stop is held by
+level: while the newest command of any seat says so, no tick fires.
+
+A room whose seats are all `hold` has nobody to wait for: the rule is met by nobody's missing, and the world lives on
+at its pace, with its arms holding.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from mart.protocol.messages import (
+    BARRIER_PHASE_PAUSED,
+    BARRIER_PHASE_RUNNING,
+    BARRIER_PHASE_STALLED,
+    BARRIER_PHASE_STOPPED,
+    OPERATOR_HOLD,
+    OPERATOR_SCRIPT,
+    BarrierPhase,
+    Operator,
+)
+from mart.sim.room.command_validation import CommandRejection, ReceivedCommand
+from mart.sim.room.pacing import Pace
+
+STALLED_AFTER_S = 0.25
+PAUSED_AFTER_S = 3.0
+FREED_AFTER_S = 30.0
+
+
+@dataclass(frozen=True)
+class TickInputs:
+    """Hold what a tick that fires now is stepped with.
+
+    commands: the newest command of every arm that is not on hold. straggler: the arm that completed the barrier last,
+    None where nobody drives; late_s: how long the tick waited for it beyond the pace.
+    """
+
+    commands: Mapping[str, ReceivedCommand]
+    due_s: float
+    straggler: str | None
+    late_s: float
+
+
+@dataclass(frozen=True)
+class Decision:
+    """Tell what holds now. Ask again at `next_s`, or when a command arrives, whichever is first.
+
+    waiting_for: (arm, for how many seconds); the arms without a command, or those that hold an emergency stop.
+    silent: arms whose seat is to be given up.
+    """
+
+    phase: BarrierPhase
+    waiting_for: tuple[tuple[str, float], ...]
+    silent: tuple[str, ...]
+    inputs: TickInputs | None
+    next_s: float
+
+
+@dataclass
+class _SeatState:
+    """Hold what the barrier knows of one seat."""
+
+    operator: Operator
+    epoch: int
+    heard_s: float  # when a command was last accepted, or when the seat got its holder
+    newest: ReceivedCommand | None = None
+    last_sequence: int = -1  # of the newest accepted command
+    unused: bool = False  # the newest command has not moved the world yet
+    complete_s: float = 0.0  # when the first unused command arrived
+    stopped_since_s: float | None = None
+
+    @property
+    def driven(self) -> bool:
+        return self.operator != OPERATOR_HOLD
+
+
+class Barrier:
+    """Decide when the world ticks; `arms` start on hold with epoch 0, `seat` puts operators in."""
+
+    def __init__(self, arms: Iterable[str], period_s: float, now_s: float) -> None:
+        self.pace = Pace(period_s, now_s)
+        self.rejected: Counter[CommandRejection] = Counter()
+        self._seats = {arm: _SeatState(OPERATOR_HOLD, 0, now_s) for arm in arms}
+        self._driven: dict[str, _SeatState] = {}  # those of them that are not on hold
+
+    def seat(self, arm: str, operator: Operator, epoch: int, now_s: float) -> None:
+        """Give a seat to a new holder: what the old one said no longer counts."""
+        self._seats[arm] = _SeatState(operator, epoch, now_s)
+        self._driven = {arm: seat for arm, seat in self._seats.items() if seat.driven}
+
+    def offer(self, received: ReceivedCommand) -> CommandRejection | None:
+        """Take a command, or return why not; rejections are counted in `rejected`."""
+        reason = self._objection(received)
+        if reason is not None:
+            self.rejected[reason] += 1
+            return reason
+        seat = self._seats[received.arm]
+        if not seat.unused:
+            seat.complete_s = received.at_s
+        seat.newest, seat.unused = received, True
+        seat.last_sequence = received.sequence
+        seat.heard_s = received.at_s
+        if not received.emergency_stop:
+            seat.stopped_since_s = None
+        elif seat.stopped_since_s is None:
+            seat.stopped_since_s = received.at_s
+        return None
+
+    def newest(self, arm: str) -> ReceivedCommand | None:
+        """Return the newest accepted command of the arm's present operator, used or not."""
+        return self._seats[arm].newest
+
+    def restart(self, now_s: float) -> None:
+        """Void the commands given for the world before a reset, and begin the pace anew."""
+        for seat in self._seats.values():
+            seat.unused = False
+        self.pace.restart(now_s)
+
+    def advance(self, now_s: float, gate_open: bool) -> Decision:
+        """Decide. Where a tick fires, its commands count as used. `gate_open`: the episode lets the world run."""
+        phase, waiting_for = self._phase(now_s)
+        world_may_run = gate_open and phase in (BARRIER_PHASE_RUNNING, BARRIER_PHASE_STALLED)
+        inputs = (
+            self._fire(now_s) if world_may_run and self._complete() and now_s >= self.pace.due_s else None
+        )
+        silent = tuple(
+            arm
+            for arm, seat in self._driven.items()
+            if seat.operator != OPERATOR_SCRIPT and now_s - seat.heard_s >= FREED_AFTER_S
+        )
+        return Decision(phase, waiting_for, silent, inputs, self._next_s(now_s, world_may_run))
+
+    def _complete(self) -> bool:
+        """Whether everyone who drives has given a new command."""
+        return all(seat.unused for seat in self._driven.values())
+
+    def _objection(self, received: ReceivedCommand) -> CommandRejection | None:
+        seat = self._seats.get(received.arm)
+        if seat is None:
+            return CommandRejection.UNKNOWN_ARM
+        if not seat.driven:
+            return CommandRejection.FREE_SEAT
+        if received.seat_epoch != seat.epoch:
+            return CommandRejection.WRONG_EPOCH
+        if received.sequence <= seat.last_sequence:
+            return CommandRejection.OLD_SEQUENCE
+        return None
+
+    def _phase(self, now_s: float) -> tuple[BarrierPhase, tuple[tuple[str, float], ...]]:
+        driven = self._driven.items()
+        stops = tuple(
+            (arm, now_s - seat.stopped_since_s) for arm, seat in driven if seat.stopped_since_s is not None
+        )
+        if stops:
+            return BARRIER_PHASE_STOPPED, stops
+        missing = tuple(
+            (arm, now_s - seat.heard_s) for arm, seat in driven if now_s - seat.heard_s >= STALLED_AFTER_S
+        )
+        if not missing:
+            return BARRIER_PHASE_RUNNING, ()
+        longest_s = max(since_s for _, since_s in missing)
+        return BARRIER_PHASE_PAUSED if longest_s >= PAUSED_AFTER_S else BARRIER_PHASE_STALLED, missing
+
+    def _fire(self, now_s: float) -> TickInputs:
+        driven = self._driven
+        commands = {}
+        for arm, seat in driven.items():
+            assert seat.newest is not None  # it is unused, so it is there
+            commands[arm] = seat.newest
+            seat.unused = False
+        straggler = max(driven, key=lambda arm: driven[arm].complete_s, default=None)
+        due_s = self.pace.due_s
+        late_s = max(0.0, driven[straggler].complete_s - due_s) if straggler is not None else 0.0
+        self.pace.fired(now_s)
+        return TickInputs(commands, due_s, straggler, late_s)
+
+    def _next_s(self, now_s: float, world_may_run: bool) -> float:
+        """Return when the answer may change without a new command; `now_s` where it has changed already."""
+        moments = [
+            moment
+            for seat in self._driven.values()
+            for after_s in (STALLED_AFTER_S, PAUSED_AFTER_S, FREED_AFTER_S)
+            if (moment := seat.heard_s + after_s) > now_s
+        ]
+        if world_may_run and self._complete():
+            moments.append(max(self.pace.due_s, now_s))
+        return min(moments, default=float("inf"))

@@ -1,0 +1,296 @@
+"""Put seats, barrier, episode and world together into one room."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from mart.protocol import clock
+from mart.protocol.errors import MartError
+from mart.protocol.messages import (
+    BARRIER_PHASE_PAUSED,
+    BARRIER_PHASE_RUNNING,
+    BARRIER_PHASE_STOPPED,
+    EPISODE_PHASE_PRACTICE,
+    OPERATOR_HOLD,
+    OUTCOME_FAILURE,
+    OUTCOME_SUCCESS,
+    EpisodeRequest,
+    Event,
+    RoomReply,
+    RoomStatus,
+    Seat,
+    SeatRequest,
+    State,
+    error_message,
+)
+from mart.sim.room import room_messages
+from mart.sim.room.barrier import FREED_AFTER_S, Barrier, Decision, TickInputs
+from mart.sim.room.command_validation import CommandRejected, CommandRejection, validate_command
+from mart.sim.room.episode_state_machine import (
+    BeginEpisode,
+    Effect,
+    EndEpisode,
+    EpisodeStateMachine,
+    ResetWorld,
+    Terms,
+)
+from mart.sim.room.saved_room import SavedRoom
+from mart.sim.room.seats import SeatHolder, SeatTable
+from mart.sim.room.ticker import Ticker
+from mart.sim.world import Diverged, World
+
+REPEAT_S = 0.2  # status always; the newest state while no tick fires, for those who came late
+
+
+class RoomPublisher(Protocol):
+    """Publish what a room says. None of these may block."""
+
+    def state(self, state: State) -> None:
+        """Publish the state after a tick or a reset."""
+
+    def repeat_state(self) -> None:
+        """Publish the newest state once more, the very same bytes."""
+
+    def status(self, status: RoomStatus) -> None:
+        """Publish how the room stands."""
+
+    def event(self, event: Event) -> None:
+        """Publish what has just happened."""
+
+
+class Room:
+    """Run one room; used by one thread at a time, which says what time it is (`now_s`, monotonic seconds).
+
+    What it has to say goes to `publisher`, what must survive a crash to `keep`, which may raise OSError. `explain` says
+    in words what became of a world whose physics left its bounds.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        world: World,
+        record: SavedRoom,
+        publisher: RoomPublisher,
+        keep: Callable[[SavedRoom], None],
+        *,
+        now_s: float,
+        pace: float = 1.0,
+        terms: Terms = Terms(),  # noqa: B008 - frozen
+        explain: Callable[[Diverged], str] = str,
+    ) -> None:
+        self._name, self._world, self._record = name, world, record
+        self._publisher, self._keep, self._explain = publisher, keep, explain
+        self._boot_ns = clock.wall_ns()
+        self._seats = SeatTable(world.arms)
+        self._seats.restore(record.holders())
+        self._barrier = Barrier(world.arms, world.control_period_s / pace, now_s)
+        for seat in self._seats:
+            self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
+        self._terms = terms
+        self._time_limit_s = terms.time_limit_s or world.task.time_limit_s
+        horizon_ticks = round(self._time_limit_s / world.control_period_s)
+        self._episode = EpisodeStateMachine(record.seed, horizon_ticks, record.episodes)
+        self._ticker = Ticker(name, world, self._boot_ns, now_s)
+        self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
+        self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
+        self._status_due_s = now_s
+        self._repeat_due_s = now_s
+        self._remember(record)
+        self._do([ResetWorld(self._episode.seed)], now_s)
+
+    @property
+    def rejected(self) -> Counter[CommandRejection]:
+        """Count the commands that were not used since the room opened, by reason."""
+        return self._barrier.rejected
+
+    @property
+    def in_practice(self) -> bool:
+        """Whether no episode is under way."""
+        return self._episode.phase == EPISODE_PHASE_PRACTICE
+
+    def hear(self, payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> None:
+        """Take a command that came on the key of `arm`, or count why it cannot be used."""
+        try:
+            received = validate_command(payload, arm, at_s, at_wall_ns)
+        except CommandRejected as error:
+            self._barrier.rejected[error.reason] += 1
+        else:
+            if self._barrier.offer(received) is None:
+                self._ticker.aim(received)
+
+    def answer_seat(self, request: SeatRequest, now_s: float) -> RoomReply:
+        """Do what a seat request asks; the reply holds the status, and the seat or an error."""
+        try:
+            before = list(self._seats)
+            seat = self._seats.answer(request)
+            if seat not in before:
+                self._seat_changed(seat, now_s)
+        except MartError as error:
+            return RoomReply(error=error_message(error), status=self.status(now_s))
+        return RoomReply(status=self.status(now_s), seat=self._seat_message(seat))
+
+    def answer_episode(self, request: EpisodeRequest, now_s: float) -> RoomReply:
+        """Do what an episode request asks; the reply holds the status, and an error where it was refused."""
+        try:
+            self._do(self._episode.answer(request, self._seats, now_s), now_s)
+        except MartError as error:
+            return RoomReply(error=error_message(error), status=self.status(now_s))
+        self._status_due_s = now_s
+        return RoomReply(status=self.status(now_s))
+
+    def episode_saved(self, saved: Event.EpisodeSaved) -> None:
+        """Count an episode that the recorder has saved."""
+        good = saved.verified and saved.outcome == OUTCOME_SUCCESS
+        self._remember(self._record.with_changes(saved=self._record.saved + 1, good=self._record.good + good))
+
+    def advance(self, now_s: float) -> float:
+        """Do what is due; return the time at which to call again if nothing arrives before."""
+        decision = self._barrier.advance(now_s, self._episode.world_runs)
+        if decision.inputs is not None:
+            self._fire(decision.inputs, now_s)
+        self._decision = decision
+        self._tell_barrier(decision)
+        for arm in decision.silent:
+            self._give_up(arm, now_s)
+        effects = self._episode.advance(decision.phase == BARRIER_PHASE_RUNNING, now_s)
+        self._do(effects, now_s)
+        self._repeat(now_s)
+        if effects or decision.silent:
+            return now_s
+        return min(decision.next_s, self._episode.next_s(now_s), self._status_due_s, self._repeat_due_s)
+
+    def status(self, now_s: float) -> RoomStatus:
+        """Return how the room stands at `now_s`."""
+        progress = self._ticker.progress
+        return RoomStatus(
+            room=self._name,
+            task=self._world.task.name,
+            control_hz=self._world.control_hz,
+            tick=self._ticker.tick,
+            real_time_factor=self._ticker.real_time_factor(now_s) if self._episode.world_runs else 1.0,
+            barrier=self._decision.phase,
+            waiting_for=room_messages.waiting(self._decision.waiting_for),
+            seats=[self._seat_message(seat) for seat in self._seats],
+            episode=room_messages.episode(self._episode, self._world.control_period_s, now_s),
+            progress=room_messages.progress(progress) if progress is not None else None,
+            episodes_saved=self._record.saved,
+            episodes_good=self._record.good,
+            wall_ns=clock.wall_ns(),
+            boot=self._boot_ns,
+            rejected_commands=self.rejected.total(),
+            plan=room_messages.plan(self._record),
+        )
+
+    def _fire(self, inputs: TickInputs, now_s: float) -> None:
+        try:
+            state = self._ticker.advance(inputs, self._seats, self._episode, now_s)
+        except Diverged as error:
+            self._tell(room_messages.notice("warning", self._explain(error)))
+            self._do(self._episode.abandon(OUTCOME_FAILURE, "the physics diverged", now_s), now_s)
+            return
+        self._tell_state(state, now_s)
+        progress = state.progress
+        self._do(self._episode.ticked(progress.success, progress.failed or None, now_s), now_s)
+
+    def _do(self, effects: Sequence[Effect], now_s: float) -> None:
+        for effect in effects:
+            match effect:
+                case ResetWorld():
+                    self._tell_state(
+                        self._ticker.reset(effect.seed, self._seats, self._episode, now_s), now_s
+                    )
+                    self._barrier.restart(now_s)
+                    self._tell(Event(world_reset=Event.WorldReset(seed=effect.seed)))
+                case BeginEpisode():
+                    self._start(effect, now_s)
+                case EndEpisode():
+                    self._end(effect)
+            self._status_due_s = now_s
+
+    def _start(self, effect: BeginEpisode, now_s: float) -> None:
+        self._remember(self._record.with_changes(episodes=effect.number))
+        self._tell(
+            Event(
+                episode_started=Event.EpisodeStarted(
+                    number=effect.number,
+                    seed=effect.seed,
+                    seats=[self._seat_message(seat) for seat in self._seats],
+                    task=self._world.task.name,
+                    control_hz=self._world.control_hz,
+                    model_sha256=self._world.model_sha256,
+                    lockstep=self._terms.lockstep,
+                    skill=self._terms.skill,
+                    time_limit_s=self._time_limit_s,
+                )
+            )
+        )
+        self._tell_state(self._ticker.standing(self._seats, self._episode, now_s), now_s)
+        self._barrier.restart(now_s)
+
+    def _end(self, effect: EndEpisode) -> None:
+        self._tell(
+            Event(
+                episode_ended=Event.EpisodeEnded(
+                    number=effect.number,
+                    outcome=effect.outcome,
+                    ticks=effect.ticks,
+                    reason=effect.reason,
+                    last_tick=self._ticker.tick,
+                )
+            )
+        )
+
+    def _give_up(self, arm: str, now_s: float) -> None:
+        name = self._seats[arm].driver.called
+        self._seat_changed(self._seats.free(arm), now_s)
+        self._tell(
+            room_messages.notice("warning", f"{name} gave no command for {FREED_AFTER_S:g} s: {arm} is free.")
+        )
+
+    def _seat_changed(self, seat: SeatHolder, now_s: float) -> None:
+        self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
+        self._remember(self._record.with_seats(self._seats))
+        self._tell(Event(seat_changed=self._seat_message(seat)))
+        self._do(self._episode.seats_changed(self._seats, now_s), now_s)
+        self._status_due_s = now_s
+
+    def _tell_barrier(self, decision: Decision) -> None:
+        if decision.phase in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED):
+            self._episode.interrupt()
+        holds = (decision.phase, *(arm for arm, _ in decision.waiting_for))
+        if holds != self._told:
+            self._told = holds
+            self._tell(room_messages.barrier_changed(decision.phase, decision.waiting_for))
+            self._status_due_s = 0.0
+
+    def _tell_state(self, state: State, now_s: float) -> None:
+        self._publisher.state(state)
+        self._repeat_due_s = now_s + REPEAT_S
+
+    def _tell(self, event: Event) -> None:
+        event.wall_ns, event.room, event.tick = clock.wall_ns(), self._name, self._ticker.tick
+        self._publisher.event(event)
+
+    def _repeat(self, now_s: float) -> None:
+        if now_s >= self._repeat_due_s:
+            self._publisher.repeat_state()
+            self._repeat_due_s = now_s + REPEAT_S
+        if now_s >= self._status_due_s:
+            self._publisher.status(self.status(now_s))
+            self._status_due_s = now_s + REPEAT_S
+
+    def _seat_message(self, seat: SeatHolder) -> Seat:
+        newest = self._barrier.newest(seat.arm) if seat.operator != OPERATOR_HOLD else None
+        return room_messages.seat(seat, self._episode.is_ready(seat.arm), newest)
+
+    def _remember(self, record: SavedRoom) -> None:
+        """Keep the record over a restart; a disk that is full must not stop the world."""
+        self._record = record
+        try:
+            self._keep(record)
+        except OSError as error:
+            self._tell(
+                room_messages.notice("error", f"A restart would forget this change of the room: {error}.")
+            )

@@ -1,0 +1,129 @@
+"""Build the messages that a room says: states, status and events. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.protocol.messages import (
+    BarrierPhase,
+    Episode,
+    Event,
+    Plan,
+    Seat,
+    Waiting,
+)
+from mart.sim.room.command_validation import ReceivedCommand
+from mart.sim.room.episode_state_machine import EpisodeStateMachine
+from mart.sim.room.saved_room import SavedRoom
+from mart.sim.room.seats import SeatHolder
+from mart.sim.world import TaskProgress
+
+# What any operator sees, by name: see mart.protocol.tasks.
+Seen = Mapping[str, NDArray[np.float64]]
+
+# The fields of a message. Protobuf fills a mapping in place, a message it serialises and parses once more; on the way
+# of every tick that is worth 40 %.
+Fields = dict[str, Any]
+
+
+def arm_state(
+    seen: Seen, seat: SeatHolder, received: ReceivedCommand | None, action: Sequence[float]
+) -> Fields:
+    """Return the fields of an ArmState: one arm after a tick.
+
+    received: the command that moved it, None for a held arm. action: empty after a reset.
+    """
+    x, y, z = seen[f"{seat.arm}/tool_position_in_base"].tolist()
+    qw, qx, qy, qz = seen[f"{seat.arm}/tool_quaternion_in_base"].tolist()
+    (gripper,) = seen[f"{seat.arm}/gripper"].tolist()
+    state: Fields = {
+        "arm": seat.arm,
+        "tool_in_base": {"x": x, "y": y, "z": z, "qw": qw, "qx": qx, "qy": qy, "qz": qz},
+        "gripper": gripper,
+        "action": action,
+        "source": seat.operator,
+        "seat_epoch": seat.epoch,
+    }
+    if received is not None:
+        state.update(
+            sequence=received.sequence,
+            arrived_ns=received.at_wall_ns,
+            stamps=received.command.stamps,
+            engaged=received.command.engaged,
+            fresh=True,
+        )
+    return state
+
+
+def observations(seen: Seen) -> list[Fields]:
+    """Return the fields of each Observation."""
+    return [{"name": name, "value": value.ravel().tolist()} for name, value in seen.items()]
+
+
+def progress(progress: TaskProgress) -> Fields:
+    """Return the fields of a Progress message."""
+    return {
+        "subtasks": [{"name": name, "done": done} for name, done in progress.subtasks.items()],
+        "success_now": progress.success_now,
+        "success_ticks": progress.success_ticks,
+        "success": progress.success,
+        "failed": progress.failed or "",
+    }
+
+
+def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None) -> Seat:
+    """Return the message of a seat; `newest`: the newest command of its operator."""
+    return Seat(
+        arm=holder.arm,
+        operator=holder.operator,
+        epoch=holder.epoch,
+        holder_id=holder.holder_id,
+        name=holder.name,
+        ready=ready,
+        engaged=newest is not None and newest.command.engaged,
+        policy=holder.driver.policy,
+        relieved=holder.relieved.called if holder.relieved else "",
+    )
+
+
+def episode(episode: EpisodeStateMachine, control_period_s: float, now_s: float) -> Episode:
+    """Return the message of where the episode stands."""
+    return Episode(
+        number=episode.number,
+        phase=episode.phase,
+        remaining_s=episode.remaining_s(now_s),
+        ticks=episode.ticks,
+        elapsed_s=episode.ticks * control_period_s,
+        outcome=episode.outcome,
+        seed=episode.seed,
+        interrupted=episode.interrupted,
+        reason=episode.reason,
+    )
+
+
+def plan(record: SavedRoom) -> Plan | None:
+    """Return how many good episodes are wanted and there, None where nobody counts."""
+    wanted = record.plan
+    return Plan(episodes=wanted.episodes, good=record.good - wanted.good_before) if wanted else None
+
+
+def waiting(arms: Iterable[tuple[str, float]]) -> list[Waiting]:
+    """Return the arms that are waited for, and for how many seconds."""
+    return [Waiting(arm=arm, since_s=since_s) for arm, since_s in arms]
+
+
+def barrier_changed(phase: BarrierPhase, arms: Iterable[tuple[str, float]]) -> Event:
+    """Return the event of a new barrier phase."""
+    return Event(barrier_changed=Event.BarrierChanged(phase=phase, waiting_for=waiting(arms)))
+
+
+def notice(level: str, text: str) -> Event:
+    """Return an event that people read; `level`: info, warning or error."""
+    event = Event()
+    event.notice.level, event.notice.text = level, text
+    setattr(event.notice, "from", "sim")  # a keyword in Python
+    return event

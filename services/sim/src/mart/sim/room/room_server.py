@@ -1,0 +1,96 @@
+"""Receive everything that comes from the bus for one room."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
+from typing import TypeVar
+
+from mart.protocol import clock, codec, keys
+from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.messages import EpisodeRequest, Event, RoomReply, SeatRequest, error_message
+from mart.runtime.bus import Bus, Closable, Request, Sample
+from mart.sim.room.room import Room
+from mart.sim.world import World
+from mart.sim.world.model_message import model_message
+
+R = TypeVar("R", SeatRequest, EpisodeRequest)
+
+MAX_REQUEST_BYTES = 4096
+_MAX_EVENT_BYTES = 64 * 1024
+
+
+class RoomServer:
+    """Turn what comes in into work for the room, which `submit` does now or later; never do any by itself.
+
+    garbled: counts undecodable payloads by where they came. looks: the same world with detailed meshes, to show.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        name: str,
+        room: Room,
+        world: World,
+        *,
+        submit: Callable[[Callable[[], None]], None],
+        garbled: Counter[str],
+        now_s: Callable[[], float] = clock.monotonic_s,
+        looks: World | None = None,
+    ) -> None:
+        self._bus, self._name, self._now_s = bus, name, now_s
+        self._room = room
+        self._submit, self._garbled = submit, garbled
+        self._models = {
+            what: codec.encode(model_message(shown))
+            for what, shown in ((b"", world), (keys.DETAILED, looks or world))
+        }
+        self._open: list[Closable] = [
+            bus.subscribe(keys.event(name).key, self._on_event),
+            bus.serve(keys.seat(name), self._on_seat_request),
+            bus.serve(keys.episode(name), self._on_episode_request),
+            bus.serve(keys.model(name), self._on_model_request),
+        ]
+
+    def hear_commands(self) -> None:
+        """Receive the commands of operators in other processes too."""
+        self._open.append(self._bus.subscribe(keys.commands(self._name), self._on_command))
+
+    def close(self) -> None:
+        """Withdraw everything from the bus."""
+        for declared in self._open:
+            declared.close()
+
+    def _on_command(self, sample: Sample) -> None:
+        hear = partial(
+            self._room.hear, sample.payload, keys.arm_of(sample.key), self._now_s(), clock.wall_ns()
+        )
+        self._submit(hear)
+
+    def _on_event(self, sample: Sample) -> None:
+        try:
+            event = codec.decode(Event, sample.payload, _MAX_EVENT_BYTES)
+        except InvalidInput:
+            self._garbled["event"] += 1
+            return
+        if event.WhichOneof("what") == "episode_saved":
+            self._submit(partial(self._room.episode_saved, event.episode_saved))
+
+    def _on_seat_request(self, request: Request) -> None:
+        self._submit(partial(self._answer, request, SeatRequest, self._room.answer_seat))
+
+    def _on_episode_request(self, request: Request) -> None:
+        self._submit(partial(self._answer, request, EpisodeRequest, self._room.answer_episode))
+
+    def _on_model_request(self, request: Request) -> None:
+        request.reply(self._models.get(request.payload, self._models[b""]))
+
+    def _answer(self, request: Request, kind: type[R], answer: Callable[[R, float], RoomReply]) -> None:
+        """Answer a request; what cannot be decoded is refused and counted."""
+        try:
+            reply = answer(codec.decode(kind, request.payload, MAX_REQUEST_BYTES), self._now_s())
+        except MartError as error:
+            self._garbled["request"] += 1
+            reply = RoomReply(error=error_message(error))
+        request.reply(codec.encode(reply))

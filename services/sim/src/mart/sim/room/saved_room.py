@@ -1,0 +1,116 @@
+"""Keep what a room knows over a restart, a crash included: seed, count of episodes, seats with their epochs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from mart.protocol.errors import Corrupt
+from mart.protocol.messages import operator_from_word, operator_word
+from mart.protocol.vocabulary import OperatorKind
+from mart.runtime.atomic_file import write_atomically
+from mart.sim.room.seats import Driver, SeatHolder
+
+
+class SavedDriver(BaseModel):
+    """Store who drives, in words."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    operator: OperatorKind
+    holder_id: str
+    name: str
+    policy: str = ""
+
+    def driver(self) -> Driver:
+        """Return the driver that this stores."""
+        return Driver(operator_from_word(self.operator), self.holder_id, self.name, self.policy)
+
+
+class SavedSeat(SavedDriver):
+    """Store one seat, and the machine that its human relieved."""
+
+    arm: str
+    epoch: int = Field(ge=1)
+    relieved: SavedDriver | None = None
+
+    def holder(self) -> SeatHolder:
+        """Return the seat that this stores."""
+        return SeatHolder(
+            self.arm, self.epoch, self.driver(), self.relieved.driver() if self.relieved else None
+        )
+
+
+class SavedPlan(BaseModel):
+    """Store that so many good `episodes` of `task` are wanted; `good_before`: the good ones when that was said."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    task: str
+    episodes: int = Field(ge=1)
+    good_before: int = Field(ge=0)
+
+
+class SavedRoom(BaseModel):
+    """Store one room: `episodes` is the newest number; `saved` and `good` count what the recorder reported."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    seed: int = Field(ge=0)
+    episodes: int = Field(0, ge=0)
+    saved: int = Field(0, ge=0)
+    good: int = Field(0, ge=0)
+    seats: tuple[SavedSeat, ...] = ()
+    plan: SavedPlan | None = None
+
+    def planned(self, task: str, episodes: int | None) -> SavedRoom:
+        """Return it with so many good episodes of this task wanted: the same plan goes on, another begins anew."""
+        if episodes is None:
+            return self.with_changes(plan=None)
+        if self.plan is not None and (self.plan.task, self.plan.episodes) == (task, episodes):
+            return self
+        return self.with_changes(plan=SavedPlan(task=task, episodes=episodes, good_before=self.good))
+
+    def holders(self) -> list[SeatHolder]:
+        """Return the stored seats."""
+        return [seat.holder() for seat in self.seats]
+
+    def with_seats(self, seats: Iterable[SeatHolder]) -> SavedRoom:
+        """Return it with these seats."""
+        return self.with_changes(seats=tuple(_seat_record(seat) for seat in seats))
+
+    def with_changes(self, **changes: Any) -> SavedRoom:
+        """Return it with some fields changed."""
+        return self.model_copy(update=changes)
+
+
+def _seat_record(seat: SeatHolder) -> SavedSeat:
+    relieved = _fields(seat.relieved) if seat.relieved else None
+    return SavedSeat.model_validate(
+        {"arm": seat.arm, "epoch": seat.epoch, "relieved": relieved, **_fields(seat.driver)}
+    )
+
+
+def _fields(driver: Driver) -> dict[str, str]:
+    return {**asdict(driver), "operator": operator_word(driver.operator)}
+
+
+def load(path: Path) -> SavedRoom | None:
+    """Read a room, None where it never ran before; raises Corrupt where the file is no record of one."""
+    if not path.exists():
+        return None
+    try:
+        return SavedRoom.model_validate_json(path.read_bytes())
+    except ValidationError as error:
+        raise Corrupt(
+            f"{path} is not the record of a room ({error.error_count()} faults); delete it to let the room begin anew."
+        ) from error
+
+
+def save(path: Path, record: SavedRoom) -> None:
+    """Write a room; it names holders, so the file is readable by its owner alone."""
+    write_atomically(path, record.model_dump_json(indent=2).encode())

@@ -1,0 +1,90 @@
+"""Run a room that nobody waits for, with its scripts, as fast as the machine and its listeners allow.
+
+Seats, barrier, episode and world are those of a live room, on a clock that jumps to whatever is due next. Scripts in
+this very process drive every arm, with Commands like anybody's. What is said goes out as ever, so that a recorder
+records as ever; it is said in order and nothing is lost, which makes the room as slow as who listens. Between episodes
+the world stands still: whoever asks for the next one sets the pace.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import Counter
+
+from mart.protocol import clock, codec
+from mart.protocol.messages import OPERATOR_SCRIPT, SeatRequest, raise_error
+from mart.protocol.tasks import Task
+from mart.runtime.throttled_log import ThrottledLog
+from mart.sim.experts import Skill
+from mart.sim.operate import REPEAT_S, ScriptedOperator
+from mart.sim.room.bus_publisher import OrderedPublisher
+from mart.sim.room.room import REPEAT_S as STATUS_S
+from mart.sim.room.room import Room
+from mart.sim.room.work_queue import WorkQueue
+
+_log = logging.getLogger(__name__)
+
+
+class SimulatedTime:
+    """Count the room's seconds; they never go back."""
+
+    def __init__(self) -> None:
+        self._now_s = 0.0
+
+    def now_s(self) -> float:
+        """Return the present moment."""
+        return self._now_s
+
+    def reach(self, moment_s: float) -> None:
+        """Go on to this moment, unless it is past."""
+        self._now_s = max(self._now_s, moment_s)
+
+
+class UnpacedRoom:
+    """Run a room with its publisher, its time, and a script on every seat."""
+
+    def __init__(self, room: Room, publisher: OrderedPublisher, time: SimulatedTime) -> None:
+        self._room, self._publisher, self._time = room, publisher, time
+        self._operators: dict[str, ScriptedOperator] = {}
+        self._act_s = time.now_s()
+
+    def seat_scripts(self, task: Task, skill: Skill, seed: int) -> None:
+        """Put a script of this skill on every seat."""
+        for arm in task.arm_names:
+            assign = SeatRequest.Assign(arm=arm, operator=OPERATOR_SCRIPT)
+            reply = self._room.answer_seat(SeatRequest(assign=assign), self._time.now_s())
+            raise_error(reply.error)
+            self._operators[arm] = ScriptedOperator(task, arm, reply.seat.epoch, skill, seed)
+
+    def run(self, work_queue: WorkQueue, garbled: Counter[str], stop: threading.Event) -> None:
+        """Run until `stop` is set. Requests are answered between episodes: whoever asks twice gets two."""
+        throttled_log = ThrottledLog(_log)
+        while not stop.is_set():
+            throttled_log.report(Counter(self._room.rejected) + garbled, clock.monotonic_s())
+            self._publisher.status(self._room.status(self._time.now_s()))
+            work_queue.run_one(STATUS_S)
+            self.play(stop)
+
+    def play(self, stop: threading.Event) -> None:
+        """Play the episode that has been asked for, if there is one, until the room is in practice again."""
+        while not self._room.in_practice and not stop.is_set():
+            next_s = self._room.advance(self._time.now_s())
+            if not self._act():  # else the room looks again before time passes
+                self._time.reach(min(next_s, self._act_s))
+
+    def _act(self) -> bool:
+        """Let everybody say what to do where there is news, else repeat now and then; return whether they spoke."""
+        now_s = self._time.now_s()
+        news = [operator.see(self._publisher.newest) for operator in self._operators.values()]
+        if not any(news) and now_s < self._act_s:
+            return False
+        self._act_s = now_s + REPEAT_S
+        for arm, operator in self._operators.items():
+            wall_ns = clock.wall_ns()
+            command = operator.command(wall_ns)
+            assert command is not None  # it has seen the world's first state
+            payload = codec.encode(command)
+            self._publisher.command(arm, payload)
+            self._room.hear(payload, arm, now_s, wall_ns)
+        return True

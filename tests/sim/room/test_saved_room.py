@@ -1,0 +1,67 @@
+"""What a room keeps over a restart."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mart.protocol.errors import Corrupt
+from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_POLICY, OPERATOR_SCRIPT
+from mart.sim.room import saved_room
+from mart.sim.room.saved_room import SavedRoom
+from mart.sim.room.seats import SeatTable
+
+
+def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
+    path = tmp_path / "rooms" / "room-1.json"
+    seats = SeatTable(["arm0", "arm1", "arm2"])
+    seats.claim("arm0", "h1", "Ana", OPERATOR_HUMAN)
+    seats.assign("arm1", OPERATOR_SCRIPT)
+    seats.assign("arm2", OPERATOR_POLICY, "lifter")
+    seats.claim("arm2", "h2", "Ben", OPERATOR_HUMAN)
+    record = SavedRoom(seed=5, episodes=3, saved=2, good=1).with_seats(seats).planned("lift", 50)
+    saved_room.save(path, record)
+    assert saved_room.load(path) == record
+    assert record.holders() == list(seats)
+
+
+def test_a_plan_counts_from_when_it_was_made() -> None:
+    record = SavedRoom(seed=5, saved=4, good=3).planned("lift", 50)
+    assert record.with_changes(good=5).planned("lift", 50) == record.with_changes(good=5)  # a restart
+    for task, episodes in (("wipe", 50), ("lift", 20)):
+        anew = record.with_changes(good=5).planned(task, episodes).plan
+        assert anew is not None
+        assert (anew.task, anew.episodes, anew.good_before) == (task, episodes, 5)
+    assert record.planned("lift", None).plan is None
+
+
+def test_a_room_that_never_ran_has_no_record(tmp_path: Path) -> None:
+    assert saved_room.load(tmp_path / "room-1.json") is None
+
+
+def test_a_record_is_replaced_and_only_its_owner_reads_it(tmp_path: Path) -> None:
+    path = tmp_path / "room-1.json"
+    for episodes in (1, 2):
+        saved_room.save(path, SavedRoom(seed=5, episodes=episodes))
+    assert [file.name for file in tmp_path.iterdir()] == ["room-1.json"]
+    assert path.stat().st_mode & 0o777 == 0o600
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "{",
+        "[]",
+        '{"seed": -1}',
+        '{"seed": 1, "colour": "red"}',
+        '{"seed": 1, "seats": [{"arm": "arm0", "operator": "nobody", "epoch": 1, "holder_id": "", "name": ""}]}',
+        '{"seed": 1, "seats": [{"arm": "arm0", "operator": "hold", "epoch": 0, "holder_id": "", "name": ""}]}',
+    ],
+)
+def test_a_spoilt_record_is_named(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "room-1.json"
+    path.write_text(text)
+    with pytest.raises(Corrupt, match=r"room-1\.json.*delete it"):
+        saved_room.load(path)
