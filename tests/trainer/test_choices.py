@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mart.episodes.labels import Kind, Label, append
+from mart.episodes.labels import Label, LabelKind, append
 from mart.trainer.service.choices import data_sets
 
 CUBES, TRAY = "two_arm_multi_cube_lifting", "two_arm_drink_tray_lifting"
@@ -37,8 +37,8 @@ def test_named_data_sets_follow_their_folder_and_say_what_is_left_of_them(data_d
         f"2026-11-23/room-1-0003-{TRAY}-2.mcap",
         "x.mcap",
     )
-    joined = [Label(path, Kind.JOIN, "trays", 1) for path in (first, second, gone)]
-    append(data_dir / "episodes", [*joined, Label(first, Kind.USE, "drop", 2)])
+    joined = [Label(path, LabelKind.JOIN, "trays", 1) for path in (first, second, gone)]
+    append(data_dir / "episodes", [*joined, Label(first, LabelKind.USE, "drop", 2)])
     folder, named, other = data_sets(data_dir)
     assert [one.path for one in (folder, named, other)] == ["episodes", "episodes", "collected"]
     assert (folder.name, named.name, list(named.tasks)) == ("", "trays", [TRAY])

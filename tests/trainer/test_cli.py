@@ -56,8 +56,8 @@ def test_it_takes_a_named_data_set_whole(episodes: Recorded, tmp_path: Path) -> 
     shutil.copytree(episodes.root, root)
     first, second, _ = sorted(root.rglob("*.mcap"))
     for path in (first, second):
-        labels.say(path, labels.Kind.JOIN, "few", 1)
-    labels.say(first, labels.Kind.USE, "drop", 2)
+        labels.say(path, labels.LabelKind.JOIN, "few", 1)
+    labels.say(first, labels.LabelKind.USE, "drop", 2)
     words = (
         "--model",
         "BC",
@@ -77,7 +77,7 @@ def test_it_takes_a_named_data_set_whole(episodes: Recorded, tmp_path: Path) -> 
     dataset = RunDirectory(tmp_path / "run").request.dataset
     assert dataset is not None
     assert f"of the data set few ({dataset.sha256[:12]}, " in trained.stdout
-    labels.say(first, labels.Kind.USE, "keep", 3)
+    labels.say(first, labels.LabelKind.USE, "keep", 3)
     changed = mart_train("--resume", tmp_path / "run").exception
     assert isinstance(changed, Conflict)
     assert "have changed since it was begun" in str(changed)

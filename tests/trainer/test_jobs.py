@@ -171,15 +171,15 @@ def test_a_job_learns_from_the_data_set_as_it_was_ordered(
     shutil.copytree(data_dir / "episodes", folder)
     first, second, third = sorted(folder.rglob("*.mcap"))
     for path in (first, second):
-        labels.say(path, labels.Kind.JOIN, "few", 1)
-    labels.say(first, labels.Kind.USE, "drop", 2)
+        labels.say(path, labels.LabelKind.JOIN, "few", 1)
+    labels.say(first, labels.LabelKind.USE, "drop", 2)
     monkeypatch.setenv("MART_ROUTER", endpoint)
     words = ["--models", "BC", "--tasks", TASK, "--data", "sorted", "--dataset", "few", "--preset", "debug"]
     ordered = CliRunner().invoke(submit, [*words, "--episodes", "0", "--json"])
     assert ordered.exit_code == 0, ordered.output
     (job,) = json.loads(ordered.output)["jobs"]
     assert (job["order"]["dataset"], job["order"]["data"]) == ("few", str(folder))
-    labels.say(third, labels.Kind.JOIN, "few", 3)
+    labels.say(third, labels.LabelKind.JOIN, "few", 3)
     details = client.wait_until_over(job["id"])
     assert details.job.state == JOB_STATE_DONE, client.log(job["id"])
     learned = details.learned

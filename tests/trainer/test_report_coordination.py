@@ -108,7 +108,7 @@ def test_files_tell_what_was_done_at_any_time(episodes: Path) -> None:
 
 
 def test_a_label_goes_before_the_recorded_outcome(episodes: Path) -> None:
-    labels.say(sorted(episodes.glob("*.mcap"))[1], labels.Kind.OUTCOME, "discarded", 1)
+    labels.say(sorted(episodes.glob("*.mcap"))[1], labels.LabelKind.OUTCOME, "discarded", 1)
     (found,) = read_attempts(episodes)
     assert len(found.attempts) == 2
 

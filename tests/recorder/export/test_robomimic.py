@@ -11,15 +11,15 @@ import h5py
 import numpy as np
 import pytest
 
-from mart.episodes.labels import Kind, say
+from mart.episodes.labels import LabelKind, say
 from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput
 from mart.protocol.messages import OUTCOME_FAILURE, State
 from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import Verdict
 from mart.recorder.cli import export
-from mart.recorder.export.choice import choose
 from mart.recorder.export.robomimic import key_of, write_robomimic
+from mart.recorder.export.selection import choose
 from mart.recorder.export.transitions import from_states, read_transitions
 from mart.recorder.files import rows
 from mart.sim.world import World
@@ -107,7 +107,7 @@ def test_observation_and_action_stand_side_by_side_as_in_training(source: Source
 
 
 def test_what_the_file_is_stands_in_it(folder: Path) -> None:
-    say(max(folder.rglob("*.mcap")), Kind.JOIN, "late", at_ns=1)
+    say(max(folder.rglob("*.mcap")), LabelKind.JOIN, "late", at_ns=1)
     write(folder, folder / "lifting.hdf5", "--outcome", "any", "--verdict", "any")
     with h5py.File(folder / "lifting.hdf5") as file:
         environment = json.loads(file["data"].attrs["env_args"])
@@ -131,7 +131,7 @@ def test_only_what_is_asked_for_is_taken(folder: Path) -> None:
     assert count(("success",), ("verified",)) == 2
     assert count(("success", "failure"), ("verified",)) == 3
     assert count((), ()) == 4
-    say(min(folder.rglob("*.mcap")), Kind.USE, "drop", at_ns=1)
+    say(min(folder.rglob("*.mcap")), LabelKind.USE, "drop", at_ns=1)
     assert count((), ()) == 3
     with pytest.raises(
         InvalidInput, match=r"1 dropped, 1 failure and verified.* widen --outcome or --verdict"

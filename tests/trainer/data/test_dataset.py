@@ -72,8 +72,8 @@ def test_labels_overrule_files(episodes: Recorded, tmp_path: Path) -> None:
     root = tmp_path / "episodes"
     shutil.copytree(episodes.root, root)
     first, second, _ = sorted(root.rglob("*.mcap"))
-    labels.say(first, labels.Kind.OUTCOME, "failure", 1)
-    labels.say(second, labels.Kind.USE, "drop", 2)
+    labels.say(first, labels.LabelKind.OUTCOME, "failure", 1)
+    labels.say(second, labels.LabelKind.USE, "drop", 2)
     assert len(load_dataset([root], Selection()).digest.episodes) == 1
     both = load_dataset([root], Selection(outcomes=())).digest
     assert [used.outcome for used in both.episodes] == ["failure", "success"]

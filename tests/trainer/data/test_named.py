@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from mart.episodes import labels
-from mart.episodes.labels import Kind
+from mart.episodes.labels import LabelKind
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import OUTCOME_FAILURE
 from mart.protocol.vocabulary import Verdict
@@ -26,7 +26,7 @@ def root(episodes: Recorded, tmp_path: Path) -> Path:
     failure = recorded.perform(episodes.world, 4, number=4)
     recorded.write(root, episodes.world, failure, outcome=OUTCOME_FAILURE, verdict=Verdict.UNVERIFIED)
     for at_ns, path in enumerate(files(root)[1:]):
-        labels.say(path, Kind.JOIN, "good", at_ns)
+        labels.say(path, LabelKind.JOIN, "good", at_ns)
     return root
 
 
@@ -45,7 +45,7 @@ def test_it_is_taken_whole_with_its_name_and_digest(root: Path) -> None:
     episodes, told = learned(root)
     assert episodes == ["0002", "0003", "0004"]
     assert (told.name, told.episodes, told.left_out) == ("good", 3, ())
-    labels.say(files(root)[0], Kind.JOIN, "good", 9)
+    labels.say(files(root)[0], LabelKind.JOIN, "good", 9)
     assert learned(root)[1].sha256 != told.sha256
 
 
@@ -53,8 +53,8 @@ def test_what_was_dropped_discarded_or_deleted_since_is_said(
     root: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     _, second, third, fourth = files(root)
-    labels.say(second, Kind.USE, "drop", 10)
-    labels.say(fourth, Kind.OUTCOME, "discarded", 11)
+    labels.say(second, LabelKind.USE, "drop", 10)
+    labels.say(fourth, LabelKind.OUTCOME, "discarded", 11)
     episodes, told = learned(root)
     assert episodes == ["0003"]
     assert {Path(one.path).name: one.why for one in told.left_out} == {
@@ -62,7 +62,7 @@ def test_what_was_dropped_discarded_or_deleted_since_is_said(
         fourth.name: "discarded",
     }
     assert "2 of the 3 episodes of the data set good are left out" in caplog.text
-    labels.say(second, Kind.USE, "keep", 12)
+    labels.say(second, LabelKind.USE, "keep", 12)
     third.unlink()
     episodes, told = learned(root)
     assert episodes == ["0002"]

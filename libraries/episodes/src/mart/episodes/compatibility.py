@@ -8,7 +8,7 @@ from typing import Protocol
 from mart.protocol.errors import InvalidInput
 
 
-class Facts(Protocol):
+class ComparableEpisode(Protocol):
     @property
     def task(self) -> str | None: ...
     @property
@@ -17,7 +17,7 @@ class Facts(Protocol):
     def arms(self) -> tuple[str, ...]: ...
 
 
-def require_alike(episodes: Iterable[Facts], advice: str) -> None:
+def require_alike(episodes: Iterable[ComparableEpisode], advice: str) -> None:
     """Raises InvalidInput where tasks, control rates or arms differ. `advice`: what to do then, as a clause."""
     listed = list(episodes)
     facts: dict[str, set[str]] = {

@@ -11,10 +11,10 @@ import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from mart.episodes.labels import Kind, Label, Labelled
+from mart.episodes.labels import EpisodeLabels, Label, LabelKind
 from mart.protocol.errors import NotFound
 
-_OPPOSITE = {Kind.JOIN: Kind.LEAVE, Kind.LEAVE: Kind.JOIN}
+_OPPOSITE = {LabelKind.JOIN: LabelKind.LEAVE, LabelKind.LEAVE: LabelKind.JOIN}
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class NamedDataSet:
         return hashlib.sha256("".join(f"{path}\n" for path in self.episodes).encode()).hexdigest()
 
 
-def named(said: Mapping[str, Labelled]) -> dict[str, NamedDataSet]:
+def named(said: Mapping[str, EpisodeLabels]) -> dict[str, NamedDataSet]:
     """Every data set, by its name, out of what holds about each file."""
     joined: dict[str, dict[str, int]] = {}
     for path, label in said.items():
@@ -43,7 +43,7 @@ def named(said: Mapping[str, Labelled]) -> dict[str, NamedDataSet]:
     }
 
 
-def find(said: Mapping[str, Labelled], name: str) -> NamedDataSet:
+def find(said: Mapping[str, EpisodeLabels], name: str) -> NamedDataSet:
     """Raises NotFound, naming those that there are."""
     known = named(said)
     if name not in known:
@@ -51,21 +51,21 @@ def find(said: Mapping[str, Labelled], name: str) -> NamedDataSet:
     return known[name]
 
 
-def join(said: Mapping[str, Labelled], name: str, paths: Iterable[str], at_ns: int) -> list[Label]:
+def join(said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int) -> list[Label]:
     """To be said so that these are part of it: nothing of those that are. Raises InvalidInput for the name."""
     return [
-        Label(path, Kind.JOIN, name, at_ns)
+        Label(path, LabelKind.JOIN, name, at_ns)
         for path in dict.fromkeys(paths)
-        if name not in said.get(path, Labelled()).datasets
+        if name not in said.get(path, EpisodeLabels()).datasets
     ]
 
 
-def leave(said: Mapping[str, Labelled], name: str, paths: Iterable[str], at_ns: int) -> list[Label]:
+def leave(said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int) -> list[Label]:
     """To be said so that these are no part of it."""
     return [
-        Label(path, Kind.LEAVE, name, at_ns)
+        Label(path, LabelKind.LEAVE, name, at_ns)
         for path in dict.fromkeys(paths)
-        if name in said.get(path, Labelled()).datasets
+        if name in said.get(path, EpisodeLabels()).datasets
     ]
 
 

@@ -24,7 +24,7 @@ _DAY = re.compile(r"\d{4}-\d{2}-\d{2}")
 _DATASET = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
 
 
-class Kind(StrEnum):
+class LabelKind(StrEnum):
     OUTCOME = "outcome"  # value: success, failure or discarded
     NOTE = "note"  # value: free text
     USE = "use"  # value: keep or drop (leave out of data sets)
@@ -34,9 +34,9 @@ class Kind(StrEnum):
 
 
 _ALLOWED = {
-    Kind.OUTCOME: ("success", "failure", "discarded"),
-    Kind.USE: ("keep", "drop"),
-    Kind.VERDICT: ("verified", "diverged", "unverified"),
+    LabelKind.OUTCOME: ("success", "failure", "discarded"),
+    LabelKind.USE: ("keep", "drop"),
+    LabelKind.VERDICT: ("verified", "diverged", "unverified"),
 }
 
 
@@ -45,7 +45,7 @@ class Label:
     """`path` is relative to the folder of the labels, with forward slashes."""
 
     path: str
-    kind: Kind
+    kind: LabelKind
     value: str
     at_ns: int  # Unix time
     detail: str = ""
@@ -54,7 +54,7 @@ class Label:
         allowed = _ALLOWED.get(self.kind)
         if allowed is not None and self.value not in allowed:
             raise InvalidInput(f"The {self.kind} {self.value!r} was given; it must be {', '.join(allowed)}.")
-        if self.kind in (Kind.JOIN, Kind.LEAVE) and not _DATASET.fullmatch(self.value):
+        if self.kind in (LabelKind.JOIN, LabelKind.LEAVE) and not _DATASET.fullmatch(self.value):
             raise InvalidInput(
                 f"The data set {self.value[:100]!r} was given; name it with 1 to 64 lower-case letters, digits, '-' or "
                 "'_', the first a letter or digit."
@@ -66,7 +66,7 @@ class Label:
 
 
 @dataclass(frozen=True)
-class Labelled:
+class EpisodeLabels:
     """What holds about one file now; None where nothing was said. datasets: that it is part of, and since when."""
 
     outcome: str | None = None
@@ -75,28 +75,28 @@ class Labelled:
     dropped: bool = False
     datasets: Mapping[str, int] = field(default_factory=dict)
 
-    def with_label(self, label: Label) -> Labelled:
+    def with_label(self, label: Label) -> EpisodeLabels:
         match label.kind:
-            case Kind.OUTCOME:
+            case LabelKind.OUTCOME:
                 return replace(self, outcome=label.value)
-            case Kind.NOTE:
+            case LabelKind.NOTE:
                 return replace(self, note=label.value)
-            case Kind.VERDICT:
+            case LabelKind.VERDICT:
                 return replace(self, verdict=label.value)
-            case Kind.USE:
+            case LabelKind.USE:
                 return replace(self, dropped=label.value == "drop")
-            case Kind.JOIN:
+            case LabelKind.JOIN:
                 return replace(self, datasets={**self.datasets, label.value: label.at_ns})
-            case Kind.LEAVE:
+            case LabelKind.LEAVE:
                 kept = {name: at_ns for name, at_ns in self.datasets.items() if name != label.value}
                 return replace(self, datasets=kept)
 
 
-def fold(labels: Iterable[Label]) -> dict[str, Labelled]:
+def fold(labels: Iterable[Label]) -> dict[str, EpisodeLabels]:
     """Path → what holds about it."""
-    known: dict[str, Labelled] = {}
+    known: dict[str, EpisodeLabels] = {}
     for label in labels:
-        known[label.path] = known.get(label.path, Labelled()).with_label(label)
+        known[label.path] = known.get(label.path, EpisodeLabels()).with_label(label)
     return known
 
 
@@ -142,7 +142,7 @@ def is_root(folder: Path) -> bool:
     return any(_DAY.fullmatch(child.name) for child in folder.iterdir())
 
 
-def say(episode: Path, kind: Kind, value: str, at_ns: int, detail: str = "") -> None:
+def say(episode: Path, kind: LabelKind, value: str, at_ns: int, detail: str = "") -> None:
     """Appends one label about an episode file. Raises InvalidInput for a value that the kind cannot have."""
     root = root_of(episode)
     append(root, [Label(episode.resolve().relative_to(root).as_posix(), kind, value, at_ns, detail)])
@@ -163,7 +163,7 @@ def _parse(line: bytes) -> Label:
     fields = json.loads(line)
     return Label(
         path=str(fields["path"]),
-        kind=Kind(fields["kind"]),
+        kind=LabelKind(fields["kind"]),
         value=str(fields["value"]),
         at_ns=int(fields["at_ns"]),
         detail=str(fields.get("detail", "")),

@@ -27,7 +27,7 @@ from mart.protocol.recording import (
 
 
 @dataclass(frozen=True)
-class Recorded:
+class RecordedMessage:
     """One message of a file."""
 
     topic: str
@@ -72,12 +72,12 @@ class EpisodeFile:
     def room(self) -> RoomRecord:
         return RoomRecord.from_strings(self._record(RoomRecord.NAME))
 
-    def messages(self, *topics: str) -> Iterator[Recorded]:
+    def messages(self, *topics: str) -> Iterator[RecordedMessage]:
         """Messages of these topics, or of all, in the order of the file."""
         with BoundedFile(self.path) as file, corruption(self.path):
             for channel, message in messages(_until_cut(records(file), self.path)):
                 if not topics or channel.topic in topics:
-                    yield Recorded(
+                    yield RecordedMessage(
                         channel.topic, message.data, message.log_time, message.publish_time, message.sequence
                     )
 

@@ -11,12 +11,12 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput, Unavailable
-from mart.recorder.filters import OUTCOMES, VERDICTS, filters, passing
+from mart.recorder.filter_options import OUTCOMES, VERDICTS, filters, passing
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
 
 if TYPE_CHECKING:
-    from mart.recorder.verify import Resimulate
+    from mart.recorder.verify.resimulation import Resimulate
 
 _path = click.argument("path", type=click.Path(path_type=Path))
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
@@ -37,7 +37,7 @@ def recorder(name: str, replica: str | None) -> None:
 @click.option("--name", default="catalogue-1", show_default=True, help="Id of this catalogue.")
 def catalogue(name: str) -> None:
     """Answer what the pages ask about recorded episodes."""
-    from mart.recorder.browse.serve import serve_catalogue
+    from mart.recorder.catalogue.serve import serve_catalogue
 
     serve_catalogue(RecorderSettings(), name)
 
@@ -53,10 +53,12 @@ def episodes() -> None:
 @json_option
 def list_episodes(paths: tuple[Path, ...], as_json: bool, **wanted: Any) -> None:
     """List episodes: what they are, how they ended, whether they are verified."""
-    from mart.recorder import files, report
+    from mart.recorder import files, formatting
 
     rows = passing(files.rows(_given(paths)), wanted)
-    print_result({"episodes": [report.listed(path, row) for path, row in rows]}, report.table(rows), as_json)
+    print_result(
+        {"episodes": [formatting.listed(path, row) for path, row in rows]}, formatting.table(rows), as_json
+    )
 
 
 @episodes.command()
@@ -65,11 +67,11 @@ def list_episodes(paths: tuple[Path, ...], as_json: bool, **wanted: Any) -> None
 def show(path: Path, as_json: bool) -> None:
     """Show everything that is known about one episode."""
     from mart.episodes.reader import EpisodeFile
-    from mart.recorder import files, report
+    from mart.recorder import files, formatting
 
     file = EpisodeFile.open(path)
-    result = {**report.listed(path, files.row_of(path)), "metadata": file.strings}
-    print_result(result, report.details(result), as_json)
+    result = {**formatting.listed(path, files.row_of(path)), "metadata": file.strings}
+    print_result(result, formatting.details(result), as_json)
 
 
 @episodes.command()
@@ -82,7 +84,7 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     from mart.episodes.paths import episode_files
     from mart.episodes.reader import EpisodeFile
     from mart.protocol.vocabulary import Verdict
-    from mart.recorder.verify import verify as verify_file
+    from mart.recorder.verify.resimulation import verify as verify_file
 
     found = []
     with _resimulation(replica) as resimulate:
@@ -90,7 +92,7 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
             file = EpisodeFile.open(path)
             said = verify_file(file, file.room, resimulate)
             if said.verdict is not Verdict.UNVERIFIED:  # a replica that is away takes nothing back
-                labels.say(path, labels.Kind.VERDICT, said.verdict.value, clock.wall_ns(), said.detail)
+                labels.say(path, labels.LabelKind.VERDICT, said.verdict.value, clock.wall_ns(), said.detail)
             found.append({"path": str(path), "verdict": said.verdict.value, "detail": said.detail})
     lines = [f"{entry['path']}: {entry['verdict']}. {entry['detail']}" for entry in found]
     print_result({"episodes": found}, "\n".join(lines) or "There are no episodes.", as_json)
@@ -104,13 +106,13 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
 def replay(path: Path, replica: str | None, as_json: bool) -> int:
     """Step one episode again in a replica and report every stretch of ticks: where it agrees, where it does not."""
     from mart.episodes.reader import EpisodeFile
-    from mart.recorder import report
-    from mart.recorder.verify import compare
+    from mart.recorder import formatting
+    from mart.recorder.verify.resimulation import compare
 
     file = EpisodeFile.open(path)
     with _resimulation(replica) as resimulate:
         stretches = list(compare(file, file.room, resimulate))
-    print_result(*report.replayed(path, stretches), as_json)
+    print_result(*formatting.replayed(path, stretches), as_json)
     return 1 if any(stretch.different for stretch in stretches) else 0
 
 
@@ -120,14 +122,14 @@ def replay(path: Path, replica: str | None, as_json: bool) -> int:
 @json_option
 def repair(folder: Path | None, replica: str | None, as_json: bool) -> int:
     """Make episodes of what crashes have left (.part files). Files that are being recorded are left alone."""
-    from mart.recorder import report
-    from mart.recorder.repair import repair_all
-    from mart.recorder.verify import verify as verify_file
+    from mart.recorder import formatting
+    from mart.recorder.repair.repair import repair_all
+    from mart.recorder.verify.resimulation import verify as verify_file
 
     root = folder or RecorderSettings().episodes_dir
     with _resimulation(replica, wherever_possible=True) as resimulate:
         repaired = list(repair_all(root, lambda file, room: verify_file(file, room, resimulate)))
-    print_result(*report.repaired(repaired), as_json)
+    print_result(*formatting.repaired(repaired), as_json)
     return 0 if all(one.saved for one in repaired) else 1
 
 
@@ -143,10 +145,10 @@ def label(
     """Say something about episodes. Files never change: labels are appended to labels.jsonl beside them."""
     from mart.episodes import labels
     from mart.episodes.paths import episode_files
-    from mart.recorder import files, report
+    from mart.recorder import files, formatting
 
     use = None if drop is None else "drop" if drop else "keep"
-    said = {labels.Kind.OUTCOME: outcome, labels.Kind.NOTE: note, labels.Kind.USE: use}
+    said = {labels.LabelKind.OUTCOME: outcome, labels.LabelKind.NOTE: note, labels.LabelKind.USE: use}
     if not any(value is not None for value in said.values()):
         raise InvalidInput("Nothing to say was given; use --outcome, --note, --drop or --undrop.")
     chosen = episode_files(paths)
@@ -155,7 +157,9 @@ def label(
             if value is not None:
                 labels.say(path, kind, value, clock.wall_ns())
     rows = [(path, files.row_of(path)) for path in chosen]
-    print_result({"episodes": [report.listed(path, row) for path, row in rows]}, report.table(rows), as_json)
+    print_result(
+        {"episodes": [formatting.listed(path, row) for path, row in rows]}, formatting.table(rows), as_json
+    )
 
 
 @episodes.command()
@@ -177,7 +181,7 @@ def label(
 def export(paths: tuple[Path, ...], out: Path, as_json: bool, **wanted: Any) -> None:
     """Write episodes of one task as a data set of another project; dropped ones are left out."""
     from mart.recorder import files
-    from mart.recorder.export.choice import choose
+    from mart.recorder.export.selection import choose
 
     if wanted["file_format"] == "robomimic":
         from mart.recorder.export.robomimic import write_robomimic as write
@@ -215,7 +219,7 @@ def _given(paths: tuple[Path, ...]) -> tuple[Path, ...]:
 @contextmanager
 def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> Iterator[Resimulate]:
     """Asks a replica. Without a router it raises Unavailable: at once, or `wherever_possible` only when asked."""
-    from mart.recorder import verify as verification
+    from mart.recorder.verify import resimulation as verification
     from mart.runtime.bus.zenoh_bus import ZenohBus
 
     settings = _settings(replica)

@@ -9,13 +9,13 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
-from mart.recorder.filters import ANY, filters, passing
+from mart.recorder.filter_options import ANY, filters, passing
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import json_option, print_result
 
 if TYPE_CHECKING:
-    from mart.recorder.catalog import Row
-    from mart.recorder.curate import Curated
+    from mart.recorder.catalogue.dataset_editing import DataSetEdit
+    from mart.recorder.catalogue.episode_catalogue import LabelledEpisode
 
 _name = click.argument("name")
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
@@ -47,10 +47,11 @@ def datasets() -> None:
 def list_datasets(folder: Path, as_json: bool) -> None:
     """List data sets: how many episodes they hold, and the digest of what they hold."""
     from mart.episodes.datasets import named
-    from mart.recorder import curate, report
+    from mart.recorder import formatting
+    from mart.recorder.catalogue import dataset_editing
 
-    told = [report.dataset(one) for one in named(curate.said_in(folder)).values()]
-    print_result({"datasets": told}, report.dataset_table(told), as_json)
+    told = [formatting.dataset(one) for one in named(dataset_editing.said_in(folder)).values()]
+    print_result({"datasets": told}, formatting.dataset_table(told), as_json)
 
 
 @datasets.command()
@@ -60,20 +61,23 @@ def list_datasets(folder: Path, as_json: bool) -> None:
 def show(name: str, folder: Path, as_json: bool) -> None:
     """Show what a data set holds, also what has been dropped, discarded or deleted since."""
     from mart.episodes.datasets import find
-    from mart.recorder import curate, report
-    from mart.recorder.catalog import list_folder
+    from mart.recorder import formatting
+    from mart.recorder.catalogue import dataset_editing
+    from mart.recorder.catalogue.episode_catalogue import list_folder
 
-    found = find(curate.said_in(folder), name)
+    found = find(dataset_editing.said_in(folder), name)
     rows = {row.path: row for row in list_folder(folder)}
-    unfit = {path: curate.why_unfit(rows[path]) if path in rows else "deleted" for path in found.episodes}
-    told = report.dataset(found) | {
+    unfit = {
+        path: dataset_editing.why_unfit(rows[path]) if path in rows else "deleted" for path in found.episodes
+    }
+    told = formatting.dataset(found) | {
         "episodes": [
             {"path": path, "left_out": why, **({"outcome": rows[path].outcome} if path in rows else {})}
             for path, why in unfit.items()
         ]
     }
     held = [(Path(path), rows[path]) for path in found.episodes if path in rows]
-    print_result(told, report.dataset_text(found, held, unfit), as_json)
+    print_result(told, formatting.dataset_text(found, held, unfit), as_json)
 
 
 @datasets.command()
@@ -85,9 +89,9 @@ def show(name: str, folder: Path, as_json: bool) -> None:
 def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
     """Put episodes together under a new name: all that the filters let through, or those among PATHS."""
     from mart.episodes.datasets import named
-    from mart.recorder import curate
+    from mart.recorder.catalogue import dataset_editing
 
-    if name in named(curate.said_in(folder)):
+    if name in named(dataset_editing.said_in(folder)):
         raise Conflict(f"There is a data set {name!r} already; add to it with `mart datasets add {name}`.")
     _take_in(name, paths, folder, as_json, wanted)
 
@@ -101,9 +105,9 @@ def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
 def add(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
     """Put more episodes into a data set: all that the filters let through, or those among PATHS."""
     from mart.episodes.datasets import find
-    from mart.recorder import curate
+    from mart.recorder.catalogue import dataset_editing
 
-    find(curate.said_in(folder), name)
+    find(dataset_editing.said_in(folder), name)
     _take_in(name, paths, folder, as_json, wanted)
 
 
@@ -115,7 +119,7 @@ def add(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wante
 @json_option
 def remove(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
     """Take episodes out of a data set: those that the filters let through, or those among PATHS, there or not."""
-    from mart.recorder import curate
+    from mart.recorder.catalogue import dataset_editing
 
     if not paths and not any(value not in ("", (ANY,)) for value in wanted.values()):
         raise InvalidInput(f"Name episodes or give a filter; `mart datasets delete {name}` takes out all.")
@@ -123,7 +127,7 @@ def remove(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
     left = tuple(path for path in placed if path.exists())
     chosen = _chosen(folder, left, wanted) if left or not paths else []
     names = [row.path for row in chosen] + [_below(folder, path) for path in placed if not path.exists()]
-    _say(curate.take_out(folder, name, names, clock.wall_ns()), "taken out", as_json)
+    _say(dataset_editing.take_out(folder, name, names, clock.wall_ns()), "taken out", as_json)
 
 
 @datasets.command()
@@ -133,10 +137,10 @@ def remove(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
 def delete(name: str, folder: Path, as_json: bool) -> None:
     """Delete a data set: every episode leaves it, and stays where it is."""
     from mart.episodes.datasets import find
-    from mart.recorder import curate
+    from mart.recorder.catalogue import dataset_editing
 
-    held = find(curate.said_in(folder), name).episodes
-    _say(curate.take_out(folder, name, held, clock.wall_ns()), "taken out", as_json)
+    held = find(dataset_editing.said_in(folder), name).episodes
+    _say(dataset_editing.take_out(folder, name, held, clock.wall_ns()), "taken out", as_json)
 
 
 @datasets.command()
@@ -147,25 +151,25 @@ def undo(name: str, folder: Path, as_json: bool) -> None:
     """Take back the last change of a data set; a second time does it again."""
     from mart.episodes import labels
     from mart.episodes.datasets import newest_act_ns
-    from mart.recorder import curate
+    from mart.recorder.catalogue import dataset_editing
 
     act_ns = newest_act_ns(labels.read(folder), name)
-    _say(curate.undo(folder, name, act_ns, clock.wall_ns()), "changed back", as_json)
+    _say(dataset_editing.undo(folder, name, act_ns, clock.wall_ns()), "changed back", as_json)
 
 
 def _take_in(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, wanted: dict[str, Any]) -> None:
-    from mart.recorder import curate
-    from mart.recorder.catalog import list_folder
+    from mart.recorder.catalogue import dataset_editing
+    from mart.recorder.catalogue.episode_catalogue import list_folder
 
     chosen = _chosen(folder, paths, wanted)
     _say(
-        curate.take_in(folder, name, chosen, list_folder(folder), clock.wall_ns()),
+        dataset_editing.take_in(folder, name, chosen, list_folder(folder), clock.wall_ns()),
         "put into it",
         as_json,
     )
 
 
-def _chosen(folder: Path, paths: tuple[Path, ...], wanted: dict[str, Any]) -> list[Row]:
+def _chosen(folder: Path, paths: tuple[Path, ...], wanted: dict[str, Any]) -> list[LabelledEpisode]:
     """Raises InvalidInput for a path that is not in the folder, and where nothing is let through."""
     from mart.recorder import files
 
@@ -201,7 +205,7 @@ def _below(folder: Path, path: Path) -> str:
     return path.resolve().relative_to(root).as_posix()
 
 
-def _say(done: Curated, what: str, as_json: bool) -> None:
-    from mart.recorder import report
+def _say(done: DataSetEdit, what: str, as_json: bool) -> None:
+    from mart.recorder import formatting
 
-    print_result(*report.curated(done, what), as_json)
+    print_result(*formatting.curated(done, what), as_json)

@@ -7,12 +7,12 @@ from pathlib import Path
 
 from mart.episodes import labels
 from mart.episodes.paths import episode_files
-from mart.recorder.catalog import Row, describe, list_folder, overlaid
+from mart.recorder.catalogue.episode_catalogue import LabelledEpisode, describe, list_folder, overlaid
 
 
-def rows(paths: Iterable[Path]) -> list[tuple[Path, Row]]:
+def rows(paths: Iterable[Path]) -> list[tuple[Path, LabelledEpisode]]:
     """What is known about each of them. A folder that is the root of its episodes is asked by its catalogue."""
-    found: list[tuple[Path, Row]] = []
+    found: list[tuple[Path, LabelledEpisode]] = []
     for path in paths:
         if path.is_dir() and labels.is_root(path):
             found += [(path / row.path, row) for row in list_folder(path)]
@@ -21,7 +21,7 @@ def rows(paths: Iterable[Path]) -> list[tuple[Path, Row]]:
     return found
 
 
-def row_of(path: Path) -> Row:
+def row_of(path: Path) -> LabelledEpisode:
     """One file by its metadata, and what was said about it afterwards."""
     root = labels.root_of(path)
     return overlaid(describe(path.resolve(), root), labels.fold(labels.read(root)))

@@ -5,10 +5,10 @@ from __future__ import annotations
 from contextlib import closing
 
 from mart.protocol.vocabulary import ServiceKind
-from mart.recorder.capture import Capture, Inbox
-from mart.recorder.recorder import Recorder
+from mart.recorder.record.inbox import Inbox, RoomSubscriptions
+from mart.recorder.record.recorder import Recorder
 from mart.recorder.settings import RecorderSettings
-from mart.recorder.verify import replica, verify
+from mart.recorder.verify.resimulation import replica, verify
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.service import announced, connected
 
@@ -22,5 +22,5 @@ def serve_recorder(settings: RecorderSettings, name: str) -> None:
     ):
         ask = replica(service.bus, settings.replica)
         recorder = Recorder(settings.data_dir, service.bus, inbox, lambda file, room: verify(file, room, ask))
-        with closing(Capture(service.bus, video_bus, inbox)), announced(service):
+        with closing(RoomSubscriptions(service.bus, video_bus, inbox)), announced(service):
             recorder.run(service.stop)

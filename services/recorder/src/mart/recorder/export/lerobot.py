@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Conflict
 from mart.protocol.tasks import Observation, Task
-from mart.recorder.export.choice import Choice
+from mart.recorder.export.selection import ExportSelection
 from mart.recorder.export.transitions import Transitions, read_transitions
 
 _VERSION = "v3.0"
@@ -33,7 +33,7 @@ _LIMITS = {"chunks_size": 1000, "data_files_size_in_mb": 100, "video_files_size_
 Columns = dict[str, NDArray[Any]]  # by feature, one row a frame
 
 
-def write_lerobot(choice: Choice, path: Path) -> int:
+def write_lerobot(choice: ExportSelection, path: Path) -> int:
     """How many frames were written. The folder has its name when it is whole.
 
     Raises Conflict where it is there already or cannot be written, and what read_transitions raises.
@@ -51,7 +51,7 @@ def write_lerobot(choice: Choice, path: Path) -> int:
     return frames
 
 
-def _write(choice: Choice, folder: Path) -> int:
+def _write(choice: ExportSelection, folder: Path) -> int:
     episodes = [
         _frames(read_transitions(file, choice.task), choice, number)
         for number, (file, _) in enumerate(choice.episodes)
@@ -69,7 +69,7 @@ def _write(choice: Choice, folder: Path) -> int:
     return frames
 
 
-def _frames(transitions: Transitions, choice: Choice, number: int) -> Columns:
+def _frames(transitions: Transitions, choice: ExportSelection, number: int) -> Columns:
     """Of one episode."""
     count = len(transitions)
     frame = np.arange(count)
@@ -149,7 +149,7 @@ def _statistics(values: NDArray[Any]) -> dict[str, list[float]]:
     return {name: value.tolist() for name, value in (found | quantiles).items()} | {"count": [len(rows)]}
 
 
-def _info(choice: Choice, columns: Columns, episodes: int) -> dict[str, Any]:
+def _info(choice: ExportSelection, columns: Columns, episodes: int) -> dict[str, Any]:
     rate = choice.control_hz
     return {
         "codebase_version": _VERSION,

@@ -19,8 +19,8 @@ import numpy as np
 from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Conflict
 from mart.protocol.tasks import Task
-from mart.recorder.catalog import Row
-from mart.recorder.export.choice import Choice
+from mart.recorder.catalogue.episode_catalogue import LabelledEpisode
+from mart.recorder.export.selection import ExportSelection
 from mart.recorder.export.transitions import Transitions, read_transitions
 
 # robomimic.envs.env_base.EnvType.GYM_TYPE. It knows four types, and none of them makes a world of MART: its rollouts
@@ -28,7 +28,7 @@ from mart.recorder.export.transitions import Transitions, read_transitions
 _GYM_TYPE = 2
 
 
-def write_robomimic(choice: Choice, path: Path) -> int:
+def write_robomimic(choice: ExportSelection, path: Path) -> int:
     """How many transitions were written. The file has its name when it is whole.
 
     Raises Conflict where it is there already or cannot be written, and what read_transitions raises.
@@ -52,7 +52,7 @@ def key_of(name: str) -> str:
     return name.replace("/", "_")
 
 
-def _write(file: h5py.File, choice: Choice) -> int:
+def _write(file: h5py.File, choice: ExportSelection) -> int:
     data = file.create_group("data")
     total, groups = 0, defaultdict(list)
     for number, (episode, row) in enumerate(choice.episodes):
@@ -70,7 +70,9 @@ def _write(file: h5py.File, choice: Choice) -> int:
     return total
 
 
-def _write_demo(group: h5py.Group, transitions: Transitions, episode: EpisodeFile, row: Row) -> None:
+def _write_demo(
+    group: h5py.Group, transitions: Transitions, episode: EpisodeFile, row: LabelledEpisode
+) -> None:
     last = np.arange(1, len(transitions) + 1) == len(transitions)
     group["states"] = transitions.states[:-1]
     group["actions"] = transitions.actions.reshape(len(transitions), -1)
@@ -85,7 +87,7 @@ def _write_demo(group: h5py.Group, transitions: Transitions, episode: EpisodeFil
     group.attrs["operators"] = json.dumps(row.operators)
 
 
-def _environment(choice: Choice) -> dict[str, object]:
+def _environment(choice: ExportSelection) -> dict[str, object]:
     arguments = {"control_hz": choice.control_hz, "arms": len(choice.task.arms)}
     return {"env_name": choice.task.name, "type": _GYM_TYPE, "env_kwargs": arguments}
 

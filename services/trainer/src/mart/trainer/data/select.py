@@ -33,13 +33,13 @@ class Candidate:
 
 def candidates(paths: Iterable[Path]) -> list[Candidate]:
     """Oldest first, each file once. Raises NotFound for a path that is not there and Corrupt for a damaged file."""
-    said: dict[Path, dict[str, labels.Labelled]] = {}
+    said: dict[Path, dict[str, labels.EpisodeLabels]] = {}
     found = []
     for path in sorted({path.resolve() for path in episode_files(paths)}):
         root = labels.root_of(path)
         if root not in said:
             said[root] = labels.fold(labels.read(root))
-        label = said[root].get(path.relative_to(root).as_posix(), labels.Labelled())
+        label = said[root].get(path.relative_to(root).as_posix(), labels.EpisodeLabels())
         found.append(_candidate(EpisodeFile.open(path), label))
     return sorted(found, key=lambda one: (one.episode.started_ns, one.path))
 
@@ -57,7 +57,7 @@ def select(found: list[Candidate], selection: Selection) -> list[Candidate]:
     return chosen
 
 
-def _candidate(file: EpisodeFile, label: labels.Labelled) -> Candidate:
+def _candidate(file: EpisodeFile, label: labels.EpisodeLabels) -> Candidate:
     episode = file.episode
     return Candidate(
         file=file,

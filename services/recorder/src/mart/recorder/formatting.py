@@ -1,0 +1,127 @@
+"""Episodes in words and in JSON, for the command line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from mart.episodes.datasets import NamedDataSet
+from mart.recorder.catalogue.dataset_editing import DataSetEdit
+from mart.recorder.catalogue.episode_catalogue import LabelledEpisode
+from mart.recorder.repair.repair import RepairResult
+from mart.recorder.verify.resimulation import ComparedStretch
+
+_COLUMNS = ("path", "outcome", "verdict", "ticks", "real time", "operators", "")
+
+
+def listed(path: Path, row: LabelledEpisode) -> dict[str, Any]:
+    """One episode of `list --json`."""
+    return row.model_dump() | {"path": str(path), "verified": row.verified}
+
+
+def table(rows: Sequence[tuple[Path, LabelledEpisode]]) -> str:
+    if not rows:
+        return "There are no episodes."
+    cells = [_COLUMNS, *(_cells(path, row) for path, row in rows)]
+    widths = [max(len(line[i]) for line in cells) for i in range(len(_COLUMNS))]
+    return "\n".join(
+        "  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in cells
+    )
+
+
+def _cells(path: Path, row: LabelledEpisode) -> tuple[str, ...]:
+    if row.error is not None:
+        return (str(path), "–", "–", "–", "–", "–", row.error)
+    marks = {
+        "incomplete": not row.complete,
+        "repaired": row.repaired,
+        "paused": row.interrupted,
+        "dropped": row.dropped,
+    }
+    remarks = [word for word, holds in marks.items() if holds] + ([row.note] if row.note else [])
+    pace = "–" if row.real_time_factor is None else f"{row.real_time_factor:.3f}"
+    drivers = ", ".join(f"{arm} {who}" for arm, who in row.operators.items())
+    return (str(path), row.outcome, row.verdict, str(row.ticks), pace, drivers, "; ".join(remarks))
+
+
+def details(result: Mapping[str, Any]) -> str:
+    """Nested facts, two spaces a level."""
+    return "\n".join(_lines(result, ""))
+
+
+def _lines(facts: Mapping[str, Any], indent: str) -> list[str]:
+    lines = []
+    for name, value in facts.items():
+        if isinstance(value, Mapping):
+            lines += [f"{indent}{name}", *_lines(value, indent + "  ")]
+        elif value is not None:
+            lines.append(f"{indent}{name}: {value}")
+    return lines
+
+
+def replayed(path: Path, stretches: Sequence[ComparedStretch]) -> tuple[dict[str, Any], str]:
+    told = [
+        {"first_tick": s.first_tick, "last_tick": s.last_tick, "different": list(s.different)}
+        for s in stretches
+    ]
+    lines = [f"{path}: {len(stretches)} stretch{'es' * (len(stretches) != 1)} without a missing tick"]
+    lines += [f"  ticks {s.first_tick} to {s.last_tick}: {_agreement(s)}" for s in stretches]
+    return {"path": str(path), "stretches": told}, "\n".join(lines)
+
+
+def _agreement(stretch: ComparedStretch) -> str:
+    if not stretch.different:
+        return "the same, bit for bit"
+    ticks = ", ".join(map(str, stretch.different[:10])) + (", …" if len(stretch.different) > 10 else "")
+    return f"{len(stretch.different)} differ: {ticks}"
+
+
+def repaired(repaired: Sequence[RepairResult]) -> tuple[dict[str, Any], str]:
+    told = [
+        {"part": str(r.part), "path": str(r.saved.path) if r.saved else None, "detail": r.detail}
+        for r in repaired
+    ]
+    lines = [f"{t['part']} → {t['path'] or 'not repaired'}. {t['detail']}" for t in told]
+    return {"repaired": told}, "\n".join(lines) or "There is nothing to repair."
+
+
+def dataset(found: NamedDataSet) -> dict[str, Any]:
+    return {
+        "name": found.name,
+        "count": len(found.episodes),
+        "sha256": found.sha256,
+        "created": datetime.fromtimestamp(found.created_ns / 1e9, UTC).isoformat(timespec="seconds"),
+    }
+
+
+def dataset_table(told: Sequence[Mapping[str, Any]]) -> str:
+    if not told:
+        return "There are no data sets. `mart datasets create NAME` makes one of all good episodes."
+    return "\n".join(map(_dataset_line, told))
+
+
+def dataset_text(
+    found: NamedDataSet, held: Sequence[tuple[Path, LabelledEpisode]], left_out: Mapping[str, str]
+) -> str:
+    """`left_out`: why each episode is not learned from, empty for one that is."""
+    unfit = [f"Left out of a training: {path} ({why})." for path, why in left_out.items() if why]
+    return "\n".join([_dataset_line(dataset(found)), table(held), *unfit])
+
+
+def curated(done: DataSetEdit, what: str) -> tuple[dict[str, Any], str]:
+    told = dataset(done.dataset) | {"changed": done.changed, "left_out": dict(done.left_out)}
+    left_out = ", ".join(f"{count} {why}" for why, count in sorted(done.left_out.items()))
+    held = len(done.dataset.episodes)
+    text = f"{done.dataset.name}: {done.changed} {_episodes(done.changed)} {what}, it holds {held} now"
+    return told, f"{text}; left out: {left_out}." if left_out else f"{text}."
+
+
+def _dataset_line(told: Mapping[str, Any]) -> str:
+    count = told["count"]
+    return f"{told['name']}  {count} {_episodes(count)}  {told['sha256'][:12]}  since {told['created']}"
+
+
+def _episodes(count: int) -> str:
+    return "episode" if count == 1 else "episodes"
