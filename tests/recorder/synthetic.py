@@ -37,6 +37,7 @@ TASK = "two_arm_multi_cube_lifting"
 ARMS = ("arm0", "arm1")
 BOOT = 77
 PERIOD_NS = 50_000_000
+RESET = b"reset".ljust(64)  # as long as every state after it
 START_NS = 1_790_000_000_000_000_000  # 2026-09-21, UTC
 MJB = bytes(range(256)) * 40
 MODEL = Model(
@@ -54,7 +55,7 @@ def action(tick: int, arm: int) -> list[float]:
 
 def integration_state(tick: int) -> bytes:
     """Of the toy world after `tick`, which began at tick 0."""
-    state = b"reset"
+    state = RESET
     for t in range(1, tick + 1):
         state = step(state, np.array([action(t, arm) for arm in range(len(ARMS))]))
     return state
@@ -84,7 +85,7 @@ def states(
     ticks: int, number: int = 1, first_tick: int = 0, boot: int = BOOT, room: str = ROOM
 ) -> list[State]:
     """An episode's states: the reset and `ticks` ticks after it. `first_tick`: of the room, at the reset."""
-    made, world = [], b"reset"
+    made, world = [], RESET
     for i in range(ticks + 1):
         if i:
             world = step(world, np.array([action(i, arm) for arm in range(len(ARMS))]))

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from mart.episodes import labels
+from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.labels import LabelKind
 from mart.recorder.catalogue import episode_catalogue
-from mart.recorder.catalogue.episode_catalogue import LabelledEpisode, list_folder
+from mart.recorder.catalogue.episode_catalogue import list_folder
 from tests.recorder import synthetic
 from tests.recorder.files import write_episode
 

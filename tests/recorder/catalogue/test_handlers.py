@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 
 from mart.episodes import labels
+from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest
 from mart.recorder.catalogue import handlers
 from mart.recorder.catalogue.dataset_editing import take_in
-from mart.recorder.catalogue.episode_catalogue import LabelledEpisode
 from mart.recorder.catalogue.handlers import CatalogueHandlers
 from tests.recorder import synthetic
 from tests.recorder.files import write_episode

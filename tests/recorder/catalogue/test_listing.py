@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.messages import CatalogueRequest
-from mart.recorder.catalogue.episode_catalogue import LabelledEpisode
 from mart.recorder.catalogue.listing import MAX_COUNT, listing
 
 Asked = CatalogueRequest.List

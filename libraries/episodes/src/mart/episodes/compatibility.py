@@ -1,4 +1,4 @@
-"""What episodes must have in common to be learned from together. Pure."""
+"""Hold episodes that are learned from together to one task, one control rate and the same arms. Pure."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from mart.protocol.errors import InvalidInput
 
 
 class ComparableEpisode(Protocol):
+    """Anything that says of which task, control rate and arms it is."""
+
     @property
     def task(self) -> str | None: ...
     @property
@@ -18,7 +20,7 @@ class ComparableEpisode(Protocol):
 
 
 def require_alike(episodes: Iterable[ComparableEpisode], advice: str) -> None:
-    """Raises InvalidInput where tasks, control rates or arms differ. `advice`: what to do then, as a clause."""
+    """Raise InvalidInput where tasks, control rates or arms differ. advice: what to do then, as a clause."""
     listed = list(episodes)
     facts: dict[str, set[str]] = {
         "tasks": {str(one.task) for one in listed},

@@ -1,4 +1,4 @@
-"""One message on its way into a file, and the messages that are derived from states."""
+"""Turn messages into what is written into a file: their very bytes, and what is derived from states."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ _SEQUENCE_MASK = 0xFFFFFFFF  # MCAP has 32 bits for it
 
 @dataclass(frozen=True)
 class McapEntry:
-    """Bytes as they were on the wire. A sender that gave no stamp is taken to have sent at arrival."""
+    """Hold one message on its way into a file: its bytes as they were on the wire, and its stamps (Unix time).
+
+    sent_ns: the arrival where the sender gave no stamp. sequence: lower 32 bits.
+    """
 
     topic: str
     schema: type[Message]
@@ -36,7 +39,7 @@ class McapEntry:
 
 
 def state_entries(state: State, payload: bytes, arrived_ns: int, task: str | None) -> list[McapEntry]:
-    """The state itself and what tools without our schemas can draw: frames and grippers."""
+    """Return the state itself and what tools without MART's schemas can draw: frames and grippers."""
     sent_ns = state.stamps.sent_ns or arrived_ns
     sequence = state.tick & _SEQUENCE_MASK
 
@@ -53,18 +56,21 @@ def state_entries(state: State, payload: bytes, arrived_ns: int, task: str | Non
 
 
 def command_entry(arm: str, command: Command, payload: bytes, arrived_ns: int) -> McapEntry:
+    """Return a command for this arm as it is written."""
     sent_ns = command.stamps.sent_ns or arrived_ns
     sequence = command.sequence & _SEQUENCE_MASK
     return McapEntry(recording.command_topic(arm), Command, payload, arrived_ns, sent_ns, sequence)
 
 
 def video_entry(camera: str, video: CompressedVideo, payload: bytes, arrived_ns: int) -> McapEntry:
+    """Return one encoded picture of this camera as it is written."""
     sent_ns = video.timestamp.ToNanoseconds() if video.HasField("timestamp") else 0
     topic = recording.video_topic(camera)
     return McapEntry(topic, CompressedVideo, payload, arrived_ns, sent_ns if sent_ns > 0 else arrived_ns)
 
 
 def event_entry(event: Event, payload: bytes, arrived_ns: int) -> McapEntry:
+    """Return an event as it is written."""
     return McapEntry(recording.EVENT, Event, payload, arrived_ns, event.wall_ns or arrived_ns)
 
 
@@ -76,7 +82,7 @@ def _frames(state: State, sent_ns: int, task: str | None) -> FrameTransforms:
 
 
 def _bases(task: str | None, arms: int) -> Iterable[tuple[str, PoseMessage]]:
-    """Where the task's catalogue entry puts each arm; nothing for a task that is not in the catalogue."""
+    """Return where the task's catalogue entry puts each arm; nothing for a task that is not in the catalogue."""
     try:
         known = get_task(task or "", arms)
     except MartError:

@@ -1,4 +1,4 @@
-"""One episode's MCAP file while it is written: stock `mcap`, small chunks, on the disk at least twice a second."""
+"""Write one episode's MCAP file: stock `mcap`, small chunks, on the disk whenever it is flushed."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ _CHUNK_BYTES = 256 * 1024  # what one damaged sector can cost
 
 
 class EpisodeWriter:
-    """Owns `path` until `move_to` or `abandon`. Every method may raise OSError: the disk is full or broken.
+    """Write an episode file, which is this object's own until `move_to`, `abandon` or `discard`.
 
-    The path is locked meanwhile, so that a repair leaves it alone; a lock dies with its process.
+    Every method may raise OSError: the disk is full or broken. The path is locked meanwhile, so that a repair leaves it
+    alone; a lock dies with its process.
     """
 
     def __init__(self, path: Path) -> None:
@@ -43,6 +44,7 @@ class EpisodeWriter:
         self._mcap.start(profile=PROFILE)
 
     def add(self, entry: McapEntry) -> None:
+        """Append one message; its topic and schema are described in the file when they first come."""
         channel = self._channels.get(entry.topic)
         if channel is None:
             channel = self._channel(entry.topic, entry.schema)
@@ -50,31 +52,33 @@ class EpisodeWriter:
         self.messages += 1
 
     def describe(self, record: RoomRecord) -> None:
-        """Says of what room this file is, once that is known."""
+        """Say of what room this file is, once that is known."""
         self.described = True
         self.add_record(record.NAME, record.to_strings())
 
     def attach_model(self, model: Model, now_ns: int) -> None:
+        """Attach the compiled MuJoCo model. now_ns: Unix time."""
         self.has_model = True
         self._mcap.add_attachment(now_ns, now_ns, MODEL_ATTACHMENT, "application/octet-stream", model.mjb)
 
     def add_record(self, name: str, strings: Mapping[str, str]) -> None:
+        """Write one metadata record."""
         self._mcap.add_metadata(name, dict(strings))
 
     def flush(self) -> None:
-        """Everything so far is on the disk when this returns: a kill or a power cut takes nothing of it."""
+        """Bring everything so far onto the disk: a kill or a power cut takes nothing of it afterwards."""
         self._mcap.flush()  # type: ignore[no-untyped-call]
         os.fsync(self._file.fileno())
 
     def finish(self) -> None:
-        """Writes the summary and closes the file, which stays locked."""
+        """Write the summary and close the file, which stays locked."""
         self._mcap.finish()  # type: ignore[no-untyped-call]
         self._file.flush()
         os.fsync(self._file.fileno())
         self._file.close()
 
     def move_to(self, path: Path) -> None:
-        """Gives the finished file its name, for good also across a power cut."""
+        """Give the finished file its name, for good also across a power cut."""
         path.parent.mkdir(parents=True, exist_ok=True)
         self.path = self.path.rename(path)
         folder = os.open(path.parent, os.O_RDONLY)
@@ -85,7 +89,7 @@ class EpisodeWriter:
             self._lock.close()
 
     def abandon(self) -> None:
-        """Closes the file as it is: what reached the disk stays there for a repair."""
+        """Close the file as it is: what reached the disk stays there for a repair."""
         with contextlib.suppress(OSError):  # closing tries to write what could not be written before
             self._file.close()
         self._lock.close()
@@ -100,6 +104,6 @@ class EpisodeWriter:
         return self._channels[topic]
 
     def discard(self) -> None:
-        """Takes the file away: there was nothing to record."""
+        """Take the file away: there was nothing to record."""
         self.abandon()
         self.path.unlink()

@@ -1,4 +1,7 @@
-"""`mart recorder` and `mart episodes …`. Heavy modules are imported inside: `mart --help` loads this file."""
+"""Run `mart recorder`, `mart catalogue` and `mart episodes …`.
+
+Heavy modules are imported inside: `mart --help` loads this file.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,8 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput, Unavailable
-from mart.recorder.filter_options import OUTCOMES, VERDICTS, filters, passing
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
+from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
 
@@ -53,12 +57,11 @@ def episodes() -> None:
 @json_option
 def list_episodes(paths: tuple[Path, ...], as_json: bool, **wanted: Any) -> None:
     """List episodes: what they are, how they ended, whether they are verified."""
-    from mart.recorder import files, formatting
+    from mart.recorder import formatting
+    from mart.recorder.catalogue.episode_catalogue import list_paths
 
-    rows = passing(files.rows(_given(paths)), wanted)
-    print_result(
-        {"episodes": [formatting.listed(path, row) for path, row in rows]}, formatting.table(rows), as_json
-    )
+    listed = filter_of(wanted, unusable=True).apply(list_paths(_given(paths)))
+    print_result({"episodes": [*map(formatting.listed, listed)]}, formatting.table(listed), as_json)
 
 
 @episodes.command()
@@ -66,11 +69,13 @@ def list_episodes(paths: tuple[Path, ...], as_json: bool, **wanted: Any) -> None
 @json_option
 def show(path: Path, as_json: bool) -> None:
     """Show everything that is known about one episode."""
-    from mart.episodes.reader import EpisodeFile
-    from mart.recorder import files, formatting
+    from mart.episodes.folder import described
+    from mart.episodes.reader import open_episode
+    from mart.recorder import formatting
 
-    file = EpisodeFile.open(path)
-    result = {**formatting.listed(path, files.row_of(path)), "metadata": file.strings}
+    file = open_episode(path)
+    (listed,) = described([path])
+    result = {**formatting.listed(listed), "metadata": file.metadata}
     print_result(result, formatting.details(result), as_json)
 
 
@@ -81,9 +86,8 @@ def show(path: Path, as_json: bool) -> None:
 def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     """Step episodes again in a replica: do they follow bit for bit? The answer is kept as a label."""
     from mart.episodes import labels
-    from mart.episodes.paths import episode_files
+    from mart.episodes.folder import episode_files
     from mart.episodes.reader import EpisodeFile
-    from mart.protocol.vocabulary import Verdict
     from mart.recorder.verify.resimulation import verify as verify_file
 
     found = []
@@ -96,7 +100,7 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
             found.append({"path": str(path), "verdict": said.verdict.value, "detail": said.detail})
     lines = [f"{entry['path']}: {entry['verdict']}. {entry['detail']}" for entry in found]
     print_result({"episodes": found}, "\n".join(lines) or "There are no episodes.", as_json)
-    return 0 if all(entry["verdict"] == "verified" for entry in found) else 1
+    return 0 if all(entry["verdict"] == Verdict.VERIFIED for entry in found) else 1
 
 
 @episodes.command()
@@ -135,7 +139,7 @@ def repair(folder: Path | None, replica: str | None, as_json: bool) -> int:
 
 @episodes.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--outcome", type=click.Choice(OUTCOMES[:3]), help="How it really ended.")
+@click.option("--outcome", type=click.Choice(LABELS), help="How it really ended.")
 @click.option("--note", help="Anything worth remembering.")
 @click.option("--drop/--undrop", default=None, help="Leave out of data sets, or take in again.")
 @json_option
@@ -144,10 +148,10 @@ def label(
 ) -> None:
     """Say something about episodes. Files never change: labels are appended to labels.jsonl beside them."""
     from mart.episodes import labels
-    from mart.episodes.paths import episode_files
-    from mart.recorder import files, formatting
+    from mart.episodes.folder import described, episode_files
+    from mart.recorder import formatting
 
-    use = None if drop is None else "drop" if drop else "keep"
+    use = None if drop is None else labels.DROP if drop else labels.KEEP
     said = {labels.LabelKind.OUTCOME: outcome, labels.LabelKind.NOTE: note, labels.LabelKind.USE: use}
     if not any(value is not None for value in said.values()):
         raise InvalidInput("Nothing to say was given; use --outcome, --note, --drop or --undrop.")
@@ -156,10 +160,8 @@ def label(
         for kind, value in said.items():
             if value is not None:
                 labels.say(path, kind, value, clock.wall_ns())
-    rows = [(path, files.row_of(path)) for path in chosen]
-    print_result(
-        {"episodes": [formatting.listed(path, row) for path, row in rows]}, formatting.table(rows), as_json
-    )
+    listed = described(chosen)
+    print_result({"episodes": [*map(formatting.listed, listed)]}, formatting.table(listed), as_json)
 
 
 @episodes.command()
@@ -174,37 +176,30 @@ def label(
 @click.option(
     "--out", type=click.Path(path_type=Path), required=True, help="The file or folder to be written."
 )
-@click.option("--outcome", type=click.Choice([*OUTCOMES, "any"]), multiple=True, help="[default: success]")
-@click.option("--verdict", type=click.Choice([*VERDICTS, "any"]), multiple=True, help="[default: verified]")
+@word_option("--outcome", OUTCOMES, EpisodeOutcome.SUCCESS.value)
+@word_option("--verdict", VERDICTS, Verdict.VERIFIED.value)
 @click.option("--dataset", default="", help="Only of this data set.")
 @json_option
-def export(paths: tuple[Path, ...], out: Path, as_json: bool, **wanted: Any) -> None:
+def export(
+    paths: tuple[Path, ...], file_format: str, out: Path, dataset: str, as_json: bool, **wanted: Any
+) -> None:
     """Write episodes of one task as a data set of another project; dropped ones are left out."""
-    from mart.recorder import files
+    from mart.episodes.filter import EpisodeFilter
+    from mart.recorder.catalogue.episode_catalogue import list_paths
     from mart.recorder.export.selection import choose
 
-    if wanted["file_format"] == "robomimic":
+    if file_format == "robomimic":
         from mart.recorder.export.robomimic import write_robomimic as write
     else:
         from mart.recorder.export.lerobot import write_lerobot as write
 
-    rows = [one for one in files.rows(_given(paths)) if wanted["dataset"] in ("", *one[1].datasets)]
-    choice = choose(rows, _any(wanted["outcome"], "success"), _any(wanted["verdict"], "verified"))
-    ticks = write(choice, out)
-    count, task = len(choice.episodes), choice.task.name
-    result = {
-        "path": str(out),
-        "format": wanted["file_format"],
-        "task": task,
-        "episodes": count,
-        "ticks": ticks,
-    }
-    print_result(result, f"{out}: {count} of {len(rows)} episodes of {task}, {ticks} ticks.", as_json)
-
-
-def _any(given: tuple[str, ...], usual: str) -> tuple[str, ...]:
-    """What a choice takes; empty where any will do."""
-    return () if "any" in given else given or (usual,)
+    of_dataset = EpisodeFilter(datasets=(dataset,) if dataset else (), unusable=True)
+    listed = of_dataset.apply(list_paths(_given(paths)))
+    selection = choose(listed, filter_of(wanted, unusable=False))
+    ticks = write(selection, out)
+    count, task = len(selection.episodes), selection.task.name
+    result = {"path": str(out), "format": file_format, "task": task, "episodes": count, "ticks": ticks}
+    print_result(result, f"{out}: {count} of {len(listed)} episodes of {task}, {ticks} ticks.", as_json)
 
 
 def _settings(replica: str | None) -> RecorderSettings:
@@ -218,7 +213,7 @@ def _given(paths: tuple[Path, ...]) -> tuple[Path, ...]:
 
 @contextmanager
 def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> Iterator[Resimulate]:
-    """Asks a replica. Without a router it raises Unavailable: at once, or `wherever_possible` only when asked."""
+    """Ask a replica. Without a router this raises Unavailable: at once, or `wherever_possible` when it is asked."""
     from mart.recorder.verify import resimulation as verification
     from mart.runtime.bus.zenoh_bus import ZenohBus
 

@@ -1,4 +1,4 @@
-"""`mart datasets …`. Heavy modules are imported inside: `mart --help` loads this file."""
+"""Run `mart datasets …`. Heavy modules are imported inside: `mart --help` loads this file."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
-from mart.recorder.filter_options import ANY, filters, passing
+from mart.recorder.filter_options import ANY, filter_of, filters
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import json_option, print_result
 
 if TYPE_CHECKING:
+    from mart.episodes.labelled_episode import LabelledEpisode
     from mart.recorder.catalogue.dataset_editing import DataSetEdit
-    from mart.recorder.catalogue.episode_catalogue import LabelledEpisode
 
 _name = click.argument("name")
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
@@ -46,11 +46,11 @@ def datasets() -> None:
 @json_option
 def list_datasets(folder: Path, as_json: bool) -> None:
     """List data sets: how many episodes they hold, and the digest of what they hold."""
+    from mart.episodes import labels
     from mart.episodes.datasets import named
     from mart.recorder import formatting
-    from mart.recorder.catalogue import dataset_editing
 
-    told = [formatting.dataset(one) for one in named(dataset_editing.said_in(folder)).values()]
+    told = [formatting.dataset(one) for one in named(labels.read_folded(folder)).values()]
     print_result({"datasets": told}, formatting.dataset_table(told), as_json)
 
 
@@ -60,23 +60,22 @@ def list_datasets(folder: Path, as_json: bool) -> None:
 @json_option
 def show(name: str, folder: Path, as_json: bool) -> None:
     """Show what a data set holds, also what has been dropped, discarded or deleted since."""
+    from mart.episodes import labels
     from mart.episodes.datasets import find
+    from mart.episodes.filter import MEANT
     from mart.recorder import formatting
-    from mart.recorder.catalogue import dataset_editing
     from mart.recorder.catalogue.episode_catalogue import list_folder
 
-    found = find(dataset_editing.said_in(folder), name)
+    found = find(labels.read_folded(folder), name)
     rows = {row.path: row for row in list_folder(folder)}
-    unfit = {
-        path: dataset_editing.why_unfit(rows[path]) if path in rows else "deleted" for path in found.episodes
-    }
+    unfit = {path: MEANT.why_not(rows[path]) if path in rows else "deleted" for path in found.episodes}
     told = formatting.dataset(found) | {
         "episodes": [
             {"path": path, "left_out": why, **({"outcome": rows[path].outcome} if path in rows else {})}
             for path, why in unfit.items()
         ]
     }
-    held = [(Path(path), rows[path]) for path in found.episodes if path in rows]
+    held = [rows[path] for path in found.episodes if path in rows]
     print_result(told, formatting.dataset_text(found, held, unfit), as_json)
 
 
@@ -88,10 +87,10 @@ def show(name: str, folder: Path, as_json: bool) -> None:
 @json_option
 def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
     """Put episodes together under a new name: all that the filters let through, or those among PATHS."""
+    from mart.episodes import labels
     from mart.episodes.datasets import named
-    from mart.recorder.catalogue import dataset_editing
 
-    if name in named(dataset_editing.said_in(folder)):
+    if name in named(labels.read_folded(folder)):
         raise Conflict(f"There is a data set {name!r} already; add to it with `mart datasets add {name}`.")
     _take_in(name, paths, folder, as_json, wanted)
 
@@ -104,10 +103,10 @@ def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
 @json_option
 def add(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
     """Put more episodes into a data set: all that the filters let through, or those among PATHS."""
+    from mart.episodes import labels
     from mart.episodes.datasets import find
-    from mart.recorder.catalogue import dataset_editing
 
-    find(dataset_editing.said_in(folder), name)
+    find(labels.read_folded(folder), name)
     _take_in(name, paths, folder, as_json, wanted)
 
 
@@ -136,10 +135,11 @@ def remove(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
 @json_option
 def delete(name: str, folder: Path, as_json: bool) -> None:
     """Delete a data set: every episode leaves it, and stays where it is."""
+    from mart.episodes import labels
     from mart.episodes.datasets import find
     from mart.recorder.catalogue import dataset_editing
 
-    held = find(dataset_editing.said_in(folder), name).episodes
+    held = find(labels.read_folded(folder), name).episodes
     _say(dataset_editing.take_out(folder, name, held, clock.wall_ns()), "taken out", as_json)
 
 
@@ -170,17 +170,16 @@ def _take_in(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, wa
 
 
 def _chosen(folder: Path, paths: tuple[Path, ...], wanted: dict[str, Any]) -> list[LabelledEpisode]:
-    """Raises InvalidInput for a path that is not in the folder, and where nothing is let through."""
-    from mart.recorder import files
+    """Choose episodes. Raises InvalidInput for a path that is not in the folder, and where nothing is let through."""
+    from mart.recorder.catalogue.episode_catalogue import list_paths
 
-    placed = [_placed(folder, path) for path in paths]
-    rows = files.rows(placed or (folder,))
-    for path, _ in rows:
-        _below(folder, path)
-    passed = [row for _, row in passing(rows, wanted)]
+    listed = list_paths([_placed(folder, path) for path in paths] or (folder,))
+    for episode in listed:
+        _below(folder, episode.file_path)
+    passed = filter_of(wanted, unusable=True).apply(listed)
     if not passed:
         asked = ", ".join(f"--{key} {_text(value)}" for key, value in wanted.items() if value)
-        raise InvalidInput(f"None of {len(rows)} episodes is let through by {asked}; widen the filters.")
+        raise InvalidInput(f"None of {len(listed)} episodes is let through by {asked}; widen the filters.")
     return passed
 
 
@@ -189,12 +188,12 @@ def _text(value: str | tuple[str, ...]) -> str:
 
 
 def _placed(folder: Path, path: Path) -> Path:
-    """Paths may also be given as they are listed: relative to the folder of episodes."""
+    """Return where a path leads: it may also be given as it is listed, relative to the folder of episodes."""
     return path if path.exists() else folder / path
 
 
 def _below(folder: Path, path: Path) -> str:
-    """As labels name it. Raises InvalidInput where its labels are in another folder."""
+    """Return a path as labels name it. Raises InvalidInput where its labels are in another folder."""
     from mart.episodes import labels
 
     root = labels.root_of(path)

@@ -1,32 +1,33 @@
-"""Which episodes a command means: `--task`, `--outcome` and so on, as the filters of the episodes page."""
+"""Say on a command line which episodes are meant: `--task`, `--outcome` and so on, as the filters of the pages."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from itertools import product
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-if TYPE_CHECKING:
-    from mart.recorder.catalogue.episode_catalogue import LabelledEpisode
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 
-OUTCOMES = ("success", "failure", "discarded", "unspecified")
-VERDICTS = ("verified", "diverged", "unverified")
+if TYPE_CHECKING:
+    from mart.episodes.filter import EpisodeFilter
+
+LABELS = (EpisodeOutcome.SUCCESS.value, EpisodeOutcome.FAILURE.value, EpisodeOutcome.DISCARDED.value)
+OUTCOMES = (*LABELS, EpisodeOutcome.UNSPECIFIED.value)
+VERDICTS = tuple(verdict.value for verdict in Verdict)
 ANY = "any"
 
 Command = TypeVar("Command", bound=Callable[..., object])
 
 
 def filters(outcome: str = ANY, verdict: str = ANY) -> Callable[[Command], Command]:
-    """Options of a command, for `passing`. `outcome`, `verdict`: what it takes where nothing is said."""
+    """Give a command the options that `filter_of` reads. outcome, verdict: what it takes where nothing is said."""
     options = (
         click.option("--dataset", default="", help="Only of this data set."),
         click.option("--skill", default="", help="Only of scripts with this skill."),
         click.option("--operator", default="", help="Driven by human, policy, script, or somebody by name."),
-        _words("--verdict", VERDICTS, verdict),
-        _words("--outcome", OUTCOMES, outcome),
+        word_option("--verdict", VERDICTS, verdict),
+        word_option("--outcome", OUTCOMES, outcome),
         click.option("--task", default="", help="Only of this task."),
     )
 
@@ -38,25 +39,29 @@ def filters(outcome: str = ANY, verdict: str = ANY) -> Callable[[Command], Comma
     return decorate
 
 
-def passing(
-    rows: Iterable[tuple[Path, LabelledEpisode]], wanted: Mapping[str, Any]
-) -> list[tuple[Path, LabelledEpisode]]:
-    """Those that the options let through, in their order."""
-    from mart.protocol.messages import CatalogueRequest
-    from mart.recorder.catalogue.listing import matches
+def filter_of(wanted: Mapping[str, Any], *, unusable: bool) -> EpisodeFilter:
+    """Return the filter that the options ask for. unusable: whether it takes dropped and unreadable episodes too."""
+    from mart.episodes.filter import EpisodeFilter
 
-    one_word = {name: wanted[name] for name in ("task", "operator", "skill", "dataset")}
-    either = product(_all_or(wanted["outcome"]), _all_or(wanted["verdict"]))
-    asked = [
-        CatalogueRequest.List(outcome=outcome, verdict=verdict, **one_word) for outcome, verdict in either
-    ]
-    return [(path, row) for path, row in rows if any(matches(row, one) for one in asked)]
+    def one(name: str) -> tuple[str, ...]:
+        return (wanted[name],) if wanted.get(name) else ()
+
+    return EpisodeFilter(
+        tasks=one("task"),
+        outcomes=_all_or(wanted["outcome"]),
+        verdicts=_all_or(wanted["verdict"]),
+        skills=one("skill"),
+        datasets=one("dataset"),
+        driven_by=wanted.get("operator", ""),
+        unusable=unusable,
+    )
+
+
+def word_option(name: str, words: Iterable[str], usual: str) -> Callable[[Command], Command]:
+    """Return an option that takes one of `words` or `any`, several times; `usual` where nothing is said."""
+    choice = click.Choice([*words, ANY])
+    return click.option(name, type=choice, multiple=True, default=(usual,), help=f"[default: {usual}]")
 
 
 def _all_or(given: tuple[str, ...]) -> tuple[str, ...]:
-    return ("",) if ANY in given else given
-
-
-def _words(name: str, words: Iterable[str], usual: str) -> Callable[[Command], Command]:
-    choice = click.Choice([*words, ANY])
-    return click.option(name, type=choice, multiple=True, default=(usual,), help=f"[default: {usual}]")
+    return () if ANY in given else given

@@ -1,4 +1,4 @@
-"""Putting episodes into named data sets and taking them out: what the command line and the catalogue share."""
+"""Put episodes into named data sets and take them out: what the command line and the catalogue share."""
 
 from __future__ import annotations
 
@@ -10,14 +10,15 @@ from pathlib import Path
 from mart.episodes import datasets, labels
 from mart.episodes.compatibility import require_alike
 from mart.episodes.datasets import NamedDataSet
-from mart.episodes.labels import EpisodeLabels, Label
+from mart.episodes.filter import MEANT
+from mart.episodes.labelled_episode import LabelledEpisode
+from mart.episodes.labels import Label
 from mart.protocol.errors import InvalidInput, NotFound
-from mart.recorder.catalogue.episode_catalogue import LabelledEpisode
 
 
 @dataclass(frozen=True)
 class DataSetEdit:
-    """What an act changed. left_out: why → how many. `dataset`: as it is now. act_ns: undoes it."""
+    """Tell what an act changed. left_out: why → how many. dataset: as it is now. act_ns: undoes it."""
 
     dataset: NamedDataSet
     changed: int
@@ -25,22 +26,17 @@ class DataSetEdit:
     left_out: Mapping[str, int] = field(default_factory=dict)
 
 
-def said_in(root: Path) -> dict[str, EpisodeLabels]:
-    """What holds about each episode, by its path."""
-    return labels.fold(labels.read(root))
-
-
 def take_in(
     root: Path, name: str, chosen: Iterable[LabelledEpisode], known: Iterable[LabelledEpisode], now_ns: int
 ) -> DataSetEdit:
-    """`chosen` become part of the data set, but for those that nobody shall learn from. `known`: all that there are.
+    """Make `chosen` part of a data set, but for those that nobody shall learn from. known: all that there are.
 
     Raises InvalidInput where nothing is left, or for episodes of several tasks, control rates or sets of arms.
     """
     left_out: Counter[str] = Counter()
     taken: list[LabelledEpisode] = []
     for row in chosen:
-        why = why_unfit(row)
+        why = MEANT.why_not(row)
         if why:
             left_out[why] += 1
         else:
@@ -51,19 +47,19 @@ def take_in(
         )
     members = [row for row in known if name in row.datasets]
     require_alike([*members, *taken], "a data set holds one: narrow the choice, or use another name")
-    said = said_in(root)
+    said = labels.read_folded(root)
     return _act(root, name, datasets.join(said, name, [row.path for row in taken], now_ns), now_ns, left_out)
 
 
 def take_out(root: Path, name: str, paths: Iterable[str], now_ns: int) -> DataSetEdit:
-    """Raises NotFound where there is no such data set."""
-    said = said_in(root)
+    """Take the episodes with these paths out of a data set. Raises NotFound where there is no such data set."""
+    said = labels.read_folded(root)
     datasets.find(said, name)
     return _act(root, name, datasets.leave(said, name, paths, now_ns), now_ns)
 
 
 def undo(root: Path, name: str, act_ns: int, now_ns: int) -> DataSetEdit:
-    """Raises NotFound where nothing was done to this data set then."""
+    """Take back what was done to a data set at `act_ns`. Raises NotFound where nothing was done to it then."""
     opposite = datasets.undo(labels.read(root), name, act_ns, now_ns)
     if not opposite:
         raise NotFound(
@@ -72,18 +68,11 @@ def undo(root: Path, name: str, act_ns: int, now_ns: int) -> DataSetEdit:
     return _act(root, name, opposite, now_ns)
 
 
-def why_unfit(row: LabelledEpisode) -> str:
-    """Why nobody learns from it; empty for one that is fit."""
-    if row.error is not None:
-        return "cannot be read"
-    return "dropped" if row.dropped else "discarded" if row.outcome == "discarded" else ""
-
-
 def _act(
     root: Path, name: str, said: list[Label], now_ns: int, left_out: Mapping[str, int] | None = None
 ) -> DataSetEdit:
     labels.append(root, said)
-    now = datasets.named(said_in(root)).get(name, NamedDataSet(name, (), 0))
+    now = datasets.named(labels.read_folded(root)).get(name, NamedDataSet(name, (), 0))
     return DataSetEdit(now, len(said), now_ns, dict(left_out or {}))
 
 

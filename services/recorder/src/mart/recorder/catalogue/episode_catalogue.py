@@ -1,4 +1,4 @@
-"""All episodes of a folder at a glance: an SQLite file beside them that is derived and may be deleted at any time.
+"""Keep all episodes of a folder at a glance: an SQLite file beside them, derived, which may be deleted at any time.
 
 A row is what the metadata of a file says, under the file's size and modification time; `refresh` reads what is new or
 has changed and forgets what is gone. Labels are laid over the rows when they are asked for, and never stored.
@@ -8,73 +8,21 @@ from __future__ import annotations
 
 import logging
 import sqlite3
+from collections.abc import Iterable
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from pydantic import BaseModel
-
 from mart.episodes import labels
-from mart.episodes.labels import EpisodeLabels
-from mart.episodes.reader import EpisodeFile
-from mart.protocol.errors import MartError
+from mart.episodes.folder import described, episode_files
+from mart.episodes.labelled_episode import LabelledEpisode, describe
 from mart.protocol.recording import SUFFIX
 
 _log = logging.getLogger(__name__)
 
 FILE_NAME = "catalogue.sqlite"
-_VERSION = 2  # of Row: another one is thrown away and derived anew
+_VERSION = 3  # of what a row holds: another one is thrown away and derived anew
 _SCHEMA = "CREATE TABLE episode (path TEXT PRIMARY KEY, size INTEGER, modified_ns INTEGER, row TEXT)"
-
-
-class LabelledEpisode(BaseModel):
-    """One episode in a list. `path` is relative to the catalogue's folder."""
-
-    path: str
-    size_bytes: int
-    room: str = ""
-    number: int = 0
-    task: str | None = None
-    control_hz: float | None = None
-    outcome: str = "unspecified"
-    verdict: str = "unverified"
-    reason: str = ""
-    ticks: int = 0
-    simulated_s: float = 0.0
-    seed: int | None = None
-    mode: str | None = None
-    skill: str | None = None
-    time_limit_s: float | None = None
-    real_time_factor: float | None = None
-    missing_ticks: int = 0
-    waited_s: float = 0.0
-    started_ns: int = 0
-    complete: bool = False
-    repaired: bool = False
-    interrupted: bool = False
-    operators: dict[str, str] = {}
-    error: str | None = None  # why the file cannot be used
-    note: str | None = None
-    dropped: bool = False
-    datasets: tuple[str, ...] = ()  # that it is part of
-
-    @property
-    def arms(self) -> tuple[str, ...]:
-        return tuple(sorted(self.operators))
-
-    @property
-    def verified(self) -> bool:
-        return self.verdict == "verified"
-
-    def labelled(self, said: EpisodeLabels) -> LabelledEpisode:
-        changes = {
-            "outcome": said.outcome or self.outcome,
-            "verdict": said.verdict or self.verdict,
-            "note": said.note,
-            "dropped": said.dropped,
-            "datasets": tuple(sorted(said.datasets)),
-        }
-        return self.model_copy(update=changes)
 
 
 @dataclass(frozen=True)
@@ -89,82 +37,77 @@ class _Stamp:
 
 
 class EpisodeCatalogue:
-    """The episodes under `root`, by a database of its own. Not for use by two threads at once."""
+    """List the episodes under `root`, by a database of its own. Not for use by two threads at once."""
 
     def __init__(self, root: Path, database: Path | str) -> None:
         self.root = root
         self._database = _open(database)
 
     def close(self) -> None:
+        """Close the database."""
         self._database.close()
 
     def refresh(self) -> None:
-        """Makes the catalogue agree with the folder."""
-        stamps = {path: _Stamp.of(path) for path in self.root.rglob(f"*{SUFFIX}")}
-        found = {path.relative_to(self.root).as_posix(): (path, stamp) for path, stamp in stamps.items()}
+        """Make the catalogue agree with the folder: read what is new or has changed, forget what is gone."""
+        found = {path.relative_to(self.root).as_posix(): path for path in self.root.rglob(f"*{SUFFIX}")}
         with self._database:
             known = {
-                p: _Stamp(s, m)
-                for p, s, m in self._database.execute("SELECT path, size, modified_ns FROM episode")
+                name: _Stamp(size, modified_ns)
+                for name, size, modified_ns in self._database.execute(
+                    "SELECT path, size, modified_ns FROM episode"
+                )
             }
             gone = [(path,) for path in known.keys() - found.keys()]
             self._database.executemany("DELETE FROM episode WHERE path = ?", gone)
-            for name, (path, stamp) in found.items():
+            for name, path in found.items():
+                stamp = _Stamp.of(path)
                 if known.get(name) != stamp:
-                    row = describe(path, self.root).model_dump_json()
+                    row = describe(path, name).model_dump_json()
                     values = (name, stamp.size, stamp.modified_ns, row)
                     self._database.execute("INSERT OR REPLACE INTO episode VALUES (?, ?, ?, ?)", values)
 
-    def refreshed(self) -> list[LabelledEpisode]:
-        self.refresh()
-        return self.rows()
-
-    def rows(self) -> list[LabelledEpisode]:
-        """Oldest first, with what was said about them afterwards."""
-        said = labels.fold(labels.read(self.root))
+    def episodes(self) -> list[LabelledEpisode]:
+        """Return what was found when it was last refreshed, the oldest first, each with its labels of now."""
+        said = labels.read_folded(self.root)
         texts = self._database.execute("SELECT row FROM episode")
         rows = [LabelledEpisode.model_validate_json(text) for (text,) in texts]
-        return sorted((overlaid(row, said) for row in rows), key=lambda row: (row.started_ns, row.path))
+        placed = [row.model_copy(update={"file_path": self.root / row.path}) for row in rows]
+        labelled = [row.with_labels(said.get(row.path)) for row in placed]
+        return sorted(labelled, key=lambda row: (row.started_ns, row.path))
 
 
 def list_folder(root: Path) -> list[LabelledEpisode]:
-    """Every episode under `root`, by its catalogue, which is brought up to date first."""
+    """List every episode under `root`, by its catalogue, which is brought up to date first."""
     try:
-        with closing(EpisodeCatalogue(root, root / FILE_NAME)) as catalogue:
-            return catalogue.refreshed()
+        return _listed(root, root / FILE_NAME)
     except sqlite3.OperationalError as error:
         _log.info("%s cannot be used (%s); the folder is read anew", root / FILE_NAME, error)
-    with closing(EpisodeCatalogue(root, ":memory:")) as catalogue:
-        return catalogue.refreshed()
+    return _listed(root, ":memory:")
 
 
-def describe(path: Path, root: Path) -> LabelledEpisode:
-    """One file as its metadata describe it; a file that cannot be read says why."""
-    row = LabelledEpisode(path=path.relative_to(root).as_posix(), size_bytes=path.stat().st_size)
-    try:
-        file = EpisodeFile.open(path)
-        episode, cadence, operators = file.episode, file.cadence, file.operators
-        verdict = file.verification.verdict.value
-    except MartError as error:
-        return row.model_copy(update={"error": str(error)})
-    known = {name: value for name, value in episode if name in LabelledEpisode.model_fields}
-    drivers = operators.to_strings()
-    return LabelledEpisode.model_validate(
-        row.model_dump()
-        | known
-        | {"verdict": verdict, "operators": drivers, "real_time_factor": cadence.real_time_factor}
-        | {"missing_ticks": cadence.missing_ticks, "waited_s": cadence.waited_s}
-        | {"simulated_s": episode.ticks / episode.control_hz if episode.control_hz else 0.0}
-    )
+def list_paths(paths: Iterable[Path]) -> list[LabelledEpisode]:
+    """List the episodes of files and folders, in their order. A root of episodes is asked by its catalogue.
+
+    Raises NotFound for a path that is not there.
+    """
+    found: list[LabelledEpisode] = []
+    for path in paths:
+        is_root = path.is_dir() and labels.is_root(path)
+        found += list_folder(path) if is_root else described(episode_files([path]))
+    return found
 
 
-def overlaid(row: LabelledEpisode, said: dict[str, EpisodeLabels]) -> LabelledEpisode:
-    """The row with what was said about its file afterwards."""
-    return row.labelled(said[row.path]) if row.path in said else row
+def _listed(root: Path, database: Path | str) -> list[LabelledEpisode]:
+    with closing(EpisodeCatalogue(root, database)) as catalogue:
+        catalogue.refresh()
+        return catalogue.episodes()
 
 
 def _open(path: Path | str) -> sqlite3.Connection:
-    """Of our version, and sound: anything else is derived anew. Raises OperationalError where it cannot be written."""
+    """Open a database of our version that is sound: anything else is derived anew.
+
+    Raises OperationalError where it cannot be written.
+    """
     database = sqlite3.connect(path, timeout=10.0)
     try:
         return _prepared(database)

@@ -1,4 +1,4 @@
-"""One question about recorded episodes, one answer. For one thread."""
+"""Answer questions about recorded episodes, one at a time. For one thread."""
 
 from __future__ import annotations
 
@@ -8,16 +8,17 @@ from pathlib import Path
 from typing import Any
 
 from mart.episodes import datasets, labels
+from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.labels import Label, LabelKind
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import clock, codec
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RecordedView, State
-from mart.protocol.recording import EVENT, STATE, VERSIONS, CadenceRecord, VerificationRecord, video_topic
+from mart.protocol.recording import EVENT, VERSIONS, CadenceRecord, VerificationRecord, video_topic
 from mart.recorder.catalogue import dataset_editing, pictures
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
-from mart.recorder.catalogue.episode_catalogue import LabelledEpisode, list_folder, overlaid
-from mart.recorder.catalogue.listing import episode_message, listing, matches
+from mart.recorder.catalogue.episode_catalogue import list_folder
+from mart.recorder.catalogue.listing import episode_message, filter_of, listing
 from mart.recorder.catalogue.timeline import timeline
 
 PIECE_BYTES = 1024 * 1024
@@ -27,7 +28,7 @@ _MAX_KEPT_BYTES = 128 * 1024 * 1024
 
 
 class CatalogueHandlers:
-    """`root`: the folder of the episodes. Raises NotFound, InvalidInput, Corrupt or Conflict; changes labels only."""
+    """Answer what is asked about the episodes in the folder `root`; of what is there, only labels ever change."""
 
     def __init__(self, root: Path) -> None:
         self._root = root
@@ -46,6 +47,7 @@ class CatalogueHandlers:
         }
 
     def answer(self, request: CatalogueRequest) -> CatalogueReply:
+        """Answer one request. Raises NotFound, InvalidInput, Corrupt or Conflict."""
         what = request.WhichOneof("what")
         if what is None:
             raise InvalidInput(f"An empty request was given; ask for one of {', '.join(self._handlers)}.")
@@ -53,7 +55,7 @@ class CatalogueHandlers:
 
     def _list(self, asked: CatalogueRequest.List) -> CatalogueReply:
         self._refresh()
-        held = datasets.named(dataset_editing.said_in(self._root)).values()
+        held = datasets.named(labels.read_folded(self._root)).values()
         return CatalogueReply(listing=listing(list(self._rows.values()), asked, held))
 
     def _refresh(self) -> None:
@@ -64,7 +66,7 @@ class CatalogueHandlers:
             self._read_s = now_s
 
     def _row(self, path: str) -> LabelledEpisode:
-        """Only what the catalogue lists can be asked for: no path leads out of the folder."""
+        """Return the episode at a path that is listed; no other can be asked for, so none leads out of the folder."""
         if path not in self._rows:
             self._read_s = float("-inf")
             self._refresh()
@@ -73,21 +75,21 @@ class CatalogueHandlers:
         return self._rows[path]
 
     def _file(self, path: str) -> EpisodeFile:
-        return EpisodeFile.open(self._root / self._row(path).path)
+        return EpisodeFile.open(self._row(path).file_path)
 
     def _details(self, path: str) -> CatalogueReply.Details:
         file = self._file(path)
         states: dict[int, State] = {}
-        for message in file.messages(STATE):
-            states.setdefault(message.sequence, codec.decode(State, message.payload))
+        for state in file.states():
+            states.setdefault(state.tick, state)
         events = [codec.decode(Event, message.payload) for message in file.messages(EVENT)]
         details = timeline(list(states.values()), events)
         details.episode.CopyFrom(episode_message(self._rows[path]))
         if states:
             details.views.extend(_views(file, next(iter(states.values())).stamps.stepped_ns))
-        details.cadence.update(file.strings.get(CadenceRecord.NAME, {}))
-        details.versions.update(file.strings.get(VERSIONS, {}))
-        details.verification = file.strings.get(VerificationRecord.NAME, {}).get("detail", "")
+        details.cadence.update(file.metadata.get(CadenceRecord.NAME, {}))
+        details.versions.update(file.metadata.get(VERSIONS, {}))
+        details.verification = file.metadata.get(VerificationRecord.NAME, {}).get("detail", "")
         return details
 
     def _label(self, asked: CatalogueRequest.Label) -> LabelledEpisode:
@@ -98,11 +100,11 @@ class CatalogueHandlers:
         if asked.HasField("note"):
             said[LabelKind.NOTE] = asked.note
         if asked.HasField("dropped"):
-            said[LabelKind.USE] = "drop" if asked.dropped else "keep"
+            said[LabelKind.USE] = labels.DROP if asked.dropped else labels.KEEP
         if not said:
             raise InvalidInput("Nothing to say was given; say an outcome, a note, or whether to drop it.")
         labels.append(self._root, [Label(row.path, kind, value, now_ns) for kind, value in said.items()])
-        row = overlaid(row, labels.fold(labels.read(self._root)))
+        row = row.with_labels(labels.read_folded(self._root).get(row.path))
         self._rows[row.path] = row
         return row
 
@@ -112,9 +114,7 @@ class CatalogueHandlers:
         by_filter = asked.HasField("all")
         if by_filter == bool(asked.paths):
             raise InvalidInput("Name the episodes, or give a filter that lets them through: one of the two.")
-        chosen = (
-            [row for row in known if matches(row, asked.all)] if by_filter else map(self._row, asked.paths)
-        )
+        chosen = filter_of(asked.all).apply(known) if by_filter else map(self._row, asked.paths)
         if asked.take_out:
             return dataset_editing.take_out(self._root, asked.dataset, [row.path for row in chosen], now_ns)
         return dataset_editing.take_in(self._root, asked.dataset, chosen, known, now_ns)
@@ -134,7 +134,7 @@ class CatalogueHandlers:
         return CatalogueReply(curated=curated)
 
     def _file_piece(self, asked: CatalogueRequest.File) -> CatalogueReply.Piece:
-        path = self._root / self._row(asked.path).path
+        path = self._row(asked.path).file_path
         size = path.stat().st_size
         with path.open("rb") as file:
             file.seek(min(asked.offset, size))
@@ -160,7 +160,7 @@ class CatalogueHandlers:
         raise NotFound(f"No picture was recorded in {path}.")
 
     def _kept_or(self, key: tuple[str, ...], make: Callable[[], bytes]) -> bytes:
-        """What was made before, as far as memory may be used for it; the oldest goes first."""
+        """Return what was made before, as far as memory may be used for it; the oldest goes first."""
         if key not in self._kept:
             self._kept[key] = make()
         self._kept.move_to_end(key)
@@ -172,7 +172,7 @@ class CatalogueHandlers:
 
 
 def _views(file: EpisodeFile, start_ns: int) -> list[RecordedView]:
-    """What was seen from each arm whose picture is in the file. `start_ns`: when the first state was there."""
+    """Return when the video of each arm begins that is in the file. start_ns: when the first state was there."""
     cameras = {video_topic(arm): arm for arm in file.episode.arms}
     first_ns: dict[str, int] = {}
     for message in file.messages(*cameras):

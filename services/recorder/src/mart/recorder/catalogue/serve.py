@@ -1,4 +1,4 @@
-"""`mart catalogue`: a process of its own, so that whoever browses never costs a recording a message."""
+"""Serve the catalogue on the bus, in a process of its own: whoever browses never costs a recording a message."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _NICENESS = 10  # rooms and recordings go first
 
 
 def serve_catalogue(settings: RecorderSettings, name: str) -> None:
-    """Until the process is asked to stop."""
+    """Answer questions until the process is asked to stop."""
     os.nice(_NICENESS)
     inbox: queue.Queue[Request] = queue.Queue(_MAX_WAITING)
-    answers = CatalogueHandlers(settings.episodes_dir)
+    handlers = CatalogueHandlers(settings.episodes_dir)
 
     def take(request: Request) -> None:
         with contextlib.suppress(queue.Full):  # whoever asks hears nothing in time, and asks again
@@ -37,11 +37,12 @@ def serve_catalogue(settings: RecorderSettings, name: str) -> None:
         while not service.stop.is_set():
             with contextlib.suppress(queue.Empty):
                 request = inbox.get(timeout=_STOP_CHECK_S)
-                request.reply(codec.encode(answer(answers, request.payload)))
+                request.reply(codec.encode(answer(handlers, request.payload)))
 
 
-def answer(answers: CatalogueHandlers, payload: bytes) -> CatalogueReply:
+def answer(handlers: CatalogueHandlers, payload: bytes) -> CatalogueReply:
+    """Answer one encoded request; an error becomes a reply that says it."""
     try:
-        return answers.answer(codec.decode(CatalogueRequest, payload, _MAX_REQUEST_BYTES))
+        return handlers.answer(codec.decode(CatalogueRequest, payload, _MAX_REQUEST_BYTES))
     except MartError as error:
         return CatalogueReply(error=error_message(error))

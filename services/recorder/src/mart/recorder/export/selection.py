@@ -1,70 +1,64 @@
-"""Which episodes are exported, and what they have in common."""
+"""Choose the episodes of an export and read them: one task, one control rate, the same arms."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
+import numpy as np
+
+from mart.episodes.arrays import EpisodeData
 from mart.episodes.compatibility import require_alike
-from mart.episodes.reader import EpisodeFile
-from mart.protocol.errors import Corrupt, InvalidInput
+from mart.episodes.filter import DROPPED, EpisodeFilter
+from mart.episodes.labelled_episode import LabelledEpisode, require_readable
+from mart.protocol.errors import InvalidInput
 from mart.protocol.tasks import Task, get_task
-from mart.recorder.catalogue.episode_catalogue import LabelledEpisode
 
 
 @dataclass(frozen=True)
 class ExportSelection:
-    """Episodes of one task, one control rate and the same arms, oldest first."""
+    """Hold episodes of one task, one control rate and the same arms, the oldest first."""
 
     task: Task
     control_hz: float
-    episodes: tuple[tuple[EpisodeFile, LabelledEpisode], ...]
+    episodes: tuple[LabelledEpisode, ...]
 
 
-def choose(
-    rows: Iterable[tuple[Path, LabelledEpisode]], outcomes: Sequence[str], verdicts: Sequence[str]
-) -> ExportSelection:
-    """Those with one of these outcomes and verdicts that nobody has dropped; empty takes any.
+def choose(episodes: Iterable[LabelledEpisode], wanted: EpisodeFilter) -> ExportSelection:
+    """Choose what the filter takes, each file once.
 
     Raises Corrupt where a file cannot be read, and InvalidInput where nothing is left or where they do not belong
     together.
     """
-    listed = list({path.resolve(): (path, row) for path, row in rows}.values())
-    for _, row in listed:
-        if row.error is not None:
-            raise Corrupt(row.error)
-    taken = [(path, row) for path, row in listed if _is_wanted(row, outcomes, verdicts)]
+    listed = list({episode.file_path.resolve(): episode for episode in episodes}.values())
+    require_readable(listed)
+    taken = wanted.apply(listed)
     if not taken:
-        raise InvalidInput(_why_none([row for _, row in listed]))
-    taken.sort(key=lambda one: (one[1].started_ns, one[0]))
-    episodes = tuple((EpisodeFile.open(path), row) for path, row in taken)
-    task, control_hz, arms = _facts(episodes)
-    return ExportSelection(get_task(task, len(arms)), control_hz, episodes)
-
-
-def _is_wanted(row: LabelledEpisode, outcomes: Sequence[str], verdicts: Sequence[str]) -> bool:
-    return (
-        not row.dropped
-        and (not outcomes or row.outcome in outcomes)
-        and (not verdicts or row.verdict in verdicts)
-    )
-
-
-def _facts(episodes: Sequence[tuple[EpisodeFile, LabelledEpisode]]) -> tuple[str, float, tuple[str, ...]]:
-    """Of all of them."""
-    records = [file.episode for file, _ in episodes]
-    require_alike(records, "a file holds one: export each by itself")
-    first = records[0]
+        raise InvalidInput(_why_none(listed))
+    taken.sort(key=lambda episode: (episode.started_ns, episode.file_path))
+    require_alike(taken, "a file holds one: export each by itself")
+    first = taken[0]
     if first.task is None or first.control_hz is None:
-        raise InvalidInput(f"{episodes[0][0].path} does not say its task and control rate; leave it out.")
-    return first.task, first.control_hz, first.arms
+        raise InvalidInput(f"{first.file_path} does not say its task and control rate; leave it out.")
+    return ExportSelection(get_task(first.task, len(first.arms)), first.control_hz, tuple(taken))
 
 
-def _why_none(rows: Sequence[LabelledEpisode]) -> str:
-    if not rows:
+def read_data(episode: LabelledEpisode, task: Task) -> EpisodeData:
+    """Read an episode into arrays, as the task's catalogue entry says.
+
+    Raises Corrupt where the file is damaged and InvalidInput, naming it, where it is not whole, not finite, or an
+    action is outside -1 … 1.
+    """
+    data = episode.open().arrays(task)
+    if (np.abs(data.actions) > 1.0).any():
+        raise InvalidInput(f"{episode.file_path} cannot be exported: an action is outside -1 … 1.")
+    return data
+
+
+def _why_none(episodes: Sequence[LabelledEpisode]) -> str:
+    if not episodes:
         return "There are no episodes in what was given; name episode files or folders of them."
-    kinds = Counter("dropped" if row.dropped else f"{row.outcome} and {row.verdict}" for row in rows)
+    kinds = Counter(DROPPED if one.dropped else f"{one.outcome} and {one.verdict}" for one in episodes)
     found = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
     return f"None of the episodes that were given is taken ({found}); widen --outcome or --verdict."

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mart.episodes import labels
 from mart.episodes.compatibility import require_alike
-from mart.episodes.paths import episode_files
+from mart.episodes.folder import episode_files
 from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import InvalidInput
 from mart.protocol.recording import EpisodeRecord, Shift

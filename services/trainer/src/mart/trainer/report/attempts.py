@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mart.episodes import labels
-from mart.episodes.paths import episode_files
+from mart.episodes.folder import episode_files
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, NotFound

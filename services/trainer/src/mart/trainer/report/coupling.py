@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mart.episodes.paths import episode_files
+from mart.episodes.folder import episode_files
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
 from mart.protocol.errors import InvalidInput, NotFound
