@@ -10,8 +10,9 @@ from mart.episodes.writer import EpisodeWriter
 from mart.protocol import codec
 from mart.protocol.messages import State
 from mart.protocol.recording import RoomRecord, VerificationRecord
-from mart.recorder.record.episode_accumulator import EpisodeAccumulator, RoomFacts
-from mart.recorder.record.finalize import SavedEpisode, Verify, finalize, part_path
+from mart.recorder.record.episode_accumulator import EpisodeAccumulator
+from mart.recorder.record.finalize import SavedEpisode, VerifyFile, finalize, part_path
+from mart.recorder.record.room_facts import RoomFacts
 from mart.recorder.verify.resimulation import verify
 from tests.recorder import synthetic
 
@@ -57,7 +58,7 @@ def _write_tick(file: EpisodeWriter, episode: EpisodeAccumulator, state: State) 
 
 
 def write_episode(
-    root: Path, ticks: int = 30, number: int = 1, verify: Verify = by_toy_replica
+    root: Path, ticks: int = 30, number: int = 1, verify: VerifyFile = by_toy_replica
 ) -> SavedEpisode:
     file, episode, facts = write_part(root, synthetic.states(ticks, number))
     return finalize(file, episode, facts, root, verify, repaired=False)

@@ -14,12 +14,15 @@ from google.protobuf.timestamp_pb2 import Timestamp
 
 from mart.protocol import codec
 from mart.protocol.messages import (
+    EPISODE_PHASE_ENDED,
     OPERATOR_HOLD,
     OPERATOR_HUMAN,
+    OUTCOME_FAILURE,
     OUTCOME_SUCCESS,
     ArmState,
     Command,
     CommandStamps,
+    EpisodePhase,
     Event,
     Model,
     Outcome,
@@ -162,6 +165,17 @@ def seats() -> list[Seat]:
 
 def status(boot: int = BOOT) -> RoomStatus:
     return RoomStatus(room=ROOM, task=TASK, control_hz=20.0, seats=seats(), boot=boot)
+
+
+def episode_status(
+    ticks: int, number: int = 1, phase: EpisodePhase = EPISODE_PHASE_ENDED, outcome: Outcome = OUTCOME_FAILURE
+) -> RoomStatus:
+    """What the room says again and again of its episode; of one that has ended, how."""
+    said = status()
+    said.episode.number, said.episode.phase, said.episode.ticks = number, phase, ticks
+    if phase == EPISODE_PHASE_ENDED:
+        said.episode.outcome, said.episode.reason = outcome, "time is up"
+    return said
 
 
 def video(frame: int, is_key: bool, data: bytes | None = None) -> CompressedVideo:

@@ -26,8 +26,9 @@ from mart.protocol.messages import (
 )
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.vocabulary import Verdict
-from mart.recorder.record.episode_accumulator import EpisodeAccumulator, RoomFacts
+from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.finalize import finalize, part_path
+from mart.recorder.record.room_facts import RoomFacts
 from mart.sim.experts import Expert, get_skill
 from mart.sim.world import World
 

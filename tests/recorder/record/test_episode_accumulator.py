@@ -18,7 +18,8 @@ from mart.protocol.messages import (
     Seat,
     State,
 )
-from mart.recorder.record.episode_accumulator import EpisodeAccumulator, RoomFacts
+from mart.recorder.record.episode_accumulator import EpisodeAccumulator
+from mart.recorder.record.room_facts import RoomFacts
 from tests.recorder import synthetic
 
 

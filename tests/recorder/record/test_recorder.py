@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import resource
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
@@ -15,12 +15,14 @@ from mart.protocol import clock, codec, keys, recording
 from mart.protocol.errors import InvalidInput
 from mart.protocol.keys import Topic
 from mart.protocol.messages import Event, State
+from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.catalogue.episode_catalogue import FILE_NAME
 from mart.recorder.record.inbox import Inbox, RoomSubscriptions
 from mart.recorder.record.recorder import Recorder
+from mart.recorder.service import tidy
 from mart.recorder.verify.resimulation import replica, verify
-from mart.runtime.bus import Sample
+from mart.runtime.bus import Request, Sample
 from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
 from tests.recorder import synthetic
 from tests.recorder.files import write_part
@@ -28,26 +30,38 @@ from tests.recorder.files import write_part
 _PATIENCE_S = 20.0
 
 
+def _answer_model(request: Request) -> None:
+    request.reply(codec.encode(synthetic.MODEL))
+
+
 class Session:
     """A recorder on an in-memory bus with a room and a replica that are toys."""
 
-    def __init__(self, data_dir: Path, inbox: Inbox | None = None) -> None:
+    def __init__(
+        self,
+        data_dir: Path,
+        inbox: Inbox | None = None,
+        answer_model: Callable[[Request], None] | None = None,
+    ) -> None:
         self.data_dir = data_dir
         network = MemoryNetwork()
         self.bus: MemoryBus = network.connect()
         self.events: list[Event] = []
         self._told = threading.Condition()
         self.bus.subscribe(keys.EVERY_EVENT, self._hear)
-        self.bus.serve(
-            keys.model(synthetic.ROOM), lambda request: request.reply(codec.encode(synthetic.MODEL))
-        )
+        self.bus.serve(keys.model(synthetic.ROOM), answer_model or _answer_model)
         self.bus.announce(keys.alive(ServiceKind.REPLICA, "replica-1"))
         self.bus.serve(
             keys.rollout("replica-1"), lambda request: request.reply(synthetic.rollout_reply(request.payload))
         )
         self.inbox = inbox or Inbox()
         ask = replica(self.bus, "replica-1")
-        self.recorder = Recorder(data_dir, self.bus, self.inbox, lambda file, room: verify(file, room, ask))
+
+        def verify_file(file: EpisodeFile, room: RoomRecord) -> VerificationRecord:
+            return verify(file, room, ask)
+
+        root = data_dir / "episodes"
+        self.recorder = Recorder(data_dir, self.bus, self.inbox, verify_file, lambda: tidy(root, verify_file))
         self.capture = RoomSubscriptions(network.connect(), network.connect(), self.inbox)
 
     def put(self, topic: Topic, payload: bytes) -> None:
@@ -65,6 +79,13 @@ class Session:
         self.event(synthetic.started(number, first_tick))
         self.states(synthetic.states(ticks, number, first_tick))
         self.event(synthetic.ended(first_tick + ticks, number))
+
+    def until(self, holds: Callable[[], object]) -> None:
+        """Steps until something holds."""
+        deadline_s = clock.monotonic_s() + _PATIENCE_S
+        while not holds():
+            assert clock.monotonic_s() < deadline_s
+            self.recorder.step(0.02)
 
     def told(self, kind: str, count: int = 1) -> list[Event]:
         """Steps until so many events of a kind have been heard; returns them."""
@@ -143,6 +164,34 @@ def test_two_rooms_are_recorded_at_once(session: Session) -> None:
     assert sorted(rooms) == ["room-1", "room-2"]
 
 
+def test_an_outcome_whose_event_was_lost_is_learned_from_the_status(session: Session) -> None:
+    session.event(synthetic.started())
+    session.states(synthetic.states(10))
+    for _ in range(3):
+        session.put(keys.status(synthetic.ROOM), codec.encode(synthetic.episode_status(10)))
+    (event,) = session.told("episode_saved")
+    record = EpisodeFile.open(session.data_dir / event.episode_saved.path).episode
+    assert (record.outcome, record.reason, record.complete) == ("failure", "time is up", True)
+
+
+def test_a_model_that_was_not_to_be_had_is_asked_for_again_when_an_episode_begins(tmp_path: Path) -> None:
+    asked = threading.Event()
+
+    def answer_late(request: Request) -> None:
+        if asked.is_set():
+            request.reply(codec.encode(synthetic.MODEL))
+        asked.set()
+
+    with closing(Session(tmp_path, answer_model=answer_late)) as session:
+        session.put(keys.status(synthetic.ROOM), codec.encode(synthetic.status()))
+        session.recorder.step(0.0)
+        assert asked.wait(_PATIENCE_S)
+        session.recorder._tools.finalizer._workers.submit(lambda: None).result()
+        session.event(synthetic.started())
+        session.states(synthetic.states(10)[:1])
+        session.until(lambda: session.recorder._tools.models.known(synthetic.ROOM, synthetic.BOOT))
+
+
 def test_being_stopped_saves_what_there_is(session: Session) -> None:
     session.event(synthetic.started())
     session.states(synthetic.states(10)[:6])
@@ -203,7 +252,7 @@ def test_a_full_disk_ends_that_recording_only(session: Session) -> None:
     session.event(synthetic.started())
     states = synthetic.states(400)
     session.states(states[:100])
-    session.recorder._flush(session.recorder._rooms[synthetic.ROOM], 0.0)
+    session.recorder._rooms[synthetic.ROOM].flush(0.0)
     (part,) = session.data_dir.rglob("*.part")
     with no_file_larger_than(part.stat().st_size + 4000):
         session.states(states[100:])

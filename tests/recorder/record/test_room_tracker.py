@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from mart.episodes.mcap_entries import McapEntry
 from mart.protocol import codec, recording
-from mart.protocol.messages import Event, State
+from mart.protocol.messages import (
+    EPISODE_PHASE_COUNTDOWN,
+    EPISODE_PHASE_PRACTICE,
+    EPISODE_PHASE_RECORDING,
+    EpisodePhase,
+    Event,
+    RoomStatus,
+    State,
+)
 from mart.recorder.record.room_tracker import (
     GRACE_S,
     LINGER_S,
@@ -39,6 +50,9 @@ class Driven:
 
     def event(self, event: Event) -> None:
         self.actions += self.tracker.event(event, codec.encode(event), event.wall_ns, self.now_s)
+
+    def status(self, status: RoomStatus) -> None:
+        self.actions += self.tracker.status(status, self.now_s)
 
     def wait(self, duration_s: float) -> None:
         self.now_s += duration_s
@@ -120,9 +134,87 @@ def test_an_episode_without_an_outcome_ends_when_the_next_begins() -> None:
 def test_a_restarted_sim_ends_the_episode() -> None:
     room = Driven()
     room.states(synthetic.states(3))
-    room.actions += room.tracker.status(synthetic.status(boot=78), room.now_s)
+    room.status(synthetic.status(boot=78))
     assert room.course == [OpenFile, CloseFile]
     assert room.closed[0].episode.unfinished_reason == "the sim restarted"
+
+
+def test_an_outcome_that_nobody_heard_is_learned_from_the_status() -> None:
+    room = Driven()
+    room.states(synthetic.states(5, first_tick=10))
+    for _ in range(3):
+        room.status(synthetic.episode_status(5))
+        room.wait(LINGER_S / 2)
+    assert room.course == [OpenFile, CloseFile]
+    record = room.closed[0].episode.record(room.tracker.facts)
+    assert (record.outcome, record.reason, record.complete) == ("failure", "time is up", True)
+
+
+def test_a_status_with_the_outcome_may_overtake_the_last_state() -> None:
+    room = Driven()
+    room.states(synthetic.states(5)[:-1])
+    room.status(synthetic.episode_status(5))
+    room.wait(GRACE_S / 2)
+    room.states(synthetic.states(5)[-1:])
+    room.wait(LINGER_S)
+    assert room.course == [OpenFile, CloseFile]
+    assert room.closed[0].episode.has_all
+
+
+@pytest.mark.parametrize(("number", "phase"), [(1, EPISODE_PHASE_PRACTICE), (2, EPISODE_PHASE_COUNTDOWN)])
+def test_a_room_that_has_gone_on_leaves_no_file_open(number: int, phase: EpisodePhase) -> None:
+    room = Driven()
+    room.states(synthetic.states(5))
+    for _ in range(8):
+        room.status(synthetic.episode_status(0, number, phase))
+        room.wait(GRACE_S / 4)
+    assert room.course == [OpenFile, CloseFile]
+    assert room.closed[0].episode.record(room.tracker.facts).outcome == "unspecified"
+
+
+@pytest.mark.parametrize("phase", [EPISODE_PHASE_COUNTDOWN, EPISODE_PHASE_RECORDING])
+def test_a_room_that_is_at_it_keeps_its_file_open(phase: EpisodePhase) -> None:
+    room = Driven()
+    room.states(synthetic.states(5))
+    for _ in range(8):
+        room.status(synthetic.episode_status(5, 1, phase))
+        room.wait(GRACE_S)
+    assert room.course == [OpenFile]
+
+
+def _succeeds(state: State) -> None:
+    state.progress.success = True
+
+
+def _fails(state: State) -> None:
+    state.progress.failed = "the cube fell"
+
+
+@pytest.mark.parametrize(
+    ("decide", "time_limit_s", "ending"),
+    [
+        (_succeeds, 0.0, ("success", "the task is done")),
+        (_fails, 0.0, ("failure", "the cube fell")),
+        (lambda _state: None, 0.25, ("failure", "time is up")),
+        (lambda _state: None, 0.3, ("unspecified", "its outcome was never said")),
+    ],
+)
+def test_where_nobody_said_the_outcome_the_last_state_does(
+    decide: Callable[[State], object], time_limit_s: float, ending: tuple[str, str]
+) -> None:
+    room = Driven()
+    started = synthetic.started()
+    started.episode_started.time_limit_s = time_limit_s
+    room.event(started)
+    states = synthetic.states(5)
+    decide(states[-1])
+    room.states(states)
+    room.state(practice(6))
+    room.wait(GRACE_S)
+    assert room.course == [OpenFile, CloseFile]
+    record = room.closed[0].episode.record(room.tracker.facts)
+    assert (record.outcome, record.reason) == ending
+    assert record.complete == (record.outcome != "unspecified")
 
 
 def test_a_silent_sim_ends_the_episode_but_a_paused_room_does_not() -> None:
@@ -130,7 +222,7 @@ def test_a_silent_sim_ends_the_episode_but_a_paused_room_does_not() -> None:
     room.states(synthetic.states(3))
     for _ in range(100):
         room.wait(SILENCE_S / 5)
-        room.actions += room.tracker.status(synthetic.status(), room.now_s)
+        room.status(synthetic.status())
     assert room.course == [OpenFile]
     room.wait(SILENCE_S + 1)
     assert room.course == [OpenFile, CloseFile]

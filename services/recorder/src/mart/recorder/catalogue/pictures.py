@@ -1,4 +1,4 @@
-"""What an operator saw, out of the file: a video that browsers play, not encoded again, and a small still picture."""
+"""Take out of a file what an operator saw: a video that browsers play, not encoded again, or a small still picture."""
 
 from __future__ import annotations
 
@@ -23,19 +23,20 @@ _SPS = 7  # type of the NAL unit that only key frames have here
 
 @dataclass(frozen=True)
 class RecordedFrame:
-    """One encoded picture (H.264, Annex B); `image_ns`: when the world was in that state."""
+    """Hold one encoded picture (H.264, Annex B). image_ns: when the world was in that state (Unix time)."""
 
     image_ns: int
     data: bytes
 
     @property
     def is_key(self) -> bool:
+        """Whether decoding can begin with it."""
         start = self.data.find(b"\x00\x00\x01")
         return 0 <= start < len(self.data) - 3 and self.data[start + 3] & 0x1F == _SPS
 
 
 def frames_of(file: EpisodeFile, camera: str) -> list[RecordedFrame]:
-    """From the first key frame on; raises NotFound where the file holds no picture of this camera."""
+    """Return the pictures of a camera from the first key frame on. Raises NotFound where there is none."""
     messages = file.messages(video_topic(camera))
     videos = (codec.decode(CompressedVideo, message.payload) for message in messages)
     frames = [RecordedFrame(video.timestamp.ToNanoseconds(), video.data) for video in videos]
@@ -46,7 +47,7 @@ def frames_of(file: EpisodeFile, camera: str) -> list[RecordedFrame]:
 
 
 def as_mp4(frames: list[RecordedFrame]) -> bytes:
-    """The same pictures at the same times; raises Corrupt where they cannot be read."""
+    """Return an MP4 of the same pictures at the same times. Raises Corrupt where they cannot be read."""
     video = io.BytesIO()
     try:
         with (
@@ -69,7 +70,7 @@ def as_mp4(frames: list[RecordedFrame]) -> bytes:
 
 
 def last_picture(frames: list[RecordedFrame]) -> bytes:
-    """The newest key frame as a JPEG, without the tick's code; raises Corrupt where it cannot be read."""
+    """Return the newest key frame as a JPEG, without the tick's code. Raises Corrupt where it cannot be read."""
     newest = next(frame for frame in reversed(frames) if frame.is_key)
     try:
         decoder = VideoCodecContext.create("h264", "r")

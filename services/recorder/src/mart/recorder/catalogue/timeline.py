@@ -1,4 +1,4 @@
-"""What happened in an episode, over time: who drove, what was done, for whom the world waited. Pure."""
+"""Tell what happened in an episode over time: who drove, what was done, for whom the world waited. Pure."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ WAITED_S = 0.25  # what people are told of as it happens: a stall
 
 
 def timeline(states: Sequence[State], events: Iterable[Event]) -> CatalogueReply.Details:
-    """`wall_s`, `lanes` and `traces`. Seconds are the wall's, since the first state was there."""
+    """Return `wall_s`, `lanes` and `traces`. Seconds are the wall's, since the first state was there."""
     if not states:
         return CatalogueReply.Details()
     start_ns = states[0].stamps.stepped_ns
@@ -30,7 +30,7 @@ def timeline(states: Sequence[State], events: Iterable[Event]) -> CatalogueReply
 
 
 def runs(seconds: Sequence[float], values: Iterable[str]) -> list[Span]:
-    """Where a value stays the same; each run ends where the next begins. An empty value is no run."""
+    """Return where a value stays the same; each run ends where the next begins. An empty value is no run."""
     found: list[Span] = []
     for now_s, value in zip(seconds, values, strict=True):
         if found:
@@ -47,7 +47,7 @@ def _subtasks(states: Sequence[State], seconds: Sequence[float]) -> Iterator[Lan
 
 
 def _of_arm(states: Sequence[State], seconds: Sequence[float], index: int) -> Iterator[Lane]:
-    """Who drove it, from the tick of their first command on, and where they moved it."""
+    """Tell who drove an arm, from the tick of their first command on, and where they moved it."""
     arms = [state.arms[index] for state in states]
     sources = [operator_word(arm.source) if arm.fresh else "hold" for arm in arms]
     sources[0] = sources[min(1, len(sources) - 1)]  # the first state has had no command yet
@@ -67,7 +67,7 @@ def _waiting(states: Sequence[State], seconds: Sequence[float]) -> Iterator[Lane
 
 
 def _said(events: Iterable[Event], start_ns: int) -> Iterator[Lane]:
-    """By partners to each other, and by the services."""
+    """Tell what partners said to each other, and what the services said."""
     said: dict[tuple[str, str], list[Span]] = {}
     for event in events:
         match event.WhichOneof("what"):

@@ -1,4 +1,7 @@
-"""What the recorder tells a room: events on the bus, and a line in the log for each."""
+"""Tell rooms what the recorder did: events on the bus, and a line in the log for each.
+
+An event may be lost. Whoever counts on an episode asks for its file: `mart.episodes.find_episodes`, or the catalogue.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from pathlib import Path
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Event, outcome_from_word
-from mart.protocol.vocabulary import Verdict
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.record.finalize import SavedEpisode
 from mart.runtime.bus import Bus, Publisher
 
@@ -19,7 +22,7 @@ _LEVELS = {"info": logging.INFO, "warning": logging.WARNING, "error": logging.ER
 
 
 class Announcer:
-    """Safe to use from several threads."""
+    """Tell rooms of notices and saved episodes. Safe for several threads."""
 
     def __init__(self, bus: Bus, data_dir: Path) -> None:
         self._bus = bus
@@ -28,11 +31,12 @@ class Announcer:
         self._lock = threading.Lock()
 
     def notice(self, room: str, level: str, text: str) -> None:
-        """`level`: info, warning or error."""
+        """Tell a room in words. level: info, warning or error."""
         _log.log(_LEVELS[level], "%s: %s", room, text)
         self._put(room, Event(notice=Event.Notice(level=level, text=text, **{"from": "recorder"})))
 
     def saved(self, saved: SavedEpisode) -> None:
+        """Tell a room that an episode of it has its file."""
         episode, verification = saved.episode, saved.verification
         _log.info("%s: %s", episode.room, _in_words(saved))
         told = Event.EpisodeSaved(
@@ -42,7 +46,7 @@ class Announcer:
             verdict=verification.verdict.value,
             size_bytes=saved.size_bytes,
         )
-        if episode.outcome != "unspecified":
+        if episode.outcome != EpisodeOutcome.UNSPECIFIED:
             told.outcome = outcome_from_word(episode.outcome)
         self._put(episode.room, Event(episode_saved=told, tick=episode.last_tick))
 

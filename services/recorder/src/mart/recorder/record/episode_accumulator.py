@@ -1,106 +1,58 @@
-"""What one episode was: a pure fold over its states and events, asked for its metadata records at the end.
+"""Gather what one episode was from its states, events and statuses, for its metadata records at the end. Pure.
 
-The recorder folds messages as they arrive and repair folds those that a crash has left: same code, same records.
+The recorder adds messages as they arrive and repair adds those that a crash has left: same code, same records.
+
+How an episode ended is said by one event, which may be lost. So it is learned from whatever says it: the event, the
+room's status, which is repeated, or, where nobody said anything, the last state itself.
 """
 
 from __future__ import annotations
 
-import re
 from array import array
 from collections import defaultdict
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from mart.protocol.messages import (
     BARRIER_PHASE_PAUSED,
     BARRIER_PHASE_STOPPED,
+    EPISODE_PHASE_ENDED,
+    EPISODE_PHASE_PRACTICE,
+    EPISODE_PHASE_RECORDING,
+    OUTCOME_FAILURE,
+    OUTCOME_SUCCESS,
     OUTCOME_UNSPECIFIED,
     ArmState,
     Event,
-    Model,
+    Outcome,
     RoomStatus,
-    Seat,
     State,
     operator_word,
     outcome_word,
 )
-from mart.protocol.recording import CadenceRecord, EpisodeRecord, OperatorsRecord, RoomRecord, Shift
-
-_TASK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
-_MAX_NAMES = 1024  # seats change hands; the oldest names are forgotten
+from mart.protocol.recording import CadenceRecord, EpisodeRecord, OperatorsRecord, Shift
+from mart.recorder.record.room_facts import RoomFacts
 
 
-@dataclass
-class RoomFacts:
-    """What is known about a room besides its states. Learned from whatever says it first."""
+@dataclass(frozen=True)
+class EpisodeEnding:
+    """Say how an episode ended, and with which tick of its room."""
 
-    room: str
-    task: str | None = None
-    control_hz: float | None = None
-    model_sha256: str | None = None
-    mujoco_version: str | None = None
-    names: dict[tuple[str, int], str] = field(default_factory=dict)  # (arm, seat epoch) → who
-
-    def learn_status(self, status: RoomStatus) -> None:
-        self._learn_task(status.task, status.control_hz)
-        self._learn_seats(status.seats)
-
-    def learn_event(self, event: Event) -> None:
-        if event.HasField("episode_started"):
-            started = event.episode_started
-            self._learn_task(started.task, started.control_hz)
-            self._learn_seats(started.seats)
-            self.model_sha256 = started.model_sha256 or self.model_sha256
-        elif event.HasField("seat_changed"):
-            self._learn_seats([event.seat_changed])
-
-    def learn_model(self, model: Model) -> None:
-        self._learn_task(model.task, model.control_hz)
-        self.model_sha256, self.mujoco_version = model.sha256, model.mujoco_version
-
-    def learn_record(self, record: RoomRecord) -> None:
-        self._learn_task(record.task or "", record.control_hz or 0.0)
-        self.model_sha256 = record.model_sha256 or self.model_sha256
-        self.mujoco_version = record.mujoco_version or self.mujoco_version
-
-    @property
-    def is_complete(self) -> bool:
-        """Whether enough is known to step the room's world again."""
-        return bool(self.task and self.control_hz and self.model_sha256)
-
-    def record(self) -> RoomRecord:
-        return RoomRecord(
-            room=self.room,
-            task=self.task,
-            control_hz=self.control_hz,
-            model_sha256=self.model_sha256,
-            mujoco_version=self.mujoco_version,
-        )
-
-    def _learn_task(self, task: str, control_hz: float) -> None:
-        if _TASK_NAME.fullmatch(task):  # it becomes part of a file's name
-            self.task = task
-        if np.isfinite(control_hz) and control_hz > 0:
-            self.control_hz = control_hz
-
-    def _learn_seats(self, seats: Iterable[Seat]) -> None:
-        for seat in seats:
-            self.names[seat.arm, seat.epoch] = seat.name
-        while len(self.names) > _MAX_NAMES:
-            del self.names[next(iter(self.names))]
+    outcome: Outcome
+    reason: str
+    last_tick: int
 
 
 class EpisodeAccumulator:
-    """One episode of one run of a room's sim, from its first recorded state on."""
+    """Gather one episode of one run of a room's sim, from its first recorded state on."""
 
     def __init__(self, first: State) -> None:
         self.room = first.room
         self.number = first.episode
         self.boot = first.boot
         self.arms = tuple(arm.arm for arm in first.arms)
-        self.ended: Event.EpisodeEnded | None = None
+        self.ended: EpisodeEnding | None = None
         self.unfinished_reason = "the episode was not finished"
         self.interrupted = False
         self.seed: int | None = None
@@ -117,15 +69,17 @@ class EpisodeAccumulator:
 
     @property
     def started_ns(self) -> int:
+        """When the room sent the first state (Unix time)."""
         return self._first.stamps.sent_ns
 
     @property
     def last_tick(self) -> int:
+        """The room's tick of the newest state."""
         return self._last.tick
 
     @property
     def is_glimpse(self) -> bool:
-        """One state and no tick: what a recorder sees that comes when the episode is over (rooms repeat states)."""
+        """Whether it is one state and no tick: what a recorder sees that comes when the episode is over."""
         return self.states == 1 and self._first.episode_tick > 0
 
     @property
@@ -134,10 +88,11 @@ class EpisodeAccumulator:
         return self.ended is not None and self._last.tick >= self.ended.last_tick
 
     def belongs(self, state: State) -> bool:
+        """Tell whether a state is one of this episode."""
         return state.boot == self.boot and state.episode == self.number
 
     def add_state(self, state: State) -> bool:
-        """Whether the state is news: one that repeats or precedes the newest is not."""
+        """Add a state, and tell whether it is news: one that repeats or precedes the newest is not."""
         if self.states and state.tick <= self._last.tick:
             return False
         if self.states:
@@ -152,21 +107,44 @@ class EpisodeAccumulator:
         return True
 
     def add_event(self, event: Event) -> None:
+        """Learn what an event says of this episode."""
         if event.HasField("episode_started") and event.episode_started.number == self.number:
             self.started, self.seed = event.episode_started, event.episode_started.seed
         elif event.HasField("episode_ended") and event.episode_ended.number == self.number:
-            self.ended = event.episode_ended
+            said = event.episode_ended
+            self.ended = EpisodeEnding(said.outcome, said.reason, said.last_tick)
         elif event.HasField("barrier_changed"):
             self.interrupted |= event.barrier_changed.phase in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED)
         elif event.HasField("latency") and _is_usable(event.latency) and event.latency.arm in self.arms:
             self._latency[event.latency.arm] = event.latency
 
     def add_status(self, status: RoomStatus) -> None:
-        if status.boot == self.boot and status.episode.number == self.number:
-            self.interrupted |= status.episode.interrupted
-            self.seed = status.episode.seed if self.seed is None else self.seed
+        """Learn what a room's status says of this episode; being repeated, it makes up for an event that was lost."""
+        said = status.episode
+        if status.boot != self.boot or said.number != self.number:
+            return
+        if said.phase not in (EPISODE_PHASE_RECORDING, EPISODE_PHASE_ENDED):
+            return
+        self.interrupted |= said.interrupted
+        self.seed = said.seed if self.seed is None else self.seed
+        if said.phase == EPISODE_PHASE_ENDED and self.ended is None and said.outcome != OUTCOME_UNSPECIFIED:
+            last_tick = self._first.tick - self._first.episode_tick + said.ticks
+            self.ended = EpisodeEnding(said.outcome, said.reason, last_tick)
+
+    def is_past(self, status: RoomStatus) -> bool:
+        """Tell whether the room has gone on: it practises again after this episode, or is at a later one."""
+        said = status.episode
+        practises = said.number == self.number and said.phase == EPISODE_PHASE_PRACTICE
+        return status.boot == self.boot and (practises or said.number > self.number)
+
+    def conclude(self, unfinished_reason: str) -> None:
+        """Decide how it ended where nobody said so: by its last state, else it is unfinished for this reason."""
+        self.unfinished_reason = unfinished_reason
+        if self.ended is None:
+            self.ended = _ending_of(self._last, self.started)
 
     def record(self, facts: RoomFacts, repaired: bool = False) -> EpisodeRecord:
+        """Return the record `mart.episode`. repaired: whether it is put together from what a crash had left."""
         started, ended = self.started, self.ended
         return EpisodeRecord(
             room=self.room,
@@ -191,6 +169,7 @@ class EpisodeAccumulator:
         )
 
     def cadence(self) -> CadenceRecord:
+        """Return the record `mart.cadence`."""
         return self._clock.cadence(
             missing_ticks=self.missing_ticks,
             waited_s=float(sum(self._waited_s.values())),
@@ -202,6 +181,8 @@ class EpisodeAccumulator:
         )
 
     def operators(self, facts: RoomFacts) -> OperatorsRecord:
+        """Return the record `mart.operators`; names are those that the room has told."""
+
         def shift(tick: int, epoch: int, arm: ArmState) -> Shift:
             name = facts.names.get((arm.arm, epoch), "")
             return Shift(episode_tick=tick, operator=operator_word(arm.source), name=name)
@@ -216,12 +197,24 @@ class EpisodeAccumulator:
             shifts.append((state.episode_tick, arm.seat_epoch, arm))
 
 
+def _ending_of(last: State, started: Event.EpisodeStarted | None) -> EpisodeEnding | None:
+    """Return the ending that a last state implies: a room ends an episode at the tick on which its task is decided."""
+    if last.progress.success:
+        return EpisodeEnding(OUTCOME_SUCCESS, "the task is done", last.tick)
+    if last.progress.failed:
+        return EpisodeEnding(OUTCOME_FAILURE, last.progress.failed, last.tick)
+    limit_ticks = round(started.time_limit_s * started.control_hz) if started is not None else 0
+    if limit_ticks and last.episode_tick >= limit_ticks:
+        return EpisodeEnding(OUTCOME_FAILURE, "time is up", last.tick)
+    return None
+
+
 def _is_usable(latency: Event.Latency) -> bool:
     return bool(np.isfinite([latency.p50_ms, latency.p95_ms]).all())
 
 
 class _TickClock:
-    """When ticks fired. The first state of an episode is a reset and no tick, so it does not count."""
+    """Keep when ticks fired. The first state of an episode is a reset and no tick, so it does not count."""
 
     def __init__(self) -> None:
         self._fired_ns = array("Q")

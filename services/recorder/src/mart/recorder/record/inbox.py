@@ -1,4 +1,4 @@
-"""From the bus into one inbox. Bus handlers only stamp and hand over; the writer's thread does the rest.
+"""Bring everything from the bus into one inbox: handlers only stamp and hand over, the writer's thread does the rest.
 
 Video travels on a Zenoh session of its own, so that it never delays a state. When the writer cannot keep up, frames are
 left out first; states, commands and events only once there is really no room, and then it is said.
@@ -21,6 +21,8 @@ _OVERHEAD_BYTES = 512  # of an arrival, besides its payload
 
 
 class ArrivalKind(Enum):
+    """Name what arrived, by the key it came under."""
+
     STATE = auto()
     STATUS = auto()
     EVENT = auto()
@@ -30,6 +32,8 @@ class ArrivalKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class BusArrival:
+    """Hold one message as it came from the bus, and when."""
+
     kind: ArrivalKind
     key: str
     payload: bytes
@@ -37,16 +41,18 @@ class BusArrival:
 
     @property
     def room(self) -> str:
+        """The room that the key names."""
         return keys.room_of(self.key)
 
     @property
     def size(self) -> int:
+        """How many bytes it takes in the inbox."""
         return len(self.payload) + _OVERHEAD_BYTES
 
 
 @dataclass(frozen=True)
 class InboxBatch:
-    """What has arrived, in order, and what of the room in question had to be left out since the last batch."""
+    """Hold what has arrived, in order, and how much had to be left out since the last batch."""
 
     arrivals: list[BusArrival]
     lost_frames: int = 0
@@ -54,7 +60,7 @@ class InboxBatch:
 
 
 class Inbox:
-    """A bounded queue that never makes a bus handler wait."""
+    """Queue arrivals without ever making a bus handler wait; what does not fit is left out and counted."""
 
     def __init__(self, video_bytes: int = MAX_VIDEO_BYTES, other_bytes: int = MAX_OTHER_BYTES) -> None:
         self._limits = {True: video_bytes, False: other_bytes}
@@ -64,6 +70,7 @@ class Inbox:
         self._changed = threading.Condition()
 
     def offer(self, arrival: BusArrival) -> None:
+        """Put one in, or count it as lost where there is no room."""
         video = arrival.kind is ArrivalKind.VIDEO
         with self._changed:
             if self._held[video] + arrival.size > self._limits[video]:
@@ -74,7 +81,7 @@ class Inbox:
             self._changed.notify()
 
     def take(self, timeout_s: float) -> InboxBatch:
-        """Everything that has arrived; waits for something at most `timeout_s`."""
+        """Take everything that has arrived; wait for something at most `timeout_s`."""
         with self._changed:
             if not self._arrivals:
                 self._changed.wait(timeout_s)
@@ -86,7 +93,7 @@ class Inbox:
 
 
 class RoomSubscriptions:
-    """Subscriptions of every room, for as long as it is open."""
+    """Put what every room sends into an inbox, until closed."""
 
     def __init__(self, bus: Bus, video_bus: Bus, inbox: Inbox) -> None:
         def into(kind: ArrivalKind) -> Callable[[Sample], None]:
@@ -101,5 +108,6 @@ class RoomSubscriptions:
         ]
 
     def close(self) -> None:
+        """End the subscriptions."""
         while self._subscriptions:
             self._subscriptions.pop().close()

@@ -1,4 +1,4 @@
-"""The compiled model of each room, asked of its sim once."""
+"""Ask each room's sim for its compiled model, once."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _TIMEOUT_S = 10.0
 
 
 class RoomModels:
-    """Safe to use from several threads. A room's model belongs to one run of its sim, told by `boot`."""
+    """Keep the models of rooms, each of one run of a room's sim, told by `boot`. Safe for several threads."""
 
     def __init__(self, bus: Bus) -> None:
         self._bus = bus
@@ -26,11 +26,12 @@ class RoomModels:
         self._lock = threading.Lock()
 
     def known(self, room: str, boot: int) -> Model | None:
+        """Return the model, if it has been fetched."""
         with self._lock:
             return self._held.get((room, boot))
 
     def fetch(self, room: str, boot: int) -> Model | None:
-        """Asks the room's sim unless the model is known; None, and a line in the log, where that fails."""
+        """Return the model, asking the room's sim unless it is known; None, and a line in the log, where that fails."""
         known = self.known(room, boot)
         if known is not None:
             return known

@@ -1,11 +1,12 @@
-"""When an episode's file begins and ends. Pure: decoded messages and `now` in, what to do to files out.
+"""Decide when an episode's file begins and ends. Pure: decoded messages and `now` in, what to do to files out.
 
     idle ── a state with an episode's number ──► recording ── outcome and last state, or none to come ──► idle
 
-States overtake events on the wire (they have the higher priority), so an outcome is awaited for a moment after the
-last state, and the last state for a moment after the outcome. What arrived just before the first state belongs to the
-episode as well: the commands that its first tick will use, its own announcement, and the video since the last key
-frame, without which the first pictures could not be decoded.
+An episode is over when its outcome has been said, by an event or by the room's status, when the room has gone on, or
+when it is silent. States overtake events on the wire (they have the higher priority), so an outcome is awaited for a
+moment after the last state, and the last state for a moment after the outcome. What arrived just before the first state
+belongs to the episode as well: the commands that its first tick will use, its own announcement, and the video since the
+last key frame, without which the first pictures could not be decoded.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
 from mart.episodes.mcap_entries import McapEntry, command_entry, event_entry, state_entries, video_entry
 from mart.protocol.messages import Command, Event, RoomStatus, State
-from mart.recorder.record.episode_accumulator import EpisodeAccumulator, RoomFacts
+from mart.recorder.record.episode_accumulator import EpisodeAccumulator
+from mart.recorder.record.room_facts import RoomFacts
 
 GRACE_S = 1.0  # how long a missing outcome or last state is awaited
 LINGER_S = 0.25  # the last tick's picture arrives after its state
@@ -28,11 +30,15 @@ _MAX_CAMERAS = 16
 
 @dataclass(frozen=True)
 class OpenFile:
+    """Ask for a file for an episode that begins."""
+
     episode: EpisodeAccumulator
 
 
 @dataclass(frozen=True)
 class CloseFile:
+    """Ask for the file of an episode that is over to be completed."""
+
     episode: EpisodeAccumulator
 
 
@@ -41,7 +47,7 @@ FileAction = OpenFile | McapEntry | CloseFile
 
 @dataclass
 class _Pictures:
-    """The newest key frame of one camera and what follows it."""
+    """Keep the newest key frame of one camera and what follows it."""
 
     entries: list[McapEntry] = field(default_factory=list)
     size: int = 0
@@ -55,6 +61,8 @@ class _Pictures:
 
 
 class RoomTracker:
+    """Follow one room. Each method takes what has arrived and returns what to do to files, in this order."""
+
     def __init__(self, room: str) -> None:
         self.facts = RoomFacts(room)
         self.episode: EpisodeAccumulator | None = None
@@ -67,6 +75,7 @@ class RoomTracker:
         self._close_at_s: float | None = None
 
     def state(self, state: State, payload: bytes, arrived_ns: int, now_s: float) -> list[FileAction]:
+        """Take a state: the first of an episode opens a file, news goes into it."""
         self._heard_s = now_s
         actions = self._leave(state, now_s)
         if self.episode is None:
@@ -77,6 +86,7 @@ class RoomTracker:
         return actions
 
     def event(self, event: Event, payload: bytes, arrived_ns: int, now_s: float) -> list[FileAction]:
+        """Take an event."""
         self.facts.learn_event(event)
         entry = event_entry(event, payload, arrived_ns)
         if event.HasField("episode_started"):
@@ -88,15 +98,22 @@ class RoomTracker:
         return [entry]
 
     def status(self, status: RoomStatus, now_s: float) -> list[FileAction]:
+        """Take a status, which is repeated: where an event was lost, it still says that an episode is over, and how."""
         self._heard_s = now_s
         self._status = status
         self.facts.learn_status(status)
         if self.episode is None:
             return []
+        if status.boot != self.episode.boot:
+            return self._close("the sim restarted")
         self.episode.add_status(status)
-        return self._close("the sim restarted") if status.boot != self.episode.boot else []
+        self._settle(now_s)
+        if self.episode.is_past(status):
+            self._close_no_later_than(now_s + GRACE_S)
+        return []
 
     def command(self, arm: str, command: Command, payload: bytes, arrived_ns: int) -> list[FileAction]:
+        """Take a command for an arm; the newest one before an episode belongs to it."""
         entry = command_entry(arm, command, payload, arrived_ns)
         if self.episode is not None:
             return [entry]
@@ -104,19 +121,20 @@ class RoomTracker:
         return []
 
     def video(self, camera: str, video: CompressedVideo, payload: bytes, arrived_ns: int) -> list[FileAction]:
+        """Take an encoded picture of a camera; those since the last key frame before an episode belong to it."""
         entry = video_entry(camera, video, payload, arrived_ns)
         if camera in self._pictures or len(self._pictures) < _MAX_CAMERAS:
             self._pictures.setdefault(camera, _Pictures()).add(entry, has_key_frame(video.data))
         return [entry] if self.episode is not None else []
 
     def lost(self, messages: int, frames: int) -> None:
-        """The recorder could not keep up with that many."""
+        """Note that the recorder could not keep up with that many."""
         if self.episode is not None:
             self.episode.messages_lost += messages
             self.episode.video_dropped += frames
 
     def advance(self, now_s: float) -> list[FileAction]:
-        """Time has passed."""
+        """Take note that time has passed."""
         if self._close_at_s is not None and now_s >= self._close_at_s:
             return self._close("its outcome was never said")
         if self.episode is not None and now_s - self._heard_s > SILENCE_S:
@@ -124,11 +142,11 @@ class RoomTracker:
         return []
 
     def finish(self, reason: str) -> list[FileAction]:
-        """Ends the recording now, if there is one."""
+        """End the recording now, if there is one."""
         return self._close(reason)
 
     def abandon(self) -> None:
-        """Nothing more of this episode is wanted; the next one is recorded again."""
+        """Leave this episode alone from now on; the next one is recorded again."""
         self._over, self.episode, self._close_at_s = self.episode, None, None
 
     def _enter(self, state: State, arrived_ns: int) -> list[FileAction]:
@@ -171,14 +189,14 @@ class RoomTracker:
         if self.episode is None:
             return []
         closed, self.episode, self._close_at_s = self.episode, None, None
-        closed.unfinished_reason = reason
+        closed.conclude(unfinished_reason=reason)
         if closed.ended is not None:
             self._over = closed
         return [CloseFile(closed)]
 
 
 def has_key_frame(annex_b: bytes) -> bool:
-    """Whether H.264 data in Annex B form (ITU-T H.264, table 7-1) holds a sequence parameter set or an IDR slice."""
+    """Tell whether H.264 in Annex B form (ITU-T H.264, table 7-1) holds a sequence parameter set or an IDR slice."""
     at = annex_b.find(b"\x00\x00\x01")
     while 0 <= at < len(annex_b) - 3:
         if annex_b[at + 3] & 0x1F in (5, 7):

@@ -1,4 +1,4 @@
-"""Episode files from what a crash has left: every intact message is kept, nothing is invented.
+"""Make episode files of what a crash has left: every intact message is kept, nothing is invented.
 
 A `.part` ends anywhere, and a power cut or a bad disk may have spoilt bytes before that. Records are read one by one;
 where one does not hold together, the next intact chunk is searched. Memory stays at one record, whatever the file.
@@ -26,8 +26,9 @@ from mart.protocol import codec
 from mart.protocol.errors import Corrupt, MartError
 from mart.protocol.messages import Command, Event, Model, State
 from mart.protocol.recording import MODEL_ATTACHMENT, PART_SUFFIX, RoomRecord
-from mart.recorder.record.episode_accumulator import EpisodeAccumulator, RoomFacts
-from mart.recorder.record.finalize import SavedEpisode, Verify, finalize, free_path
+from mart.recorder.record.episode_accumulator import EpisodeAccumulator
+from mart.recorder.record.finalize import SavedEpisode, VerifyFile, finalize, free_path
+from mart.recorder.record.room_facts import RoomFacts
 from mart.recorder.repair.salvage import Salvage, SalvagedMessage
 
 _log = logging.getLogger(__name__)
@@ -43,15 +44,15 @@ _KEPT: dict[str, type[Message]] = {
 
 @dataclass(frozen=True)
 class RepairResult:
-    """What became of one leftover: an episode, or the reason why there is none."""
+    """Tell what became of one leftover: an episode, or the reason why there is none."""
 
     part: Path
     saved: SavedEpisode | None
     detail: str
 
 
-def repair_all(root: Path, verify: Verify) -> Iterator[RepairResult]:
-    """Repairs every leftover under `root`. Files that a recorder is writing are locked, and left alone."""
+def repair_all(root: Path, verify: VerifyFile) -> Iterator[RepairResult]:
+    """Repair every leftover under `root`. Files that a recorder is writing are locked, and left alone."""
     for stale in root.rglob(f"*{_MENDING_SUFFIX}"):
         with _exclusive(stale) as free:
             if free:
@@ -62,7 +63,7 @@ def repair_all(root: Path, verify: Verify) -> Iterator[RepairResult]:
                 yield _repair(part, root, verify)
 
 
-def _repair(part: Path, root: Path, verify: Verify) -> RepairResult:
+def _repair(part: Path, root: Path, verify: VerifyFile) -> RepairResult:
     try:
         return _adopt(part, root) or _mend(part, root, verify)
     except (MartError, OSError) as error:
@@ -70,7 +71,7 @@ def _repair(part: Path, root: Path, verify: Verify) -> RepairResult:
 
 
 def _adopt(part: Path, root: Path) -> RepairResult | None:
-    """A file that was complete and only lacked its name."""
+    """Name a file that was complete and only lacked its name; None for any other."""
     try:
         file = EpisodeFile.open(part)
         file.check()
@@ -83,7 +84,7 @@ def _adopt(part: Path, root: Path) -> RepairResult | None:
     return RepairResult(part, saved, "It was complete and only lacked its name.")
 
 
-def _mend(part: Path, root: Path, verify: Verify) -> RepairResult:
+def _mend(part: Path, root: Path, verify: VerifyFile) -> RepairResult:
     mending = part.with_name(part.name.removesuffix(PART_SUFFIX) + _MENDING_SUFFIX)
     file = EpisodeWriter(mending)
     try:
@@ -93,6 +94,7 @@ def _mend(part: Path, root: Path, verify: Verify) -> RepairResult:
             mended.add(found)
         if mended.episode is None:
             return _give_up(part, file)
+        mended.episode.conclude(unfinished_reason="the recording was cut short")
         saved = finalize(file, mended.episode, mended.facts, root, verify, repaired=True)
     except BaseException:
         file.abandon()
@@ -112,7 +114,7 @@ def _give_up(part: Path, file: EpisodeWriter) -> RepairResult:
 
 
 class _Mended:
-    """Copies what was found into a new file and folds it into an episode."""
+    """Copy what was found into a new file and gather what the episode was."""
 
     def __init__(self, file: EpisodeWriter) -> None:
         self.episode: EpisodeAccumulator | None = None
@@ -151,7 +153,6 @@ class _Mended:
         if self.episode is None:
             self.facts.room = state.room
             self.episode = EpisodeAccumulator(state)
-            self.episode.unfinished_reason = "the recording was cut short"
             for event in self._early:
                 self.episode.add_event(event)
         self.episode.add_state(state)
@@ -168,7 +169,7 @@ class _Mended:
 
 @contextmanager
 def _exclusive(path: Path) -> Iterator[bool]:
-    """Whether nobody is writing this file; if so, nobody else repairs it meanwhile."""
+    """Tell whether nobody is writing this file; if so, nobody else repairs it meanwhile."""
     with ExitStack() as stack:
         try:
             file = stack.enter_context(path.open("rb"))
@@ -181,7 +182,7 @@ def _exclusive(path: Path) -> Iterator[bool]:
 
 
 def log_repairs(repairs: Iterator[RepairResult]) -> Iterator[SavedEpisode]:
-    """Says what was done, passes on what was saved."""
+    """Log what was done and pass on what was saved."""
     for repaired in repairs:
         if repaired.saved is None:
             _log.error("%s could not be repaired. %s", repaired.part, repaired.detail)

@@ -1,4 +1,4 @@
-"""Walks a damaged MCAP file and finds what is intact in it."""
+"""Walk a damaged MCAP file and find what is intact in it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _BYTES_BEFORE_MARK = RECORD_HEADER_BYTES + 8 + 8 + 8 + 4
 
 @dataclass(frozen=True)
 class SalvagedMessage:
-    """One intact message. `schema` is a full protobuf name."""
+    """Hold one intact message. schema: a full protobuf name."""
 
     topic: str
     schema: str
@@ -32,7 +32,10 @@ class SalvagedMessage:
 
 
 class Salvage:
-    """Counts what had to be left out: `damaged` places, and `orphans`, messages whose channel's description is lost."""
+    """Find what is intact in one file.
+
+    damaged: how many places had to be left out. orphans: messages whose channel's description is lost.
+    """
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -42,7 +45,7 @@ class Salvage:
         self._schemas: dict[int, Schema] = {}
 
     def found(self) -> Iterator[SalvagedMessage | Attachment | Metadata]:
-        """What is intact, in the order of the file."""
+        """Iterate over what is intact, in the order of the file."""
         with BoundedFile(self.path) as file:
             at: int | None = MAGIC_SIZE
             while at is not None:
@@ -53,7 +56,7 @@ class Salvage:
     def _run(
         self, file: BoundedFile, at: int
     ) -> Generator[SalvagedMessage | Attachment | Metadata, None, int | None]:
-        """Reads on until a record does not hold together; returns where, or None at the end of the file."""
+        """Read on until a record does not hold together; return where, or None at the end of the file."""
         found = records(file, at)
         while True:
             try:
@@ -101,7 +104,7 @@ def _found(channel: Channel, schema: Schema, message: Message) -> SalvagedMessag
 
 
 def _holds_together(file: BoundedFile, at: int, record: McapRecord) -> bool:
-    """What was read from `at` on is as long as its header says and as its content takes.
+    """Tell whether what was read from `at` on is as long as its header says and as its content takes.
 
     A length inside the content can be spoilt too: the reader follows it, whatever the header says.
     """
@@ -110,7 +113,7 @@ def _holds_together(file: BoundedFile, at: int, record: McapRecord) -> bool:
 
 
 def _next_chunk(file: BoundedFile, start: int) -> int | None:
-    """Where the next thing that looks like a chunk begins, at or after `start`."""
+    """Return where the next thing that looks like a chunk begins, at or after `start`."""
     if start >= file.size:
         return None
     with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as view:

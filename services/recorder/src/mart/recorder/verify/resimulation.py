@@ -1,4 +1,4 @@
-"""Whether a file's ticks follow from each other: re-simulated by a replica, compared bit for bit.
+"""Tell whether a file's ticks follow from each other: re-simulated by a replica, compared bit for bit.
 
 From the first state on, the applied actions of each tick are stepped again in the same world, and a digest of every
 integration state is compared with the recorded one. A stretch ends where ticks are missing, and after `_STRETCH_TICKS`,
@@ -14,7 +14,8 @@ from hashlib import blake2b
 import numpy as np
 
 from mart.episodes.reader import EpisodeFile
-from mart.protocol import codec, keys, recording
+from mart.protocol import codec, keys
+from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Corrupt, MartError, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest, State, raise_error
 from mart.protocol.recording import RoomRecord, VerificationRecord
@@ -22,7 +23,6 @@ from mart.protocol.vocabulary import ServiceKind, Verdict
 from mart.runtime.bus import Bus
 
 DIGEST_BYTES = 16
-ACTION_SIZE = 7
 _STRETCH_TICKS = 2000
 _TIMEOUT_S = 20.0
 _TIMEOUT_PER_TICK_S = 0.02
@@ -32,7 +32,7 @@ Resimulate = Callable[[RolloutRequest.Resimulate], bytes]
 
 @dataclass
 class Stretch:
-    """Ticks without a gap: where they begin and what each one applied and led to."""
+    """Hold ticks without a gap: where they begin and what each one applied and led to."""
 
     first_tick: int
     first_state: bytes
@@ -42,14 +42,16 @@ class Stretch:
 
     @property
     def last_tick(self) -> int:
+        """The tick of the last state that was added."""
         return self.first_tick + len(self.digests)
 
     def add(self, state: State) -> None:
+        """Add the state that follows."""
         self.actions.append([number for arm in state.arms for number in arm.action])
         self.digests.append(blake2b(state.integration_state, digest_size=DIGEST_BYTES).digest())
 
     def request(self, room: RoomRecord) -> RolloutRequest.Resimulate:
-        """Raises Corrupt where an action is not of seven finite numbers an arm."""
+        """Return what a replica is asked. Raises Corrupt where an action is not of seven finite numbers an arm."""
         shape = (len(self.actions), len(self.arms), ACTION_SIZE)
         if {len(action) for action in self.actions} - {ACTION_SIZE * len(self.arms)}:
             raise Corrupt(
@@ -69,7 +71,7 @@ class Stretch:
 
 
 def stretches(states: Iterator[State], most_ticks: int = _STRETCH_TICKS) -> Iterator[Stretch]:
-    """Cuts an episode's states where ticks are missing and where a stretch gets longer than `most_ticks`."""
+    """Cut an episode's states where ticks are missing and where a stretch gets longer than `most_ticks`."""
     current: Stretch | None = None
     previous: State | None = None
     for state in states:
@@ -93,7 +95,7 @@ def _begin(state: State) -> Stretch:
 
 
 def verify(file: EpisodeFile, room: RoomRecord, resimulate: Resimulate) -> VerificationRecord:
-    """Never raises for what it finds: a doubt is a verdict."""
+    """Step a file again and return the verdict. Never raises for what it finds: a doubt is a verdict."""
     try:
         verdict, detail = _judge(file, room, resimulate)
     except MartError as error:
@@ -105,7 +107,7 @@ def verify(file: EpisodeFile, room: RoomRecord, resimulate: Resimulate) -> Verif
 
 @dataclass(frozen=True)
 class ComparedStretch:
-    """One stretch, stepped again: which of its ticks led elsewhere."""
+    """Tell of one stretch that was stepped again which of its ticks led elsewhere."""
 
     first_tick: int
     last_tick: int
@@ -113,13 +115,12 @@ class ComparedStretch:
 
 
 def compare(file: EpisodeFile, room: RoomRecord, resimulate: Resimulate) -> Iterator[ComparedStretch]:
-    """Every stretch of a file. Raises Corrupt, or what the replica says where it cannot answer."""
+    """Step every stretch of a file again. Raises Corrupt, or what the replica says where it cannot answer."""
     if not (room.task and room.control_hz and room.model_sha256):
         raise Corrupt(
             f"{file.path} does not say its task, its rate and its model; it cannot be stepped again."
         )
-    states = (codec.decode(State, message.payload) for message in file.messages(recording.STATE))
-    for stretch in stretches(states):
+    for stretch in stretches(file.states()):
         answered = resimulate(stretch.request(room)) if stretch.digests else b""
         if len(answered) != DIGEST_BYTES * len(stretch.digests):
             raise Corrupt(f"The replica answered {len(answered)} bytes for {len(stretch.digests)} ticks.")
@@ -150,7 +151,7 @@ def _judge(file: EpisodeFile, room: RoomRecord, resimulate: Resimulate) -> tuple
 
 
 def replica(bus: Bus, name: str) -> Resimulate:
-    """Asks the replica called `name`. Raises Unavailable at once where there is none, or where it does not answer."""
+    """Ask the replica called `name`. Raises Unavailable, at once where there is none, or where it does not answer."""
 
     def resimulate(request: RolloutRequest.Resimulate) -> bytes:
         if not bus.alive(keys.alive(ServiceKind.REPLICA, name)):
@@ -166,7 +167,7 @@ def replica(bus: Bus, name: str) -> Resimulate:
 
 
 def nobody(why: MartError) -> Resimulate:
-    """Stands in where no replica can be asked, and says why."""
+    """Stand in where no replica can be asked: the function raises why."""
 
     def resimulate(_request: RolloutRequest.Resimulate) -> bytes:
         raise why
