@@ -25,7 +25,7 @@ from mart.recorder.export.robomimic import key_of, write_robomimic
 from mart.recorder.export.selection import choose, read_data
 from mart.sim.world import World
 from mart.trainer.data.episode import from_states as as_the_trainer
-from mart.trainer.data.layout import Layout
+from mart.trainer.data.layout import ObservationLayout
 from tests.trainer import recorded
 
 TASK = get_task(recorded.TASK)
@@ -100,7 +100,7 @@ def assert_holds(demo: h5py.Group, states: list[State]) -> None:
 
 
 def test_observation_and_action_stand_side_by_side_as_in_training(source: Source) -> None:
-    layout = Layout.of(TASK)
+    layout = ObservationLayout.of(TASK)
     for states in source.episodes:
         ours, trainers = arrays_for_task(states, TASK), as_the_trainer(layout, states)
         np.testing.assert_array_equal(ours.actions.astype(np.float32), trainers.actions)

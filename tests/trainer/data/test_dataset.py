@@ -12,9 +12,9 @@ from mart.episodes import labels
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_SCRIPT, OUTCOME_FAILURE, Operator, State
 from mart.protocol.vocabulary import Verdict
+from mart.trainer.data.data_spec import Selection
 from mart.trainer.data.dataset import Dataset, load_dataset
 from mart.trainer.data.episode import from_states
-from mart.trainer.request import Selection
 from tests.trainer import recorded
 from tests.trainer.conftest import Recorded
 

@@ -8,6 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+_TAIL_BYTES = 4096
+
 
 def append_json_line(path: Path, row: Mapping[str, Any]) -> None:
     """Append `row` as one line, synced to the disk; a torn line before it is ended, a missing folder made."""
@@ -36,6 +38,16 @@ def read_json_lines(path: Path) -> Iterator[tuple[int, dict[str, Any] | None]]:
         for number, line in enumerate(file, start=1):
             if line.strip():
                 yield number, _object(line)
+
+
+def read_last_json_line(path: Path) -> dict[str, Any] | None:
+    """Return the last line that is one JSON object, of the file's last 4,096 bytes; None where there is none."""
+    if not path.exists():
+        return None
+    with path.open("rb") as file:
+        file.seek(max(0, file.seek(0, os.SEEK_END) - _TAIL_BYTES))
+        lines = file.read().split(b"\n")
+    return next((row for line in reversed(lines) if (row := _object(line)) is not None), None)
 
 
 def _object(line: bytes) -> dict[str, Any] | None:

@@ -14,16 +14,16 @@ from pydantic import BaseModel, ConfigDict
 
 from mart.protocol.errors import InvalidInput
 from mart.trainer.data.cache import read_cached, sha256_of
+from mart.trainer.data.data_spec import DataSetName, Selection
 from mart.trainer.data.episode import EpisodeArrays
-from mart.trainer.data.layout import Layout
-from mart.trainer.data.named import NamedData, account
-from mart.trainer.data.select import Candidate, candidates, select
-from mart.trainer.request import DataSetName, Selection
+from mart.trainer.data.layout import ObservationLayout
+from mart.trainer.data.named_dataset import NamedData, account
+from mart.trainer.data.selection import Candidate, candidates, select
 
 S = TypeVar("S", bound=np.generic)
 
 
-class Used(BaseModel):
+class UsedEpisode(BaseModel):
     """One episode that was learned from."""
 
     model_config = ConfigDict(frozen=True)
@@ -36,7 +36,7 @@ class Used(BaseModel):
     operators: tuple[str, ...]
 
 
-class Digest(BaseModel):
+class DataDigest(BaseModel):
     """What a training learned from; `sha256` is over the files' hashes in their order."""
 
     model_config = ConfigDict(frozen=True)
@@ -45,7 +45,7 @@ class Digest(BaseModel):
     control_hz: float
     arms: tuple[str, ...]
     selection: Selection
-    episodes: tuple[Used, ...]
+    episodes: tuple[UsedEpisode, ...]
     ticks: int
     sha256: str
     dataset: NamedData | None = None
@@ -59,8 +59,8 @@ class Dataset:
     ends: int64[rows], the row of the last state of the same episode.
     """
 
-    digest: Digest
-    layout: Layout
+    digest: DataDigest
+    layout: ObservationLayout
     observations: NDArray[np.float32]
     actions: NDArray[np.float32]
     sources: NDArray[np.int8]
@@ -93,12 +93,12 @@ def load_dataset(
         )
     chosen = select(found, selection)
     task, rate, arms = _facts(chosen[0])
-    layout = Layout.of_arms(task, len(arms))
+    layout = ObservationLayout.of_arms(task, len(arms))
     hashes = [sha256_of(one.path) for one in chosen]
     episodes = [
         read_cached(one.file, layout, sha256, cache) for one, sha256 in zip(chosen, hashes, strict=True)
     ]
-    digest = Digest(
+    digest = DataDigest(
         task=task,
         control_hz=rate,
         arms=arms,
@@ -111,7 +111,7 @@ def load_dataset(
     return join(digest, layout, episodes)
 
 
-def join(digest: Digest, layout: Layout, episodes: Iterable[EpisodeArrays]) -> Dataset:
+def join(digest: DataDigest, layout: ObservationLayout, episodes: Iterable[EpisodeArrays]) -> Dataset:
     """The episodes as one; each gets a row without action at its end."""
     listed = list(episodes)
     lengths = np.array([len(episode.observations) for episode in listed])
@@ -132,8 +132,8 @@ def _facts(first: Candidate) -> tuple[str, float, tuple[str, ...]]:
     return episode.task, episode.control_hz, episode.arms
 
 
-def _used(one: Candidate, sha256: str, episode: EpisodeArrays) -> Used:
-    return Used(
+def _used(one: Candidate, sha256: str, episode: EpisodeArrays) -> UsedEpisode:
+    return UsedEpisode(
         path=str(one.path),
         sha256=sha256,
         ticks=len(episode.actions),

@@ -18,7 +18,7 @@ from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import ArmState, State
 from mart.protocol.recording import STATE
-from mart.trainer.data.layout import Layout
+from mart.trainer.data.layout import ObservationLayout
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class EpisodeArrays:
     sources: NDArray[np.int8]
 
 
-def read_episode(file: EpisodeFile, layout: Layout) -> EpisodeArrays:
+def read_episode(file: EpisodeFile, layout: ObservationLayout) -> EpisodeArrays:
     """Raises Corrupt where the file is damaged and InvalidInput, naming it, where it cannot be learned from."""
     try:
         return from_states(layout, [codec.decode(State, one.payload) for one in file.messages(STATE)])
@@ -43,7 +43,7 @@ def read_episode(file: EpisodeFile, layout: Layout) -> EpisodeArrays:
         raise InvalidInput(f"{file.path} cannot be learned from: {error}") from error
 
 
-def from_states(layout: Layout, states: Sequence[State]) -> EpisodeArrays:
+def from_states(layout: ObservationLayout, states: Sequence[State]) -> EpisodeArrays:
     """The states of one episode in their order, the one after the reset first."""
     if len(states) < 2:
         raise InvalidInput(f"it has {len(states)} states, and at least 2 are needed.")
@@ -59,22 +59,22 @@ def from_states(layout: Layout, states: Sequence[State]) -> EpisodeArrays:
     )
 
 
-def _observations(layout: Layout, states: Sequence[State]) -> dict[str, NDArray[np.float64]]:
+def _observations(layout: ObservationLayout, states: Sequence[State]) -> dict[str, NDArray[np.float64]]:
     """By name, each [states, *shape]."""
     named = [{seen.name: seen.value for seen in state.observations} for state in states]
-    missing = [seen.name for seen in layout.seen if any(seen.name not in state for state in named)]
+    missing = [field.name for field in layout.fields if any(field.name not in state for state in named)]
     if missing:
         raise InvalidInput(f"the observation {missing[0]} is missing; it must be in every state.")
     try:
         return {
-            seen.name: np.array([state[seen.name] for state in named]).reshape(-1, *seen.shape)
-            for seen in layout.seen
+            field.name: np.array([state[field.name] for state in named]).reshape(-1, *field.shape)
+            for field in layout.fields
         }
     except ValueError as error:
         raise InvalidInput("an observation has another shape than the task catalogue says.") from error
 
 
-def _arms(layout: Layout, state: State) -> list[ArmState]:
+def _arms(layout: ObservationLayout, state: State) -> list[ArmState]:
     """In the task's order."""
     arms = {arm.arm: arm for arm in state.arms}
     if tuple(sorted(arms)) != tuple(sorted(layout.arms)):

@@ -19,11 +19,11 @@ from mart.protocol.messages import State
 from mart.protocol.recording import STATE
 from mart.protocol.tasks import Arm, Task, get_task
 from mart.trainer.data.episode import from_states
-from mart.trainer.data.layout import Layout
-from mart.trainer.report.dependence import BINS, MIN_EPISODES, Dependence, Recorded, dependence
+from mart.trainer.data.layout import ObservationLayout
+from mart.trainer.report.dependence import BINS, MIN_EPISODES, Dependence, ObservedEpisode, dependence
 
 if TYPE_CHECKING:
-    from mart.trainer.policies.policy import Policy
+    from mart.trainer.models.policies.policy import Policy
 
 Array = NDArray[np.float64]
 _POLICY_SEED = 0
@@ -86,7 +86,7 @@ def read_couplings(folder: Path, policies: Sequence[Policy] = ()) -> list[Coupli
 
 
 def _coupling(task: Task, episodes: Sequence[Sequence[State]], policy: Policy | None) -> Coupling:
-    layout = Layout.of(task)
+    layout = ObservationLayout.of(task)
     recorded = [_recorded(layout, states) for states in episodes]
     return Coupling(
         task=task,
@@ -106,9 +106,9 @@ def _states(path: Path) -> list[State]:
     return [codec.decode(State, message.payload) for message in EpisodeFile.open(path).messages(STATE)]
 
 
-def _recorded(layout: Layout, states: Sequence[State]) -> Recorded:
+def _recorded(layout: ObservationLayout, states: Sequence[State]) -> ObservedEpisode:
     arrays = from_states(layout, states)
-    return Recorded(arrays.observations[:-1].astype(np.float64), arrays.actions.astype(np.float64))
+    return ObservedEpisode(arrays.observations[:-1].astype(np.float64), arrays.actions.astype(np.float64))
 
 
 def _reached(task: Task, episodes: Sequence[Sequence[State]]) -> list[tuple[str, float, bool]]:
