@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
+from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import InvalidInput
 from mart.trainer.data.cache import read_cached, sha256_of
 from mart.trainer.data.data_spec import DataSetName, Selection
 from mart.trainer.data.episode import EpisodeArrays
 from mart.trainer.data.layout import ObservationLayout
 from mart.trainer.data.named_dataset import NamedData, account
-from mart.trainer.data.selection import Candidate, candidates, select
+from mart.trainer.data.selection import candidates, select
 
 S = TypeVar("S", bound=np.generic)
 
@@ -94,9 +95,9 @@ def load_dataset(
     chosen = select(found, selection)
     task, rate, arms = _facts(chosen[0])
     layout = ObservationLayout.of_arms(task, len(arms))
-    hashes = [sha256_of(one.path) for one in chosen]
+    hashes = [sha256_of(one.file_path) for one in chosen]
     episodes = [
-        read_cached(one.file, layout, sha256, cache) for one, sha256 in zip(chosen, hashes, strict=True)
+        read_cached(one.open(), layout, sha256, cache) for one, sha256 in zip(chosen, hashes, strict=True)
     ]
     digest = DataDigest(
         task=task,
@@ -125,21 +126,20 @@ def join(digest: DataDigest, layout: ObservationLayout, episodes: Iterable[Episo
     )
 
 
-def _facts(first: Candidate) -> tuple[str, float, tuple[str, ...]]:
-    episode = first.episode
-    if episode.task is None or episode.control_hz is None:
-        raise InvalidInput(f"{first.path} does not say its task and control rate; leave it out.")
-    return episode.task, episode.control_hz, episode.arms
+def _facts(first: LabelledEpisode) -> tuple[str, float, tuple[str, ...]]:
+    if first.task is None or first.control_hz is None:
+        raise InvalidInput(f"{first.file_path} does not say its task and control rate; leave it out.")
+    return first.task, first.control_hz, first.arms
 
 
-def _used(one: Candidate, sha256: str, episode: EpisodeArrays) -> UsedEpisode:
+def _used(one: LabelledEpisode, sha256: str, episode: EpisodeArrays) -> UsedEpisode:
     return UsedEpisode(
-        path=str(one.path),
+        path=str(one.file_path),
         sha256=sha256,
         ticks=len(episode.actions),
         outcome=one.outcome,
         verdict=one.verdict,
-        operators=tuple(sorted({f"{shift.operator} {shift.name}".rstrip() for shift in one.drivers})),
+        operators=tuple(sorted({f"{shift.operator} {shift.name}".rstrip() for shift in one.shifts})),
     )
 
 

@@ -9,9 +9,10 @@ from pathlib import Path
 from pydantic import BaseModel, ConfigDict
 
 from mart.episodes import datasets, labels
+from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.vocabulary import EpisodeOutcome
 from mart.trainer.data.data_spec import DataSetName, Selection
-from mart.trainer.data.selection import Candidate, why_left_out
+from mart.trainer.data.selection import why_left_out
 
 _log = logging.getLogger(__name__)
 
@@ -43,19 +44,19 @@ class NamedData(BaseModel):
 def find_dataset(folder: Path, name: str) -> tuple[DataSetName, tuple[Path, ...]]:
     """The files of a data set in a folder of episodes, there or not. Raises NotFound, naming those that there are."""
     root = folder.resolve()
-    found = datasets.find(labels.fold(labels.read(root)), name)
+    found = datasets.find(labels.read_folded(root), name)
     return DataSetName(name=name, sha256=found.sha256), tuple(root / path for path in found.episodes)
 
 
 def account(
     asked: DataSetName,
     paths: Iterable[Path],
-    found: Iterable[Candidate],
-    chosen: Iterable[Candidate],
+    found: Iterable[LabelledEpisode],
+    chosen: Iterable[LabelledEpisode],
     selection: Selection,
 ) -> NamedData:
     """Says for each of `paths` that is not among the chosen why it is left out, also into the log."""
-    taken, known = {one.path for one in chosen}, {one.path: one for one in found}
+    taken, known = {one.file_path for one in chosen}, {one.file_path: one for one in found}
     resolved = sorted({path.resolve() for path in paths})
     left_out = tuple(
         LeftOut(path=str(path), why=why_left_out(known[path], selection) if path in known else "deleted")

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from google.protobuf.message import Message
-from mcap.well_known import MessageEncoding
-from mcap.writer import CompressionType, Writer
-from mcap_protobuf.schema import register_schema
 from numpy.typing import NDArray
 
+from mart.episodes.mcap_entries import McapEntry
+from mart.episodes.writer import EpisodeWriter
 from mart.protocol import codec
 from mart.protocol.messages import (
     OPERATOR_POLICY,
@@ -26,8 +24,6 @@ from mart.protocol.messages import (
     TickStamps,
 )
 from mart.protocol.recording import (
-    MODEL_ATTACHMENT,
-    PROFILE,
     STATE,
     CadenceRecord,
     EpisodeRecord,
@@ -37,7 +33,7 @@ from mart.protocol.recording import (
     VerificationRecord,
 )
 from mart.protocol.tasks import Task
-from mart.protocol.vocabulary import Verdict
+from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind, Verdict
 
 Array = NDArray[np.float64]
 
@@ -132,49 +128,41 @@ class RolloutEpisode:
                 Subtask(name=subtask.name, done=bool(done))
                 for subtask, done in zip(self.task.subtasks, self.subtasks[tick], strict=True)
             ],
-            success=ended and self.outcome == "success",
-            failed=self.reason if ended and self.outcome == "failure" else "",
+            success=ended and self.outcome == EpisodeOutcome.SUCCESS,
+            failed=self.reason if ended and self.outcome == EpisodeOutcome.FAILURE else "",
         )
 
 
-def write(path: Path, footage: RolloutEpisode, model: Model, started_ns: int) -> None:
-    """An episode file, complete before it has its name. model: of its world."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    half = path.with_name(f".{path.name}.half")
-    writer = Writer(str(half), compression=CompressionType.ZSTD)
-    writer.start(profile=PROFILE)
+def write(path: Path, rollout: RolloutEpisode, model: Model, started_ns: int) -> None:
+    """Write an episode file, complete before it has its name. model: of its world. started_ns: Unix time."""
     room = RoomRecord(
         room=ROOM,
-        task=footage.task.name,
-        control_hz=footage.control_hz,
+        task=rollout.task.name,
+        control_hz=rollout.control_hz,
         model_sha256=model.sha256,
         mujoco_version=model.mujoco_version,
     )
-    writer.add_metadata(room.NAME, room.to_strings())
-    writer.add_attachment(started_ns, started_ns, MODEL_ATTACHMENT, "application/octet-stream", model.mjb)
-    channel = _channel(writer, STATE, State)
-    for tick in range(footage.ticks + 1):
-        state = footage.state(tick, started_ns)
-        stamp = state.stamps.sent_ns
-        writer.add_message(channel, stamp, codec.encode(state), stamp, tick)
-    for record in _records(footage, started_ns):
-        writer.add_metadata(record.NAME, record.to_strings())
-    writer.finish()  # type: ignore[no-untyped-call]
-    half.rename(path)
-
-
-def _channel(writer: Writer, topic: str, schema: type[Message]) -> int:
-    return writer.register_channel(topic, MessageEncoding.Protobuf, register_schema(writer, schema))
+    file = EpisodeWriter(path.with_name(f".{path.name}.half"))
+    file.describe(room)
+    file.attach_model(model, started_ns)
+    for tick in range(rollout.ticks + 1):
+        state = rollout.state(tick, started_ns)
+        stamp_ns = state.stamps.sent_ns
+        file.add(McapEntry(STATE, State, codec.encode(state), stamp_ns, stamp_ns, tick))
+    for record in _records(rollout, started_ns):
+        file.add_record(record.NAME, record.to_strings())
+    file.finish()
+    file.move_to(path)
 
 
 def _records(
-    footage: RolloutEpisode, started_ns: int
+    rollout: RolloutEpisode, started_ns: int
 ) -> tuple[EpisodeRecord | OperatorsRecord | CadenceRecord | VerificationRecord, ...]:
-    shift = Shift(episode_tick=0, operator="policy", name=footage.policy)
-    time_s = footage.ticks / footage.control_hz
+    shift = Shift(episode_tick=0, operator=OperatorKind.POLICY, name=rollout.policy)
+    time_s = rollout.ticks / rollout.control_hz
     return (
-        footage.record(started_ns),
-        OperatorsRecord(shifts=dict.fromkeys(footage.task.arm_names, (shift,))),
+        rollout.record(started_ns),
+        OperatorsRecord(shifts=dict.fromkeys(rollout.task.arm_names, (shift,))),
         CadenceRecord(wall_s=time_s, sim_s=time_s, missing_ticks=0, waited_s=0.0),
         VerificationRecord(verdict=Verdict.UNVERIFIED, detail="stepped by a replica, for an evaluation"),
     )
