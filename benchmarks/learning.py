@@ -22,12 +22,12 @@ from support.robomimic import robomimic_policy
 from mart.protocol.tasks import get_task
 from mart.rollouts.client import RolloutClient
 from mart.trainer.evaluate.replicas import worlds
-from mart.trainer.evaluate.rollouts import play
-from mart.trainer.evaluate.seeds import Purpose, world_seeds
+from mart.trainer.evaluate.rollouts import roll_out
 from mart.trainer.evaluate.statistics import Rate
-from mart.trainer.policies.load import load_policy
-from mart.trainer.policies.policy import Policy
-from mart.trainer.presets import preset
+from mart.trainer.evaluate.world_seeds import Purpose, world_seeds
+from mart.trainer.models.policies.load import load_policy
+from mart.trainer.models.policies.policy import Policy
+from mart.trainer.train.presets import preset
 
 TASK = "two_arm_multi_cube_lifting"
 EPISODES = 100
@@ -102,8 +102,8 @@ def theirs_judged(name: str, file: Path, client: RolloutClient) -> tuple[str, Ra
 
 
 def judged(policies: Sequence[Policy], client: RolloutClient) -> Rate:
-    courses = play(policies, client, world_seeds(Purpose.SCORE, 0, WORLDS), policy_seed=0)
-    played = [course.played.outcome == "success" for of_policy in courses for course in of_policy]
+    courses = roll_out(policies, client, world_seeds(Purpose.SCORE, 0, WORLDS), policy_seed=0)
+    played = [course.result.outcome == "success" for of_policy in courses for course in of_policy]
     return Rate(sum(played), len(played))
 
 

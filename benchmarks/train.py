@@ -27,14 +27,14 @@ import torch
 from report import Bar, report, spread
 from support.robomimic import Updates, robomimic
 
-from mart.trainer.course import Course, stages
+from mart.trainer.data.data_spec import Selection
 from mart.trainer.data.dataset import Dataset, load_dataset
 from mart.trainer.data.windows import Windows
-from mart.trainer.devices import find_device, product_dtype
-from mart.trainer.grid import PAPER, Model
-from mart.trainer.nets.build import Networks, window_shape
-from mart.trainer.presets import preset
-from mart.trainer.request import Selection
+from mart.trainer.models.architecture import PAPER, ModelSpec
+from mart.trainer.models.devices import find_device, product_dtype
+from mart.trainer.models.networks import Networks, window_spec
+from mart.trainer.train.presets import preset
+from mart.trainer.train.training_loop import TrainingLoop, training_phases
 
 TASK = "two_arm_multi_cube_lifting"
 EPISODES = 8
@@ -66,14 +66,14 @@ class Training:
     """One of our models as `mart train` trains it, for some seeds at once; observations as they are."""
 
     def __init__(self, name: str, dataset: Dataset, seeds: Sequence[int], on: str = "cpu") -> None:
-        model, device = Model.parse(name), find_device(on)
+        model, device = ModelSpec.parse(name), find_device(on)
         sizes = preset("paper").model_copy(update={"normalise": False})
         self.dtype = product_dtype(device)
         networks = Networks(model, dataset.layout, sizes, seeds, self.dtype).to(device)
         seen = networks.normaliser(torch.from_numpy(dataset.observations).to(device))
-        windows = Windows(dataset, seen, None, window_shape(model, sizes), device)
-        course = stages(networks, sizes, has_base=False)
-        self._course = Course(networks, windows, course, sizes, seeds=seeds, dtype=self.dtype)
+        windows = Windows(dataset, seen, None, window_spec(model, sizes), device)
+        phases = training_phases(networks, sizes, has_base=False)
+        self._loop = TrainingLoop(networks, windows, phases, sizes, seeds=seeds, dtype=self.dtype)
         self.parameters = sum(weight.numel() for weight in networks.parameters())
         self.windows = windows.count
 
@@ -81,8 +81,8 @@ class Training:
         begun_s = time.perf_counter()
         sums: dict[str, float] = defaultdict(float)
         for _ in range(number):
-            losses = self._course.update()
-            for name, value in (losses.of_models | losses.seen).items():
+            losses = self._loop.update()
+            for name, value in (losses.terms | losses.diagnostics).items():
                 sums[name] += float(value.detach().mean()) / number
         return Block(time.perf_counter() - begun_s, dict(sums))
 

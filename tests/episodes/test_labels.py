@@ -9,15 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mart.episodes import labels
-from mart.episodes.labels import Kind, Label, Labelled
+from mart.episodes.labels import EpisodeLabels, Label, LabelKind
 from mart.protocol.errors import InvalidInput
 
 _notes = st.text(st.characters(exclude_categories=["Cs"]), max_size=50)
 _paths = st.sampled_from(["2026-09-21/a.mcap", "2026-09-21/b.mcap"])
 _label = st.one_of(
-    st.builds(Label, _paths, st.just(Kind.NOTE), _notes, st.integers(0, 2**62)),
-    st.builds(Label, _paths, st.just(Kind.OUTCOME), st.sampled_from(["success", "failure"]), st.just(1)),
-    st.builds(Label, _paths, st.just(Kind.USE), st.sampled_from(["keep", "drop"]), st.just(1)),
+    st.builds(Label, _paths, st.just(LabelKind.NOTE), _notes, st.integers(0, 2**62)),
+    st.builds(Label, _paths, st.just(LabelKind.OUTCOME), st.sampled_from(["success", "failure"]), st.just(1)),
+    st.builds(Label, _paths, st.just(LabelKind.USE), st.sampled_from(["keep", "drop"]), st.just(1)),
 )
 
 
@@ -32,34 +32,68 @@ def test_labels_read_back(tmp_path_factory: pytest.TempPathFactory, said: list[L
 
 def test_the_newest_of_a_kind_holds() -> None:
     said = [
-        Label("a", Kind.OUTCOME, "failure", 1),
-        Label("a", Kind.NOTE, "slipped", 2),
-        Label("a", Kind.OUTCOME, "success", 3),
-        Label("a", Kind.USE, "drop", 4),
-        Label("a", Kind.USE, "keep", 5),
-        Label("b", Kind.USE, "drop", 6),
+        Label("a", LabelKind.OUTCOME, "failure", 1),
+        Label("a", LabelKind.NOTE, "slipped", 2),
+        Label("a", LabelKind.OUTCOME, "success", 3),
+        Label("a", LabelKind.USE, "drop", 4),
+        Label("a", LabelKind.USE, "keep", 5),
+        Label("b", LabelKind.USE, "drop", 6),
     ]
     assert labels.fold(said) == {
-        "a": Labelled(outcome="success", note="slipped"),
-        "b": Labelled(dropped=True),
+        "a": EpisodeLabels(outcome="success", note="slipped"),
+        "b": EpisodeLabels(dropped=True),
     }
 
 
 def test_a_torn_line_costs_itself_only(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    first, second = Label("a", Kind.NOTE, "one", 1), Label("a", Kind.NOTE, "two", 2)
+    first, second = Label("a", LabelKind.NOTE, "one", 1), Label("a", LabelKind.NOTE, "two", 2)
     labels.append(tmp_path, [first])
     with (tmp_path / labels.FILE_NAME).open("ab") as file:
         file.write(b'{"at_ns": 5, "path": "a", "ki')
     labels.append(tmp_path, [second])
     assert labels.read(tmp_path) == [first, second]
-    assert "line 2 is no label" in caplog.text
+    assert "line 2" in caplog.text
+
+
+FOREIGN = [
+    '{"at_ns":2,"path":"a","kind":"rating","value":"5"}',  # a kind of another version
+    '{"at_ns":2,"path":"a","kind":"outcome","value":"paused"}',  # a value of another version
+    '{"at_ns":2,"path":"a","kind":"note"}',
+    '{"at_ns":"soon","path":"a","kind":"note","value":"x"}',
+    "[1, 2]",
+    "null",
+    "\xff\xfe",
+]
+
+
+def test_a_line_of_another_version_is_one_warning_and_stays_as_it_is(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    first, second = Label("a", LabelKind.NOTE, "one", 1), Label("a", LabelKind.OUTCOME, "failure", 3)
+    labels.append(tmp_path, [first])
+    with (tmp_path / labels.FILE_NAME).open("a", encoding="latin-1") as file:
+        file.write("".join(f"{line}\n" for line in FOREIGN))
+    before = (tmp_path / labels.FILE_NAME).read_bytes()
+    assert [labels.read(tmp_path) for _ in range(3)] == [[first]] * 3
+    assert len(caplog.records) == 1
+    labels.append(tmp_path, [second])
+    assert labels.read_folded(tmp_path) == {"a": EpisodeLabels(outcome="failure", note="one")}
+    assert (tmp_path / labels.FILE_NAME).read_bytes().startswith(before)
+    assert len(caplog.records) == 1
+
+
+def test_labels_that_another_version_wrote_read_back(tmp_path: Path) -> None:
+    """With spaces, as `json.dumps` writes by default."""
+    line = '{"at_ns": 1, "path": "a", "kind": "outcome", "value": "failure", "detail": "seen"}\n'
+    (tmp_path / labels.FILE_NAME).write_text(line)
+    assert labels.read(tmp_path) == [Label("a", LabelKind.OUTCOME, "failure", 1, "seen")]
 
 
 @pytest.mark.parametrize(
-    ("kind", "value"), [(Kind.OUTCOME, "great"), (Kind.USE, "maybe"), (Kind.NOTE, "x" * 3000)]
+    ("kind", "value"), [(LabelKind.OUTCOME, "great"), (LabelKind.USE, "maybe"), (LabelKind.NOTE, "x" * 3000)]
 )
-def test_a_value_that_the_kind_cannot_have_is_refused(kind: Kind, value: str) -> None:
-    with pytest.raises(InvalidInput, match="given"):
+def test_a_value_that_the_kind_cannot_have_is_refused(kind: LabelKind, value: str) -> None:
+    with pytest.raises(InvalidInput):
         Label("a", kind, value, 1)
 
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from mart.episodes.mcap_entries import command_entry, event_entry, state_entries, video_entry
 from mart.episodes.reader import EpisodeFile
+from mart.episodes.writer import EpisodeWriter
 from mart.protocol import codec
 from mart.protocol.messages import State
 from mart.protocol.recording import RoomRecord, VerificationRecord
-from mart.recorder.entry import command_entry, event_entry, state_entries, video_entry
-from mart.recorder.episode import Episode, RoomFacts
-from mart.recorder.save import Saved, Verify, part_path, save
-from mart.recorder.verify import verify
-from mart.recorder.writer import EpisodeWriter
+from mart.recorder.record.episode_accumulator import EpisodeAccumulator
+from mart.recorder.record.finalize import SavedEpisode, VerifyFile, finalize, part_path
+from mart.recorder.record.room_facts import RoomFacts
+from mart.recorder.verify.resimulation import verify
 from tests.recorder import synthetic
 
 
@@ -22,13 +23,13 @@ def by_toy_replica(file: EpisodeFile, room: RoomRecord) -> VerificationRecord:
 
 def write_part(
     root: Path, states: list[State], *, flush_every: int = 5, is_over: bool = True
-) -> tuple[EpisodeWriter, Episode, RoomFacts]:
+) -> tuple[EpisodeWriter, EpisodeAccumulator, RoomFacts]:
     """A file as it is just before it is saved: model, commands, video and events besides the states."""
     facts = RoomFacts(synthetic.ROOM)
     beginning = synthetic.started(states[0].episode, states[0].tick)
     facts.learn_event(beginning)
     facts.learn_model(synthetic.MODEL)
-    episode = Episode(states[0])
+    episode = EpisodeAccumulator(states[0])
     episode.add_event(beginning)
     file = EpisodeWriter(part_path(root, episode, facts))
     file.describe(facts.record())
@@ -45,7 +46,7 @@ def write_part(
     return file, episode, facts
 
 
-def _write_tick(file: EpisodeWriter, episode: Episode, state: State) -> None:
+def _write_tick(file: EpisodeWriter, episode: EpisodeAccumulator, state: State) -> None:
     at_ns = synthetic.wall_ns(state.tick)
     command = synthetic.command(state.episode_tick + 1)
     file.add(command_entry("arm0", command, codec.encode(command), at_ns))
@@ -56,6 +57,8 @@ def _write_tick(file: EpisodeWriter, episode: Episode, state: State) -> None:
         file.add(entry)
 
 
-def write_episode(root: Path, ticks: int = 30, number: int = 1, verify: Verify = by_toy_replica) -> Saved:
+def write_episode(
+    root: Path, ticks: int = 30, number: int = 1, verify: VerifyFile = by_toy_replica
+) -> SavedEpisode:
     file, episode, facts = write_part(root, synthetic.states(ticks, number))
-    return save(file, episode, facts, root, verify, repaired=False)
+    return finalize(file, episode, facts, root, verify, repaired=False)

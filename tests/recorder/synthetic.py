@@ -14,12 +14,15 @@ from google.protobuf.timestamp_pb2 import Timestamp
 
 from mart.protocol import codec
 from mart.protocol.messages import (
+    EPISODE_PHASE_ENDED,
     OPERATOR_HOLD,
     OPERATOR_HUMAN,
+    OUTCOME_FAILURE,
     OUTCOME_SUCCESS,
     ArmState,
     Command,
     CommandStamps,
+    EpisodePhase,
     Event,
     Model,
     Outcome,
@@ -37,6 +40,7 @@ TASK = "two_arm_multi_cube_lifting"
 ARMS = ("arm0", "arm1")
 BOOT = 77
 PERIOD_NS = 50_000_000
+RESET = b"reset".ljust(64)  # as long as every state after it
 START_NS = 1_790_000_000_000_000_000  # 2026-09-21, UTC
 MJB = bytes(range(256)) * 40
 MODEL = Model(
@@ -54,7 +58,7 @@ def action(tick: int, arm: int) -> list[float]:
 
 def integration_state(tick: int) -> bytes:
     """Of the toy world after `tick`, which began at tick 0."""
-    state = b"reset"
+    state = RESET
     for t in range(1, tick + 1):
         state = step(state, np.array([action(t, arm) for arm in range(len(ARMS))]))
     return state
@@ -84,7 +88,7 @@ def states(
     ticks: int, number: int = 1, first_tick: int = 0, boot: int = BOOT, room: str = ROOM
 ) -> list[State]:
     """An episode's states: the reset and `ticks` ticks after it. `first_tick`: of the room, at the reset."""
-    made, world = [], b"reset"
+    made, world = [], RESET
     for i in range(ticks + 1):
         if i:
             world = step(world, np.array([action(i, arm) for arm in range(len(ARMS))]))
@@ -161,6 +165,17 @@ def seats() -> list[Seat]:
 
 def status(boot: int = BOOT) -> RoomStatus:
     return RoomStatus(room=ROOM, task=TASK, control_hz=20.0, seats=seats(), boot=boot)
+
+
+def episode_status(
+    ticks: int, number: int = 1, phase: EpisodePhase = EPISODE_PHASE_ENDED, outcome: Outcome = OUTCOME_FAILURE
+) -> RoomStatus:
+    """What the room says again and again of its episode; of one that has ended, how."""
+    said = status()
+    said.episode.number, said.episode.phase, said.episode.ticks = number, phase, ticks
+    if phase == EPISODE_PHASE_ENDED:
+        said.episode.outcome, said.episode.reason = outcome, "time is up"
+    return said
 
 
 def video(frame: int, is_key: bool, data: bytes | None = None) -> CompressedVideo:

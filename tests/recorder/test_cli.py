@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mart.episodes.labels import Kind, read
+from mart.episodes.labels import LabelKind, read
 from tests.recorder import synthetic
 from tests.recorder.conftest import Mart
 from tests.recorder.files import write_part
@@ -56,7 +56,12 @@ def test_labels_are_laid_over_and_the_file_is_untouched(mart: Mart, path: Path) 
     assert (row["outcome"], row["note"], row["dropped"]) == ("failure", "cube slipped", True)
     mart("episodes", "label", path, "--undrop")
     assert not mart.json("episodes", "list")["episodes"][0]["dropped"]
-    assert [label.kind for label in read(mart.episodes_dir)] == [Kind.OUTCOME, Kind.NOTE, Kind.USE, Kind.USE]
+    assert [label.kind for label in read(mart.episodes_dir)] == [
+        LabelKind.OUTCOME,
+        LabelKind.NOTE,
+        LabelKind.USE,
+        LabelKind.USE,
+    ]
     assert path.read_bytes() == before
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from mart.episodes import labels
-from mart.recorder.catalog import FILE_NAME
+from mart.recorder.catalogue.episode_catalogue import FILE_NAME
 from tests.recorder import synthetic
 from tests.recorder.conftest import Mart
 from tests.recorder.files import write_episode

@@ -13,9 +13,9 @@ from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
+from mart.episodes.mcap_entries import video_entry
 from mart.protocol import codec
-from mart.recorder.entry import video_entry
-from mart.recorder.save import save
+from mart.recorder.record.finalize import finalize
 from tests.recorder import synthetic
 from tests.recorder.files import by_toy_replica, write_episode, write_part
 
@@ -113,7 +113,7 @@ def test_video_decodes_with_a_stock_decoder(tmp_path: Path) -> None:
     for i, packet in enumerate(packets):
         video = synthetic.video(i, is_key=False, data=packet)
         file.add(video_entry("front", video, codec.encode(video), synthetic.wall_ns(i)))
-    path = save(file, episode, facts, tmp_path, by_toy_replica, repaired=False).path
+    path = finalize(file, episode, facts, tmp_path, by_toy_replica, repaired=False).path
 
     with path.open("rb") as stream:
         reader = make_reader(stream, decoder_factories=[DecoderFactory()])

@@ -38,10 +38,10 @@ from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.ports import free_port
 from mart.sim.world import World
-from mart.trainer.request import TrainRequest
-from mart.trainer.runs import RunDirectory
-from mart.trainer.service.promotion import Origin, promote
-from mart.trainer.train import train
+from mart.trainer.jobs.service.promotion import Origin, promote
+from mart.trainer.train.run_directory import RunDirectory
+from mart.trainer.train.spec import TrainingSpec
+from mart.trainer.train.training import train
 from tests.support.mailbox import Mailbox
 from tests.support.processes import started
 from tests.trainer import recorded
@@ -58,7 +58,7 @@ def checkpoint(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("training")
     world = World.build(TASK)
     recorded.write(root / "episodes", world, recorded.perform(world, seed=1))
-    request = TrainRequest(
+    request = TrainingSpec(
         model="d-HBC", data=(root / "episodes",), preset="debug", changes={"updates": 3, "checkpoints": 1}
     )
     with pytest.MonkeyPatch.context() as monkeypatch:

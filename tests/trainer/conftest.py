@@ -11,8 +11,8 @@ import torch
 
 from mart.protocol.messages import State
 from mart.sim.world import World
+from mart.trainer.data.data_spec import Selection
 from mart.trainer.data.dataset import Dataset, load_dataset
-from mart.trainer.request import Selection
 from tests.trainer import recorded
 
 

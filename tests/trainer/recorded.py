@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from mart.episodes.mcap_entries import event_entry, state_entries
 from mart.episodes.reader import EpisodeFile
+from mart.episodes.writer import EpisodeWriter
 from mart.protocol import codec
 from mart.protocol.messages import (
     OPERATOR_SCRIPT,
@@ -24,10 +26,9 @@ from mart.protocol.messages import (
 )
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.vocabulary import Verdict
-from mart.recorder.entry import event_entry, state_entries
-from mart.recorder.episode import Episode, RoomFacts
-from mart.recorder.save import part_path, save
-from mart.recorder.writer import EpisodeWriter
+from mart.recorder.record.episode_accumulator import EpisodeAccumulator
+from mart.recorder.record.finalize import finalize, part_path
+from mart.recorder.record.room_facts import RoomFacts
 from mart.sim.experts import Expert, get_skill
 from mart.sim.world import World
 
@@ -92,7 +93,7 @@ def write(
         Event(wall_ns=first.stamps.sent_ns, room=ROOM, tick=first.tick, episode_started=started),
         Event(wall_ns=last.stamps.sent_ns, room=ROOM, tick=last.tick, episode_ended=ended),
     )
-    facts, episode = RoomFacts(ROOM), Episode(first)
+    facts, episode = RoomFacts(ROOM), EpisodeAccumulator(first)
     for event in events:
         facts.learn_event(event)
         episode.add_event(event)
@@ -108,7 +109,7 @@ def write(
     def verify(_file: EpisodeFile, _room: RoomRecord) -> VerificationRecord:
         return said
 
-    return save(file, episode, facts, root, verify, repaired=False).path
+    return finalize(file, episode, facts, root, verify, repaired=False).path
 
 
 def _state(world: World, number: int, tick: int, actions: np.ndarray | None, source: Source) -> State:

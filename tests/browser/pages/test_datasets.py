@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mart.episodes import labels
-from mart.episodes.labels import Kind
+from mart.episodes.labels import LabelKind
 from mart.runtime.ports import free_port
 from tests.browser.pages.joined import joined
 from tests.browser.pages.visits import INSPECT, LOOKS, SCREENSHOTS
@@ -35,8 +35,8 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     """Six episodes, of which the first failed and the second was dropped."""
     port, data_dir = free_port(), tmp_path_factory.mktemp("data")
     paths = [write_episode(data_dir / "episodes", 10, number).path for number in range(1, EPISODES + 1)]
-    labels.say(paths[0], Kind.OUTCOME, "failure", 1)
-    labels.say(paths[1], Kind.USE, "drop", 2)
+    labels.say(paths[0], LabelKind.OUTCOME, "failure", 1)
+    labels.say(paths[1], LabelKind.USE, "drop", 2)
     with running_router() as endpoint, contextlib.ExitStack() as services:
         for command, kind, name in (
             (["web", "--port", str(port)], "web", "web"),
@@ -74,7 +74,7 @@ def test_from_a_filter_to_a_data_set_to_a_training(browser: Browser, site: Site)
         page.get_by_label("Name of the data set").fill("cubes-good")
         page.get_by_role("button", name="Use 4 for training").click()
         expect(told).to_contain_text("0 episodes joined “cubes-good”")
-        labels.say(site.paths[-1], Kind.USE, "drop", 3)
+        labels.say(site.paths[-1], LabelKind.USE, "drop", 3)
         told.get_by_role("link", name="Train on it").click()
         data = page.locator("#order select").first
         expect(data).to_have_value("episodes#cubes-good")
@@ -90,13 +90,13 @@ def test_from_a_filter_to_a_data_set_to_a_training(browser: Browser, site: Site)
         page.locator(".run").get_by_role("button").click()
         page.get_by_role("button", name="Cancel").click()
         expect(page.locator(".run")).to_contain_text("Cancelled")
-        labels.say(site.paths[-1], Kind.USE, "keep", 4)
+        labels.say(site.paths[-1], LabelKind.USE, "keep", 4)
 
 
 @pytest.mark.parametrize(("size", "scheme"), LOOKS[:4])
 def test_it_is_legible_and_whole(browser: Browser, site: Site, size: str, scheme: str) -> None:
     for path in site.paths[2:4]:
-        labels.say(path, Kind.JOIN, "lifting-by-ana", 5)
+        labels.say(path, LabelKind.JOIN, "lifting-by-ana", 5)
     with episodes_page(browser, site, size, scheme, "?dataset=lifting-by-ana") as page:
         page.locator(".tick").first.check()
         page.get_by_label("Name of the data set").fill("few")

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mart.episodes.labels import Kind, Label
+from mart.episodes.labels import Label, LabelKind
 from tests.browser.pages.conftest import Run
 
 GOLDEN = json.loads(Path("tests/teleop_gateway/golden/phone_frame.json").read_text())["cases"]
@@ -204,7 +204,7 @@ def test_whatever_is_typed_becomes_a_name_that_a_data_set_may_have(run: Run) -> 
     names = run("names.js", "({ nameFrom }, typed) => typed.map((text) => nameFrom(text))", typed)
     assert names == ["cubes-good", "a", "nder-2", "x" * 64, "ok_1-2", ""]
     for name in filter(None, names):
-        Label("a", Kind.JOIN, name, 1)
+        Label("a", LabelKind.JOIN, name, 1)
 
 
 def test_who_takes_all_that_are_shown_knows_how_many_did_not_succeed(run: Run) -> None:

@@ -12,9 +12,9 @@ from mart.episodes import labels
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_SCRIPT, OUTCOME_FAILURE, Operator, State
 from mart.protocol.vocabulary import Verdict
+from mart.trainer.data.data_spec import Selection
 from mart.trainer.data.dataset import Dataset, load_dataset
 from mart.trainer.data.episode import from_states
-from mart.trainer.request import Selection
 from tests.trainer import recorded
 from tests.trainer.conftest import Recorded
 
@@ -72,8 +72,8 @@ def test_labels_overrule_files(episodes: Recorded, tmp_path: Path) -> None:
     root = tmp_path / "episodes"
     shutil.copytree(episodes.root, root)
     first, second, _ = sorted(root.rglob("*.mcap"))
-    labels.say(first, labels.Kind.OUTCOME, "failure", 1)
-    labels.say(second, labels.Kind.USE, "drop", 2)
+    labels.say(first, labels.LabelKind.OUTCOME, "failure", 1)
+    labels.say(second, labels.LabelKind.USE, "drop", 2)
     assert len(load_dataset([root], Selection()).digest.episodes) == 1
     both = load_dataset([root], Selection(outcomes=())).digest
     assert [used.outcome for used in both.episodes] == ["failure", "success"]

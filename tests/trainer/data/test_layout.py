@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.tasks import get_task, task_names
-from mart.trainer.data.layout import Layout, canonical
+from mart.trainer.data.layout import ObservationLayout, canonical
 
 _numbers = st.floats(-1, 1)
 
 
 @pytest.mark.parametrize("name", task_names())
 def test_every_task_is_covered_by_its_arms_parts(name: str) -> None:
-    layout = Layout.of(get_task(name))
+    layout = ObservationLayout.of(get_task(name))
     parts = [layout.columns_of(arm) for arm in layout.arms]
     assert sorted(set(np.concatenate(parts))) == list(range(layout.width))
     for arm, part in zip(layout.arms, parts, strict=True):
@@ -32,14 +32,14 @@ def test_a_rotation_has_one_sign(q: list[float]) -> None:
 
 
 def test_the_vector_is_the_catalogues_order() -> None:
-    layout = Layout.of_arms("two_arm_multi_cube_lifting", 2)
-    seen = {s.name: np.full((3, *s.shape), float(i)) for i, s in enumerate(layout.seen)}
+    layout = ObservationLayout.of_arms("two_arm_multi_cube_lifting", 2)
+    seen = {s.name: np.full((3, *s.shape), float(i)) for i, s in enumerate(layout.fields)}
     np.testing.assert_array_equal(layout.vector(seen)[1], layout.groups())
 
 
 def test_what_is_missing_misshapen_or_no_number_is_named() -> None:
-    layout = Layout.of_arms("two_arm_multi_cube_lifting", 2)
-    good = {s.name: np.zeros((2, *s.shape)) for s in layout.seen}
+    layout = ObservationLayout.of_arms("two_arm_multi_cube_lifting", 2)
+    good = {s.name: np.zeros((2, *s.shape)) for s in layout.fields}
     with pytest.raises(InvalidInput, match="arm0/gripper is missing"):
         layout.vector({name: value for name, value in good.items() if name != "arm0/gripper"})
     with pytest.raises(InvalidInput, match="arm0/gripper has shape"):

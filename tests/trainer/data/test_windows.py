@@ -7,13 +7,13 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mart.trainer.data.dataset import Dataset, Digest, join
+from mart.trainer.data.data_spec import Selection
+from mart.trainer.data.dataset import DataDigest, Dataset, join
 from mart.trainer.data.episode import EpisodeArrays
-from mart.trainer.data.layout import Layout
-from mart.trainer.data.windows import Shape, Windows
-from mart.trainer.request import Selection
+from mart.trainer.data.layout import ObservationLayout
+from mart.trainer.data.windows import Windows, WindowSpec
 
-LAYOUT = Layout.of_arms("two_arm_multi_cube_lifting", 2)
+LAYOUT = ObservationLayout.of_arms("two_arm_multi_cube_lifting", 2)
 CPU = torch.device("cpu")
 
 
@@ -26,27 +26,27 @@ def _dataset(lengths: list[int]) -> Dataset:
         actions = np.zeros((ticks, 2, 7), np.float32)
         actions[:, :, 0] = 100 * e + np.arange(ticks)[:, None]
         episodes.append(EpisodeArrays(observations, actions, np.ones((ticks, 2), np.int8)))
-    digest = Digest(
+    digest = DataDigest(
         task="", control_hz=20, arms=LAYOUT.arms, selection=Selection(), episodes=(), ticks=0, sha256=""
     )
     return join(digest, LAYOUT, episodes)
 
 
-def _windows(dataset: Dataset, shape: Shape) -> Windows:
+def _windows(dataset: Dataset, shape: WindowSpec) -> Windows:
     return Windows(dataset, torch.from_numpy(dataset.observations), None, shape, CPU)
 
 
 @settings(max_examples=30)
 @given(st.lists(st.integers(1, 15), min_size=1, max_size=5), st.integers(1, 12))
 def test_sequences_are_gathered_and_padded_as_robomimic_does(lengths: list[int], ticks: int) -> None:
-    windows = _windows(_dataset(lengths), Shape.sequence(ticks))
+    windows = _windows(_dataset(lengths), WindowSpec.sequence(ticks))
     starts = [(e, t) for e, length in enumerate(lengths) for t in range(length)]
     assert windows.count == len(starts)
     batch = windows.take(torch.arange(windows.count)[None])
     for i, (e, t) in enumerate(starts):
         last = lengths[e] - 1
         expected = [100 * e + min(t + k, last) for k in range(ticks)]
-        assert batch.seen[0, :, i, 0].tolist() == expected
+        assert batch.obs[0, :, i, 0].tolist() == expected
         assert batch.actions[0, :, i, 1, 0].tolist() == expected
         assert batch.goal[0, i, 0] == 100 * e + min(t + ticks, lengths[e])
 
@@ -54,16 +54,16 @@ def test_sequences_are_gathered_and_padded_as_robomimic_does(lengths: list[int],
 @settings(max_examples=30)
 @given(st.lists(st.integers(1, 15), min_size=1, max_size=5), st.integers(1, 12))
 def test_chunks_look_one_tick_back(lengths: list[int], ticks: int) -> None:
-    windows = _windows(_dataset(lengths), Shape.chunk(ticks))
+    windows = _windows(_dataset(lengths), WindowSpec.chunk(ticks))
     batch = windows.take(torch.arange(windows.count)[None])
     starts = [(e, t) for e, length in enumerate(lengths) for t in range(length)]
     for i, (e, t) in enumerate(starts):
-        assert batch.seen[0, :, i, 0].tolist() == [100 * e + max(t - 1, 0), 100 * e + t]
+        assert batch.obs[0, :, i, 0].tolist() == [100 * e + max(t - 1, 0), 100 * e + t]
         expected = [100 * e + min(t + k, lengths[e] - 1) for k in range(ticks)]
         assert batch.actions[0, :, i, 0, 0].tolist() == expected
 
 
 def test_each_seed_takes_its_own() -> None:
-    windows = _windows(_dataset([5, 5]), Shape.sequence(2))
+    windows = _windows(_dataset([5, 5]), WindowSpec.sequence(2))
     batch = windows.take(torch.tensor([[0, 1], [7, 8]]))
-    assert batch.seen[:, 0, :, 0].tolist() == [[0, 1], [102, 103]]
+    assert batch.obs[:, 0, :, 0].tolist() == [[0, 1], [102, 103]]

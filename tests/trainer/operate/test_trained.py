@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mart.trainer.models.policies.load import load_policy
 from mart.trainer.operate.operator import parts_of
-from mart.trainer.policies import load_policy
-from mart.trainer.request import TrainRequest
-from mart.trainer.runs import RunDirectory
-from mart.trainer.train import train
+from mart.trainer.train.run_directory import RunDirectory
+from mart.trainer.train.spec import TrainingSpec
+from mart.trainer.train.training import train
 from tests.trainer.conftest import Recorded
 
 
 def checkpoint(episodes: Recorded, root: Path, model: str) -> Path:
     changes = {"updates": 3, "checkpoints": 1}
-    request = TrainRequest(model=model, data=(episodes.root,), preset="debug", changes=changes)
+    request = TrainingSpec(model=model, data=(episodes.root,), preset="debug", changes=changes)
     train(request, root, threading.Event(), lambda _: None)
     run = RunDirectory(root)
     return run.checkpoint(run.checkpointed()[-1], 0)
@@ -33,6 +33,6 @@ def test_the_parts_act_as_the_whole(episodes: Recorded, tmp_path: Path, model: s
         policy.begin(1, 7)
     for state in episodes.states[0][:15]:
         seen = {o.name: np.array(o.value) for o in state.observations}
-        shaped = {s.name: seen[s.name].reshape(1, *s.shape) for s in whole.layout.seen}
+        shaped = {s.name: seen[s.name].reshape(1, *s.shape) for s in whole.layout.fields}
         together = np.concatenate([policy.act(shaped) for policy in apart], axis=1)
         np.testing.assert_allclose(together, whole.act(shaped), atol=1e-6)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.errors import InvalidInput, NotFound
-from mart.trainer.policies.policy import ACTION_SIZE, Policy
+from mart.trainer.models.policies.policy import ACTION_SIZE, Policy
 
 Array = NDArray[np.float64]
 TASK = "two_arm_multi_cube_lifting"

@@ -19,9 +19,9 @@ from mart.protocol.messages import (
     RoomStatus,
 )
 from mart.protocol.vocabulary import ServiceKind
-from mart.recorder.browse import answers as browse
-from mart.recorder.browse.answers import Answers
-from mart.recorder.browse.serve import answer
+from mart.recorder.catalogue import handlers as browse
+from mart.recorder.catalogue.handlers import CatalogueHandlers
+from mart.recorder.catalogue.serve import answer
 from mart.runtime.bus.base import Request
 from mart.runtime.bus.memory import MemoryBus
 from mart.web.api.app_state import AppState
@@ -40,7 +40,7 @@ def root(app_state: AppState, bus: MemoryBus, tmp_path: Path) -> Iterator[Path]:
     """A folder with two episodes, and a catalogue that tells of it."""
     for number in (1, 2):
         write_episode(tmp_path, ticks=30, number=number)
-    answers = Answers(tmp_path)
+    answers = CatalogueHandlers(tmp_path)
 
     def take(request: Request) -> None:
         request.reply(codec.encode(answer(answers, request.payload)))
@@ -163,10 +163,10 @@ async def test_where_no_picture_can_be_shown_there_is_none(enter: Enter, root: P
 
 
 def test_garbage_is_answered_with_a_sentence(tmp_path: Path) -> None:
-    reply = answer(Answers(tmp_path), b"\xff\xff\xff")
+    reply = answer(CatalogueHandlers(tmp_path), b"\xff\xff\xff")
     assert isinstance(reply, CatalogueReply)
     assert reply.error.code == "InvalidInput"
-    assert answer(Answers(tmp_path), codec.encode(CatalogueRequest())).error.message.startswith("An empty")
+    assert answer(CatalogueHandlers(tmp_path), codec.encode(CatalogueRequest())).error.message.startswith("An empty")
 
 
 async def test_what_is_saved_without_a_word_is_found_in_the_catalogue(

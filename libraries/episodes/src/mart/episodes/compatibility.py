@@ -1,4 +1,4 @@
-"""What episodes must have in common to be learned from together. Pure."""
+"""Hold episodes that are learned from together to one task, one control rate and the same arms. Pure."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from typing import Protocol
 from mart.protocol.errors import InvalidInput
 
 
-class Facts(Protocol):
+class ComparableEpisode(Protocol):
+    """Anything that says of which task, control rate and arms it is."""
+
     @property
     def task(self) -> str | None: ...
     @property
@@ -17,8 +19,8 @@ class Facts(Protocol):
     def arms(self) -> tuple[str, ...]: ...
 
 
-def require_alike(episodes: Iterable[Facts], advice: str) -> None:
-    """Raises InvalidInput where tasks, control rates or arms differ. `advice`: what to do then, as a clause."""
+def require_alike(episodes: Iterable[ComparableEpisode], advice: str) -> None:
+    """Raise InvalidInput where tasks, control rates or arms differ. advice: what to do then, as a clause."""
     listed = list(episodes)
     facts: dict[str, set[str]] = {
         "tasks": {str(one.task) for one in listed},

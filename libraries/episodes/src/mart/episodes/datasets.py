@@ -1,4 +1,4 @@
-"""Named data sets: episodes that people have put together, to be learned from as one. Pure.
+"""Put episodes together under a name, to be learned from as one: named data sets. Pure.
 
 An episode joins and leaves a data set by a label, so a data set outlives the catalogue, no change is ever lost, and
 what it held at any time can be told. All labels of one act have the same stamp: by it the act is undone. A data set
@@ -11,15 +11,18 @@ import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from mart.episodes.labels import Kind, Label, Labelled
+from mart.episodes.labels import EpisodeLabels, Label, LabelKind
 from mart.protocol.errors import NotFound
 
-_OPPOSITE = {Kind.JOIN: Kind.LEAVE, Kind.LEAVE: Kind.JOIN}
+_OPPOSITE = {LabelKind.JOIN: LabelKind.LEAVE, LabelKind.LEAVE: LabelKind.JOIN}
 
 
 @dataclass(frozen=True)
 class NamedDataSet:
-    """`episodes`: paths below the folder of the labels, rising. created_ns: when the first joined (Unix time)."""
+    """Name episodes that people have put together.
+
+    episodes: paths below the folder of the labels, rising. created_ns: when the first joined (Unix time).
+    """
 
     name: str
     episodes: tuple[str, ...]
@@ -27,12 +30,12 @@ class NamedDataSet:
 
     @property
     def sha256(self) -> str:
-        """Over the paths, a line each: files never change, so who has the same digest holds the same."""
+        """Digest of the paths, a line each: files never change, so what has the same digest holds the same."""
         return hashlib.sha256("".join(f"{path}\n" for path in self.episodes).encode()).hexdigest()
 
 
-def named(said: Mapping[str, Labelled]) -> dict[str, NamedDataSet]:
-    """Every data set, by its name, out of what holds about each file."""
+def named(said: Mapping[str, EpisodeLabels]) -> dict[str, NamedDataSet]:
+    """Return every data set, by its name, out of what holds about each file."""
     joined: dict[str, dict[str, int]] = {}
     for path, label in said.items():
         for name, at_ns in label.datasets.items():
@@ -43,34 +46,37 @@ def named(said: Mapping[str, Labelled]) -> dict[str, NamedDataSet]:
     }
 
 
-def find(said: Mapping[str, Labelled], name: str) -> NamedDataSet:
-    """Raises NotFound, naming those that there are."""
+def find(said: Mapping[str, EpisodeLabels], name: str) -> NamedDataSet:
+    """Return the data set of this name. Raises NotFound, naming those that there are."""
     known = named(said)
     if name not in known:
         raise NotFound.named("data set", name[:100], known)
     return known[name]
 
 
-def join(said: Mapping[str, Labelled], name: str, paths: Iterable[str], at_ns: int) -> list[Label]:
-    """To be said so that these are part of it: nothing of those that are. Raises InvalidInput for the name."""
+def join(said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int) -> list[Label]:
+    """Return the labels by which these episodes join; none for those that are in it.
+
+    Raises InvalidInput for a name that no data set can have.
+    """
     return [
-        Label(path, Kind.JOIN, name, at_ns)
+        Label(path, LabelKind.JOIN, name, at_ns)
         for path in dict.fromkeys(paths)
-        if name not in said.get(path, Labelled()).datasets
+        if name not in said.get(path, EpisodeLabels()).datasets
     ]
 
 
-def leave(said: Mapping[str, Labelled], name: str, paths: Iterable[str], at_ns: int) -> list[Label]:
-    """To be said so that these are no part of it."""
+def leave(said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int) -> list[Label]:
+    """Return the labels by which these episodes leave; none for those that are not in it."""
     return [
-        Label(path, Kind.LEAVE, name, at_ns)
+        Label(path, LabelKind.LEAVE, name, at_ns)
         for path in dict.fromkeys(paths)
-        if name in said.get(path, Labelled()).datasets
+        if name in said.get(path, EpisodeLabels()).datasets
     ]
 
 
 def newest_act_ns(labels: Iterable[Label], name: str) -> int:
-    """When this data set was last changed. Raises NotFound where nothing was ever said about it."""
+    """Return when this data set was last changed (Unix time). Raises NotFound where nothing was ever said about it."""
     stamps = [label.at_ns for label in labels if label.kind in _OPPOSITE and label.value == name]
     if not stamps:
         raise NotFound(f"There never was a data set {name[:100]!r}, so nothing of it can be undone.")
@@ -78,7 +84,7 @@ def newest_act_ns(labels: Iterable[Label], name: str) -> int:
 
 
 def undo(labels: Iterable[Label], name: str, act_ns: int, at_ns: int) -> list[Label]:
-    """To be said so that what was done to this data set at `act_ns` holds no longer."""
+    """Return the labels by which what was done to this data set at `act_ns` holds no longer."""
     return [
         Label(label.path, _OPPOSITE[label.kind], name, at_ns)
         for label in labels

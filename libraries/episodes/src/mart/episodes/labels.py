@@ -1,30 +1,39 @@
-"""What people say about episodes afterwards. Files never change; labels are appended to `labels.jsonl` beside them.
+"""Say something about episodes afterwards: files never change, labels are appended to `labels.jsonl` beside them.
 
-Each line says one thing about one file, and the newest of its kind holds. Deleting a line takes it back.
+Each line says one thing about one file, and the newest of its kind holds. Deleting a line takes it back. What a line
+says that this version does not know (another kind, another value, a torn line) is left where it is and counts nothing.
+
+    from mart.episodes import labels
+
+    labels.say(path, labels.LabelKind.OUTCOME, "failure", at_ns=clock.wall_ns())
 """
 
 from __future__ import annotations
 
-import json
 import logging
-import os
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
+from typing import Any
 
 from mart.protocol.errors import Conflict, InvalidInput
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
+from mart.runtime.json_lines import append_json_lines, read_json_lines
 
 _log = logging.getLogger(__name__)
 
 FILE_NAME = "labels.jsonl"
 MAX_NOTE_CHARACTERS = 2000
+KEEP, DROP = "keep", "drop"
 _DAY = re.compile(r"\d{4}-\d{2}-\d{2}")
 _DATASET = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
 
 
-class Kind(StrEnum):
+class LabelKind(StrEnum):
+    """Name what a label speaks of."""
+
     OUTCOME = "outcome"  # value: success, failure or discarded
     NOTE = "note"  # value: free text
     USE = "use"  # value: keep or drop (leave out of data sets)
@@ -33,28 +42,31 @@ class Kind(StrEnum):
     LEAVE = "leave"  # value: the name of a data set that it was part of
 
 
-_ALLOWED = {
-    Kind.OUTCOME: ("success", "failure", "discarded"),
-    Kind.USE: ("keep", "drop"),
-    Kind.VERDICT: ("verified", "diverged", "unverified"),
+_ALLOWED: dict[LabelKind, tuple[str, ...]] = {
+    LabelKind.OUTCOME: (EpisodeOutcome.SUCCESS, EpisodeOutcome.FAILURE, EpisodeOutcome.DISCARDED),
+    LabelKind.USE: (KEEP, DROP),
+    LabelKind.VERDICT: tuple(Verdict),
 }
 
 
 @dataclass(frozen=True)
 class Label:
-    """`path` is relative to the folder of the labels, with forward slashes."""
+    """Say one thing about one file. Raises InvalidInput for a value that the kind cannot have.
+
+    path: relative to the folder of the labels, with forward slashes. at_ns: Unix time.
+    """
 
     path: str
-    kind: Kind
+    kind: LabelKind
     value: str
-    at_ns: int  # Unix time
+    at_ns: int
     detail: str = ""
 
     def __post_init__(self) -> None:
         allowed = _ALLOWED.get(self.kind)
         if allowed is not None and self.value not in allowed:
             raise InvalidInput(f"The {self.kind} {self.value!r} was given; it must be {', '.join(allowed)}.")
-        if self.kind in (Kind.JOIN, Kind.LEAVE) and not _DATASET.fullmatch(self.value):
+        if self.kind in (LabelKind.JOIN, LabelKind.LEAVE) and not _DATASET.fullmatch(self.value):
             raise InvalidInput(
                 f"The data set {self.value[:100]!r} was given; name it with 1 to 64 lower-case letters, digits, '-' or "
                 "'_', the first a letter or digit."
@@ -66,8 +78,11 @@ class Label:
 
 
 @dataclass(frozen=True)
-class Labelled:
-    """What holds about one file now; None where nothing was said. datasets: that it is part of, and since when."""
+class EpisodeLabels:
+    """Hold what is said about one file now; None where nothing was said.
+
+    datasets: the names of those that it is part of, and since when (Unix time, nanoseconds).
+    """
 
     outcome: str | None = None
     note: str | None = None
@@ -75,83 +90,77 @@ class Labelled:
     dropped: bool = False
     datasets: Mapping[str, int] = field(default_factory=dict)
 
-    def with_label(self, label: Label) -> Labelled:
+    def with_label(self, label: Label) -> EpisodeLabels:
+        """Return what holds once `label` has been given."""
         match label.kind:
-            case Kind.OUTCOME:
+            case LabelKind.OUTCOME:
                 return replace(self, outcome=label.value)
-            case Kind.NOTE:
+            case LabelKind.NOTE:
                 return replace(self, note=label.value)
-            case Kind.VERDICT:
+            case LabelKind.VERDICT:
                 return replace(self, verdict=label.value)
-            case Kind.USE:
-                return replace(self, dropped=label.value == "drop")
-            case Kind.JOIN:
+            case LabelKind.USE:
+                return replace(self, dropped=label.value == DROP)
+            case LabelKind.JOIN:
                 return replace(self, datasets={**self.datasets, label.value: label.at_ns})
-            case Kind.LEAVE:
+            case LabelKind.LEAVE:
                 kept = {name: at_ns for name, at_ns in self.datasets.items() if name != label.value}
                 return replace(self, datasets=kept)
 
 
-def fold(labels: Iterable[Label]) -> dict[str, Labelled]:
-    """Path → what holds about it."""
-    known: dict[str, Labelled] = {}
+def fold(labels: Iterable[Label]) -> dict[str, EpisodeLabels]:
+    """Return by path what holds about each file, out of labels in the order they were given."""
+    known: dict[str, EpisodeLabels] = {}
     for label in labels:
-        known[label.path] = known.get(label.path, Labelled()).with_label(label)
+        known[label.path] = known.get(label.path, EpisodeLabels()).with_label(label)
     return known
 
 
 def read(root: Path) -> list[Label]:
-    """Every label in the order it was given. A line that is none (a power cut tore it) is logged and left out."""
-    path = root / FILE_NAME
-    if not path.exists():
-        return []
-    labels = []
-    lines = (
-        path.read_bytes().removesuffix(b"\n").split(b"\n")
-    )  # a note may hold what str.splitlines splits at
-    for number, line in enumerate(filter(None, lines), 1):
+    """Read every label of a folder of episodes, in the order they were given.
+
+    Lines that are none (torn by a power cut, or of a kind that another version knows) are left out, and a warning says
+    which, once as long as they stay the same.
+    """
+    found, unknown = [], dict[int, str]()
+    for number, fields in read_json_lines(root / FILE_NAME):
         try:
-            labels.append(_parse(line))
+            found.append(_parse(fields))
         except (ValueError, KeyError, TypeError, InvalidInput) as error:
-            _log.warning("%s, line %d is no label and is left out: %s", path, number, error)
-    return labels
+            unknown[number] = str(error)
+    _warn_once(root / FILE_NAME, unknown)
+    return found
+
+
+def read_folded(root: Path) -> dict[str, EpisodeLabels]:
+    """Return by path, below `root`, what holds about each file of a folder of episodes."""
+    return fold(read(root))
 
 
 def append(root: Path, labels: Iterable[Label]) -> None:
-    """On the disk when this returns; raises Conflict where the folder cannot be written."""
+    """Append labels to those of a folder: on the disk when this returns. Raises Conflict where it cannot be written."""
     path = root / FILE_NAME
-    text = "".join(json.dumps(_fields(label), ensure_ascii=False) + "\n" for label in labels)
     try:
-        with path.open("ab+") as file:
-            torn = file.tell() > 0 and _last_byte(path) != b"\n"
-            file.write((("\n" if torn else "") + text).encode())
-            file.flush()
-            os.fsync(file.fileno())
+        append_json_lines(path, map(_fields, labels))
     except OSError as error:
         raise Conflict(f"{path} could not be written: {error.strerror}.") from error
 
 
 def root_of(episode: Path) -> Path:
-    """The folder that the labels and the catalogue of an episode file are in."""
+    """Return the folder that the labels and the catalogue of an episode file are in."""
     folder = episode.resolve().parent
     return folder.parent if _DAY.fullmatch(folder.name) else folder
 
 
 def is_root(folder: Path) -> bool:
-    """Whether labels and catalogue belong into this folder: it holds days of episodes."""
+    """Tell whether labels and catalogue belong into this folder: it holds days of episodes."""
     return any(_DAY.fullmatch(child.name) for child in folder.iterdir())
 
 
-def say(episode: Path, kind: Kind, value: str, at_ns: int, detail: str = "") -> None:
-    """Appends one label about an episode file. Raises InvalidInput for a value that the kind cannot have."""
+def say(episode: Path, kind: LabelKind, value: str, at_ns: int, detail: str = "") -> None:
+    """Append one label about an episode file. Raises InvalidInput for a value that the kind cannot have."""
     root = root_of(episode)
     append(root, [Label(episode.resolve().relative_to(root).as_posix(), kind, value, at_ns, detail)])
-
-
-def _last_byte(path: Path) -> bytes:
-    with path.open("rb") as file:
-        file.seek(-1, os.SEEK_END)
-        return file.read(1)
 
 
 def _fields(label: Label) -> dict[str, object]:
@@ -159,12 +168,30 @@ def _fields(label: Label) -> dict[str, object]:
     return fields | ({"detail": label.detail} if label.detail else {})
 
 
-def _parse(line: bytes) -> Label:
-    fields = json.loads(line)
+def _parse(fields: Mapping[str, Any] | None) -> Label:
+    if fields is None:
+        raise ValueError("it is not one JSON object")
     return Label(
         path=str(fields["path"]),
-        kind=Kind(fields["kind"]),
+        kind=LabelKind(fields["kind"]),
         value=str(fields["value"]),
         at_ns=int(fields["at_ns"]),
         detail=str(fields.get("detail", "")),
     )
+
+
+_warned: dict[Path, frozenset[int]] = {}  # file → lines; a catalogue reads its labels every second
+
+
+def _warn_once(path: Path, unknown: Mapping[int, str]) -> None:
+    lines = frozenset(unknown)
+    if lines and _warned.get(path) != lines:
+        first = min(lines)
+        _log.warning(
+            "%s: line %s no label that this version knows; left as it stands, it counts nothing (line %d: %s).",
+            path,
+            f"{first} is" if len(lines) == 1 else f"{first} and {len(lines) - 1} more are",
+            first,
+            unknown[first],
+        )
+    _warned[path] = lines

@@ -1,34 +1,50 @@
-"""One episode file, read: its metadata at once, its messages one by one. Also a `.part`, as far as it goes."""
+"""Read one episode file: its metadata at once, its messages one by one. Also a `.part`, as far as it goes."""
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
+from typing import TypeVar
 
 from mcap.exceptions import EndOfFile
 from mcap.reader import SeekingReader
 from mcap.records import Channel, Chunk, McapRecord, Message, Metadata
 from mcap.stream_reader import MAGIC_SIZE
 
+from mart.episodes.arrays import EpisodeData, arrays_for_task, arrays_from_states
 from mart.episodes.scan import BoundedFile, corruption, records, unpack
-from mart.protocol.errors import Corrupt, NotFound
+from mart.protocol import codec
+from mart.protocol.errors import Corrupt, InvalidInput, NotFound
+from mart.protocol.messages import State
 from mart.protocol.recording import (
     MAX_RECORD_BYTES,
     MODEL_ATTACHMENT,
     PROFILE,
+    STATE,
     SUFFIX,
+    VERSIONS,
     CadenceRecord,
     EpisodeRecord,
     OperatorsRecord,
     RoomRecord,
     VerificationRecord,
 )
+from mart.protocol.tasks import Task, get_task
+
+_DISTRIBUTION = (
+    "mart-episodes"  # whose version a file was written by; before it was one of its own, the recorder's
+)
+
+
+R = TypeVar("R", EpisodeRecord, CadenceRecord, OperatorsRecord, VerificationRecord, RoomRecord)
 
 
 @dataclass(frozen=True)
-class Recorded:
-    """One message of a file."""
+class RecordedMessage:
+    """Hold one message of a file: its topic, its bytes and its stamps (Unix time, nanoseconds)."""
 
     topic: str
     payload: bytes
@@ -37,52 +53,97 @@ class Recorded:
     sequence: int
 
 
+def open_episode(path: Path | str) -> EpisodeFile:
+    """Open an episode file for reading.
+
+    Raises NotFound where there is no file and Corrupt where it is no episode or is damaged.
+
+        >>> episode = open_episode("data/episodes/2026-11-22/room-1-0001-two_arm_multi_cube_lifting.mcap")
+        >>> episode.episode.outcome
+        'success'
+        >>> episode.arrays().actions.shape
+        (412, 2, 7)
+    """
+    return EpisodeFile.open(Path(path))
+
+
 @dataclass(frozen=True)
 class EpisodeFile:
-    """Opens its file for each question and closes it again. Raises Corrupt where the file cannot be trusted."""
+    """Read an episode file. Each question opens the file and closes it again; whatever cannot be trusted is Corrupt.
+
+    metadata: the file's metadata records, by name, as strings; the properties read them as typed records.
+    """
 
     path: Path
-    strings: Mapping[str, Mapping[str, str]]  # metadata records by name
+    metadata: Mapping[str, Mapping[str, str]]
 
     @classmethod
     def open(cls, path: Path) -> EpisodeFile:
-        """Raises NotFound where there is no file and Corrupt where it is no episode."""
+        """Read the metadata of a file. Raises NotFound where there is none and Corrupt where it is no episode."""
         if not path.is_file():
             raise NotFound(f"There is no file {path}; name an episode file or a folder of them.")
         with BoundedFile(path) as file, corruption(path):
-            return cls(path, {metadata.name: metadata.metadata for metadata in _metadata(file, path)})
+            return cls(path, {found.name: found.metadata for found in _metadata(file, path)})
 
     @property
     def episode(self) -> EpisodeRecord:
-        return EpisodeRecord.from_strings(self._record(EpisodeRecord.NAME))
+        """What was recorded: room, number, task, arms, outcome and so on, as the recorder wrote it down."""
+        return self._read(EpisodeRecord)
 
     @property
     def cadence(self) -> CadenceRecord:
-        return CadenceRecord.from_strings(self._record(CadenceRecord.NAME))
+        """How well time was kept."""
+        return self._read(CadenceRecord)
 
     @property
     def operators(self) -> OperatorsRecord:
-        return OperatorsRecord.from_strings(self._record(OperatorsRecord.NAME))
+        """Who drove each arm, with changes."""
+        return self._read(OperatorsRecord)
 
     @property
     def verification(self) -> VerificationRecord:
-        return VerificationRecord.from_strings(self._record(VerificationRecord.NAME))
+        """What re-simulation said when the file was completed."""
+        return self._read(VerificationRecord)
 
     @property
     def room(self) -> RoomRecord:
-        return RoomRecord.from_strings(self._record(RoomRecord.NAME))
+        """Of what room the file is, also where it was cut short."""
+        return self._read(RoomRecord)
 
-    def messages(self, *topics: str) -> Iterator[Recorded]:
-        """Messages of these topics, or of all, in the order of the file."""
+    def states(self) -> Iterator[State]:
+        """Iterate over the states in the order of the file, the one after the reset first. Raises Corrupt."""
+        for message in self.messages(STATE):
+            try:
+                yield codec.decode(State, message.payload)
+            except InvalidInput as error:
+                raise Corrupt(f"{self.path} holds a state that cannot be read: {error}") from error
+
+    def arrays(self, task: Task | None = None) -> EpisodeData:
+        """Read the whole episode into numpy arrays.
+
+        task: whose observations and shapes are wanted; None takes the one that the file names, or, where the catalogue
+        has no such task, every observation of the file as it is.
+        Raises Corrupt where the file is damaged and InvalidInput, naming it, where ticks, arms or observations are
+        missing or a number is NaN.
+        """
+        known = self._known_task() if task is None else task
+        states = list(self.states())
+        try:
+            return arrays_from_states(states) if known is None else arrays_for_task(states, known)
+        except InvalidInput as error:
+            raise InvalidInput(f"{self.path} cannot be read into arrays: {error}") from error
+
+    def messages(self, *topics: str) -> Iterator[RecordedMessage]:
+        """Iterate over the messages of these topics, or of all, in the order of the file. Raises Corrupt."""
         with BoundedFile(self.path) as file, corruption(self.path):
             for channel, message in messages(_until_cut(records(file), self.path)):
                 if not topics or channel.topic in topics:
-                    yield Recorded(
+                    yield RecordedMessage(
                         channel.topic, message.data, message.log_time, message.publish_time, message.sequence
                     )
 
     def model(self) -> bytes:
-        """The compiled model; raises NotFound where the file has none."""
+        """Return the compiled MuJoCo model (MJB). Raises NotFound where the file has none."""
         with BoundedFile(self.path) as file, corruption(self.path):
             for attachment in _reader(file).iter_attachments():
                 if attachment.name == MODEL_ATTACHMENT:
@@ -90,7 +151,7 @@ class EpisodeFile:
         raise NotFound(f"{self.path} holds no {MODEL_ATTACHMENT}.")
 
     def check(self, expected_messages: int | None = None) -> None:
-        """Reads all of it, every checksum included; raises Corrupt where anything is amiss or missing."""
+        """Read all of the file, every checksum included. Raises Corrupt where anything is amiss or missing."""
         found = sum(1 for _ in self.messages())
         with BoundedFile(self.path) as file, corruption(self.path):
             summary = _reader(file).get_summary()
@@ -99,14 +160,31 @@ class EpisodeFile:
             expected = counted if expected_messages is None else expected_messages
             raise Corrupt(f"{self.path} holds {found} messages; it should hold {expected}.")
 
-    def _record(self, name: str) -> Mapping[str, str]:
-        if name not in self.strings:
-            raise Corrupt(f"{self.path} has no record {name}; is it an episode of MART?")
-        return self.strings[name]
+    def _read(self, record: type[R]) -> R:
+        strings = self.metadata.get(record.NAME)
+        if strings is None:
+            raise Corrupt(f"{self.path} has no record {record.NAME}; is it an episode of MART?")
+        try:
+            return record.from_strings(strings)
+        except Corrupt as error:
+            raise Corrupt(f"{self.path}{self._written_by()} cannot be understood. {error}") from error
+
+    def _written_by(self) -> str:
+        """Say which version wrote the file, where it is not the one that reads it."""
+        versions = self.metadata.get(VERSIONS, {})
+        wrote = versions.get(_DISTRIBUTION) or versions.get("mart-recorder")
+        return f", written by version {wrote} of MART and read by {_own_version()}," if wrote else ""
+
+    def _known_task(self) -> Task | None:
+        episode = self.episode
+        try:
+            return get_task(episode.task or "", len(episode.arms))
+        except (InvalidInput, NotFound):
+            return None
 
 
 def messages(found: Iterator[McapRecord]) -> Iterator[tuple[Channel, Message]]:
-    """Messages with their channels, from records whose chunks are still packed."""
+    """Iterate over messages with their channels, from records whose chunks are still packed."""
     channels: dict[int, Channel] = {}
     for outer in found:
         for record in unpack(outer) if isinstance(outer, Chunk) else ():
@@ -121,8 +199,12 @@ def _metadata(file: BoundedFile, path: Path) -> Iterator[Metadata]:
         yield from (record for record in _until_cut(records(file), path) if isinstance(record, Metadata))
         return
     reader = _reader(file)
-    if reader.get_header().profile != PROFILE:
-        raise Corrupt(f"{path} is an MCAP file of another kind; MART's have the profile {PROFILE!r}.")
+    profile = reader.get_header().profile
+    if profile != PROFILE:
+        raise Corrupt(
+            f"{path} is an MCAP file of another kind or version: its profile is {profile[:64]!r}, and this version "
+            f"of MART reads {PROFILE!r}."
+        )
     yield from reader.iter_metadata()
 
 
@@ -134,9 +216,14 @@ def _reader(file: BoundedFile) -> SeekingReader:
 
 
 def _until_cut(found: Iterator[McapRecord], path: Path) -> Iterator[McapRecord]:
-    """A file that is not complete ends where it was cut; any other must not."""
+    """Pass records on. A file that is not complete ends where it was cut; any other must not."""
     try:
         yield from found
     except EndOfFile:
         if path.suffix == SUFFIX:
             raise
+
+
+@functools.cache
+def _own_version() -> str:
+    return version(_DISTRIBUTION)

@@ -1,4 +1,4 @@
-"""Reading MCAP records from files that nobody vouches for: memory stays bounded, damage becomes Corrupt.
+"""Read MCAP records from files that nobody vouches for: memory stays bounded, damage becomes Corrupt.
 
 The `mcap` package reads what a length field says, so a few bad bytes can ask for exabytes; here a read never exceeds
 what the file still holds, and a chunk never unpacks to more than `recording.MAX_CHUNK_BYTES`.
@@ -30,7 +30,7 @@ SYMPTOMS = (
 
 
 class BoundedFile(io.BufferedReader):
-    """A file that never hands out (nor makes room for) more than it has: a longer read finds its end."""
+    """Read a file that never hands out (nor makes room for) more than it has: a longer read finds its end."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(io.FileIO(path, "rb"))
@@ -45,7 +45,7 @@ class BoundedFile(io.BufferedReader):
 
 @contextmanager
 def corruption(path: Path) -> Iterator[None]:
-    """Turns what the mcap package says about damaged bytes into one sentence."""
+    """Turn what the mcap package says about damaged bytes into one sentence: Corrupt."""
     try:
         yield
     except SYMPTOMS as error:
@@ -56,14 +56,14 @@ def corruption(path: Path) -> Iterator[None]:
 
 
 def records(file: BoundedFile, offset: int = MAGIC_SIZE) -> Iterator[McapRecord]:
-    """Records from `offset` on, chunks still packed. Raises what the mcap package raises at the first damaged one."""
+    """Iterate over records from `offset` on, chunks still packed; the first damaged one raises one of `SYMPTOMS`."""
     file.seek(offset)
     reader = StreamReader(file, skip_magic=True, emit_chunks=True, record_size_limit=MAX_RECORD_BYTES)
     yield from reader.records
 
 
 def unpack(chunk: Chunk) -> list[McapRecord]:
-    """What a chunk holds; raises ValueError where it is damaged or larger than allowed."""
+    """Return what a chunk holds. Raises ValueError where it is damaged or larger than allowed."""
     if chunk.compression not in ("", "zstd"):
         raise ValueError(f"a chunk is packed with {chunk.compression[:16]!r}; only zstd is used here")
     said = zstandard.frame_content_size(chunk.data) if chunk.compression else len(chunk.data)
@@ -73,7 +73,7 @@ def unpack(chunk: Chunk) -> list[McapRecord]:
 
 
 def size_of(record: McapRecord) -> int:
-    """Bytes that a record takes in a file, its header included."""
+    """Return how many bytes a record takes in a file, its header included."""
     builder = RecordBuilder()
     record.write(builder)
     return builder.count

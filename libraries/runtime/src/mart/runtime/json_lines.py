@@ -4,21 +4,28 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
+
+_TAIL_BYTES = 4096
 
 
 def append_json_line(path: Path, row: Mapping[str, Any]) -> None:
     """Append `row` as one line, synced to the disk; a torn line before it is ended, a missing folder made."""
+    append_json_lines(path, [row])
+
+
+def append_json_lines(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
+    """Append `rows`, a line each, in one write; like `append_json_line`, but synced once for all."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    line = json.dumps(row, ensure_ascii=False, separators=(",", ":")).encode() + b"\n"
+    lines = [json.dumps(row, ensure_ascii=False, separators=(",", ":")).encode() + b"\n" for row in rows]
     with path.open("ab+") as file:
         if file.seek(0, os.SEEK_END) > 0:
             file.seek(-1, os.SEEK_END)
             if file.read(1) != b"\n":
-                line = b"\n" + line
-        file.write(line)
+                lines.insert(0, b"\n")
+        file.write(b"".join(lines))
         file.flush()
         os.fsync(file.fileno())
 
@@ -31,6 +38,16 @@ def read_json_lines(path: Path) -> Iterator[tuple[int, dict[str, Any] | None]]:
         for number, line in enumerate(file, start=1):
             if line.strip():
                 yield number, _object(line)
+
+
+def read_last_json_line(path: Path) -> dict[str, Any] | None:
+    """Return the last line that is one JSON object, of the file's last 4,096 bytes; None where there is none."""
+    if not path.exists():
+        return None
+    with path.open("rb") as file:
+        file.seek(max(0, file.seek(0, os.SEEK_END) - _TAIL_BYTES))
+        lines = file.read().split(b"\n")
+    return next((row for line in reversed(lines) if (row := _object(line)) is not None), None)
 
 
 def _object(line: bytes) -> dict[str, Any] | None:

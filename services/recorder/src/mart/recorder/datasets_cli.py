@@ -1,4 +1,4 @@
-"""`mart datasets …`. Heavy modules are imported inside: `mart --help` loads this file."""
+"""Run `mart datasets …`. Heavy modules are imported inside: `mart --help` loads this file."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
-from mart.recorder.filters import ANY, filters, passing
+from mart.recorder.filter_options import ANY, filter_of, filters
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import json_option, print_result
 
 if TYPE_CHECKING:
-    from mart.recorder.catalog import Row
-    from mart.recorder.curate import Curated
+    from mart.episodes.labelled_episode import LabelledEpisode
+    from mart.recorder.catalogue.dataset_editing import DataSetEdit
 
 _name = click.argument("name")
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
@@ -46,11 +46,12 @@ def datasets() -> None:
 @json_option
 def list_datasets(folder: Path, as_json: bool) -> None:
     """List data sets: how many episodes they hold, and the digest of what they hold."""
+    from mart.episodes import labels
     from mart.episodes.datasets import named
-    from mart.recorder import curate, report
+    from mart.recorder import formatting
 
-    told = [report.dataset(one) for one in named(curate.said_in(folder)).values()]
-    print_result({"datasets": told}, report.dataset_table(told), as_json)
+    told = [formatting.dataset(one) for one in named(labels.read_folded(folder)).values()]
+    print_result({"datasets": told}, formatting.dataset_table(told), as_json)
 
 
 @datasets.command()
@@ -59,21 +60,23 @@ def list_datasets(folder: Path, as_json: bool) -> None:
 @json_option
 def show(name: str, folder: Path, as_json: bool) -> None:
     """Show what a data set holds, also what has been dropped, discarded or deleted since."""
+    from mart.episodes import labels
     from mart.episodes.datasets import find
-    from mart.recorder import curate, report
-    from mart.recorder.catalog import list_folder
+    from mart.episodes.filter import MEANT
+    from mart.recorder import formatting
+    from mart.recorder.catalogue.episode_catalogue import list_folder
 
-    found = find(curate.said_in(folder), name)
+    found = find(labels.read_folded(folder), name)
     rows = {row.path: row for row in list_folder(folder)}
-    unfit = {path: curate.why_unfit(rows[path]) if path in rows else "deleted" for path in found.episodes}
-    told = report.dataset(found) | {
+    unfit = {path: MEANT.why_not(rows[path]) if path in rows else "deleted" for path in found.episodes}
+    told = formatting.dataset(found) | {
         "episodes": [
             {"path": path, "left_out": why, **({"outcome": rows[path].outcome} if path in rows else {})}
             for path, why in unfit.items()
         ]
     }
-    held = [(Path(path), rows[path]) for path in found.episodes if path in rows]
-    print_result(told, report.dataset_text(found, held, unfit), as_json)
+    held = [rows[path] for path in found.episodes if path in rows]
+    print_result(told, formatting.dataset_text(found, held, unfit), as_json)
 
 
 @datasets.command()
@@ -84,10 +87,10 @@ def show(name: str, folder: Path, as_json: bool) -> None:
 @json_option
 def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
     """Put episodes together under a new name: all that the filters let through, or those among PATHS."""
+    from mart.episodes import labels
     from mart.episodes.datasets import named
-    from mart.recorder import curate
 
-    if name in named(curate.said_in(folder)):
+    if name in named(labels.read_folded(folder)):
         raise Conflict(f"There is a data set {name!r} already; add to it with `mart datasets add {name}`.")
     _take_in(name, paths, folder, as_json, wanted)
 
@@ -100,10 +103,10 @@ def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
 @json_option
 def add(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
     """Put more episodes into a data set: all that the filters let through, or those among PATHS."""
+    from mart.episodes import labels
     from mart.episodes.datasets import find
-    from mart.recorder import curate
 
-    find(curate.said_in(folder), name)
+    find(labels.read_folded(folder), name)
     _take_in(name, paths, folder, as_json, wanted)
 
 
@@ -115,7 +118,7 @@ def add(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wante
 @json_option
 def remove(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
     """Take episodes out of a data set: those that the filters let through, or those among PATHS, there or not."""
-    from mart.recorder import curate
+    from mart.recorder.catalogue import dataset_editing
 
     if not paths and not any(value not in ("", (ANY,)) for value in wanted.values()):
         raise InvalidInput(f"Name episodes or give a filter; `mart datasets delete {name}` takes out all.")
@@ -123,7 +126,7 @@ def remove(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
     left = tuple(path for path in placed if path.exists())
     chosen = _chosen(folder, left, wanted) if left or not paths else []
     names = [row.path for row in chosen] + [_below(folder, path) for path in placed if not path.exists()]
-    _say(curate.take_out(folder, name, names, clock.wall_ns()), "taken out", as_json)
+    _say(dataset_editing.take_out(folder, name, names, clock.wall_ns()), "taken out", as_json)
 
 
 @datasets.command()
@@ -132,11 +135,12 @@ def remove(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
 @json_option
 def delete(name: str, folder: Path, as_json: bool) -> None:
     """Delete a data set: every episode leaves it, and stays where it is."""
+    from mart.episodes import labels
     from mart.episodes.datasets import find
-    from mart.recorder import curate
+    from mart.recorder.catalogue import dataset_editing
 
-    held = find(curate.said_in(folder), name).episodes
-    _say(curate.take_out(folder, name, held, clock.wall_ns()), "taken out", as_json)
+    held = find(labels.read_folded(folder), name).episodes
+    _say(dataset_editing.take_out(folder, name, held, clock.wall_ns()), "taken out", as_json)
 
 
 @datasets.command()
@@ -147,36 +151,35 @@ def undo(name: str, folder: Path, as_json: bool) -> None:
     """Take back the last change of a data set; a second time does it again."""
     from mart.episodes import labels
     from mart.episodes.datasets import newest_act_ns
-    from mart.recorder import curate
+    from mart.recorder.catalogue import dataset_editing
 
     act_ns = newest_act_ns(labels.read(folder), name)
-    _say(curate.undo(folder, name, act_ns, clock.wall_ns()), "changed back", as_json)
+    _say(dataset_editing.undo(folder, name, act_ns, clock.wall_ns()), "changed back", as_json)
 
 
 def _take_in(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, wanted: dict[str, Any]) -> None:
-    from mart.recorder import curate
-    from mart.recorder.catalog import list_folder
+    from mart.recorder.catalogue import dataset_editing
+    from mart.recorder.catalogue.episode_catalogue import list_folder
 
     chosen = _chosen(folder, paths, wanted)
     _say(
-        curate.take_in(folder, name, chosen, list_folder(folder), clock.wall_ns()),
+        dataset_editing.take_in(folder, name, chosen, list_folder(folder), clock.wall_ns()),
         "put into it",
         as_json,
     )
 
 
-def _chosen(folder: Path, paths: tuple[Path, ...], wanted: dict[str, Any]) -> list[Row]:
-    """Raises InvalidInput for a path that is not in the folder, and where nothing is let through."""
-    from mart.recorder import files
+def _chosen(folder: Path, paths: tuple[Path, ...], wanted: dict[str, Any]) -> list[LabelledEpisode]:
+    """Choose episodes. Raises InvalidInput for a path that is not in the folder, and where nothing is let through."""
+    from mart.recorder.catalogue.episode_catalogue import list_paths
 
-    placed = [_placed(folder, path) for path in paths]
-    rows = files.rows(placed or (folder,))
-    for path, _ in rows:
-        _below(folder, path)
-    passed = [row for _, row in passing(rows, wanted)]
+    listed = list_paths([_placed(folder, path) for path in paths] or (folder,))
+    for episode in listed:
+        _below(folder, episode.file_path)
+    passed = filter_of(wanted, unusable=True).apply(listed)
     if not passed:
         asked = ", ".join(f"--{key} {_text(value)}" for key, value in wanted.items() if value)
-        raise InvalidInput(f"None of {len(rows)} episodes is let through by {asked}; widen the filters.")
+        raise InvalidInput(f"None of {len(listed)} episodes is let through by {asked}; widen the filters.")
     return passed
 
 
@@ -185,12 +188,12 @@ def _text(value: str | tuple[str, ...]) -> str:
 
 
 def _placed(folder: Path, path: Path) -> Path:
-    """Paths may also be given as they are listed: relative to the folder of episodes."""
+    """Return where a path leads: it may also be given as it is listed, relative to the folder of episodes."""
     return path if path.exists() else folder / path
 
 
 def _below(folder: Path, path: Path) -> str:
-    """As labels name it. Raises InvalidInput where its labels are in another folder."""
+    """Return a path as labels name it. Raises InvalidInput where its labels are in another folder."""
     from mart.episodes import labels
 
     root = labels.root_of(path)
@@ -201,7 +204,7 @@ def _below(folder: Path, path: Path) -> str:
     return path.resolve().relative_to(root).as_posix()
 
 
-def _say(done: Curated, what: str, as_json: bool) -> None:
-    from mart.recorder import report
+def _say(done: DataSetEdit, what: str, as_json: bool) -> None:
+    from mart.recorder import formatting
 
-    print_result(*report.curated(done, what), as_json)
+    print_result(*formatting.curated(done, what), as_json)

@@ -1,1 +1,1 @@
-"""Episodes in the files of other projects, one module a format."""
+"""Write episodes as the files of other projects, one module a format."""

@@ -1,4 +1,6 @@
-"""LeRobot's data sets of version 3 (huggingface.co/docs/lerobot/lerobot-dataset-v3): a folder of Parquet and JSON.
+"""Write LeRobot's data sets of version 3: a folder of Parquet and JSON.
+
+The format is that of huggingface.co/docs/lerobot/lerobot-dataset-v3.
 
 Numbers only: what was recorded as video is drawn anew by `mart episodes render`. The arms' own observations are
 `observation.state`, all others `observation.environment_state`, in the catalogue's order; quaternions stay wxyz.
@@ -18,11 +20,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from mart.episodes.arrays import EpisodeData
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Conflict
 from mart.protocol.tasks import Observation, Task
-from mart.recorder.export.choice import Choice
-from mart.recorder.export.transitions import Transitions, read_transitions
+from mart.recorder.export.selection import ExportSelection, read_data
 
 _VERSION = "v3.0"
 _FILE = "chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
@@ -33,16 +35,16 @@ _LIMITS = {"chunks_size": 1000, "data_files_size_in_mb": 100, "video_files_size_
 Columns = dict[str, NDArray[Any]]  # by feature, one row a frame
 
 
-def write_lerobot(choice: Choice, path: Path) -> int:
-    """How many frames were written. The folder has its name when it is whole.
+def write_lerobot(selection: ExportSelection, path: Path) -> int:
+    """Write the folder and return how many frames are in it; it has its name when it is whole.
 
-    Raises Conflict where it is there already or cannot be written, and what read_transitions raises.
+    Raises Conflict where it is there already or cannot be written, and what `read_data` raises.
     """
     if path.exists():
         raise Conflict(f"{path} is there already; name another folder or remove it.")
     half = path.with_name(path.name + ".half")
     try:
-        frames = _write(choice, half)
+        frames = _write(selection, half)
         os.replace(half, path)
     except OSError as error:
         raise Conflict(f"{path} could not be written: {error}.") from error
@@ -51,41 +53,41 @@ def write_lerobot(choice: Choice, path: Path) -> int:
     return frames
 
 
-def _write(choice: Choice, folder: Path) -> int:
+def _write(selection: ExportSelection, folder: Path) -> int:
     episodes = [
-        _frames(read_transitions(file, choice.task), choice, number)
-        for number, (file, _) in enumerate(choice.episodes)
+        _frames(read_data(episode, selection.task), selection, number)
+        for number, episode in enumerate(selection.episodes)
     ]
     columns = {name: np.concatenate([episode[name] for episode in episodes]) for name in episodes[0]}
     frames = len(columns["index"])
     columns["index"] = np.arange(frames)
     _write_table(folder / "data" / _FIRST, {name: _column(values) for name, values in columns.items()})
     lengths = [len(episode["index"]) for episode in episodes]
-    _write_table(folder / "meta/episodes" / _FIRST, _episodes(choice.task, lengths))
-    _write_tasks(folder / "meta/tasks.parquet", choice.task.instruction)
+    _write_table(folder / "meta/episodes" / _FIRST, _episodes(selection.task, lengths))
+    _write_tasks(folder / "meta/tasks.parquet", selection.task.instruction)
     stats = {name: _statistics(values) for name, values in columns.items()}
     (folder / "meta/stats.json").write_text(json.dumps(stats, indent=2))
-    (folder / "meta/info.json").write_text(json.dumps(_info(choice, columns, len(episodes)), indent=2))
+    (folder / "meta/info.json").write_text(json.dumps(_info(selection, columns, len(episodes)), indent=2))
     return frames
 
 
-def _frames(transitions: Transitions, choice: Choice, number: int) -> Columns:
-    """Of one episode."""
-    count = len(transitions)
+def _frames(data: EpisodeData, selection: ExportSelection, number: int) -> Columns:
+    """Return the columns of one episode."""
+    count = len(data)
     frame = np.arange(count)
     seen = {
         part: np.concatenate(
-            [transitions.observations[one.name][:-1].reshape(count, -1) for one in observations], axis=1
+            [data.observations[one.name][:-1].reshape(count, -1) for one in observations], axis=1
         ).astype(np.float32)
-        for part, observations in _parts(choice.task).items()
+        for part, observations in _parts(selection.task).items()
     }
     return {
         **seen,
-        "action": transitions.actions.reshape(count, -1).astype(np.float32),
-        "next.reward": transitions.success.astype(np.float32),
-        "next.success": transitions.success,
+        "action": data.actions.reshape(count, -1).astype(np.float32),
+        "next.reward": data.success[1:].astype(np.float32),
+        "next.success": data.success[1:],
         "next.done": frame == count - 1,
-        "timestamp": (frame / choice.control_hz).astype(np.float32),
+        "timestamp": (frame / selection.control_hz).astype(np.float32),
         "frame_index": frame,
         "episode_index": np.full(count, number),
         "index": frame,
@@ -121,7 +123,7 @@ def _episodes(task: Task, lengths: list[int]) -> Mapping[str, Any]:
 
 
 def _write_tasks(path: Path, instruction: str) -> None:
-    """As pandas writes a table whose index is the task in words, which is how LeRobot finds one."""
+    """Write the table as pandas does one whose index is the task in words, which is how LeRobot finds a task."""
     index = "__index_level_0__"
     table = pa.table({"task_index": [0], index: [instruction]})
     kinds = {"task_index": ("int64", "int64"), index: ("unicode", "object")}
@@ -140,7 +142,7 @@ def _write_tasks(path: Path, instruction: str) -> None:
 
 
 def _statistics(values: NDArray[Any]) -> dict[str, list[float]]:
-    """What policies are normalised with, a list for each."""
+    """Return what policies are normalised with, a list for each."""
     rows = values.reshape(len(values), -1).astype(np.float64)
     found = {"min": rows.min(0), "max": rows.max(0), "mean": rows.mean(0), "std": rows.std(0)}
     quantiles = {
@@ -149,11 +151,11 @@ def _statistics(values: NDArray[Any]) -> dict[str, list[float]]:
     return {name: value.tolist() for name, value in (found | quantiles).items()} | {"count": [len(rows)]}
 
 
-def _info(choice: Choice, columns: Columns, episodes: int) -> dict[str, Any]:
-    rate = choice.control_hz
+def _info(selection: ExportSelection, columns: Columns, episodes: int) -> dict[str, Any]:
+    rate = selection.control_hz
     return {
         "codebase_version": _VERSION,
-        "robot_type": f"{len(choice.task.arms)} Franka Pandas",
+        "robot_type": f"{len(selection.task.arms)} Franka Pandas",
         "total_episodes": episodes,
         "total_frames": len(columns["index"]),
         "total_tasks": 1,
@@ -162,7 +164,7 @@ def _info(choice: Choice, columns: Columns, episodes: int) -> dict[str, Any]:
         "splits": {"train": f"0:{episodes}"},
         "data_path": f"data/{_FILE}",
         "video_path": None,
-        "features": {name: _feature(name, values, choice.task) for name, values in columns.items()},
+        "features": {name: _feature(name, values, selection.task) for name, values in columns.items()},
     }
 
 

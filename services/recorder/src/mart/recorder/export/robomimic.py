@@ -1,4 +1,4 @@
-"""robomimic's HDF5, as its 0.3 reads it (robomimic.github.io/docs/datasets/overview.html).
+"""Write robomimic's HDF5, as its 0.3 reads it (robomimic.github.io/docs/datasets/overview.html).
 
 A demonstration is an episode, an observation of the catalogue is an observation of robomimic's: `arm0/gripper` becomes
 `arm0_gripper`, since a slash would make a group. Nothing is converted: quaternions stay wxyz, numbers float64. What
@@ -16,29 +16,28 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from mart.episodes.reader import EpisodeFile
+from mart.episodes.arrays import EpisodeData
+from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import Conflict
 from mart.protocol.tasks import Task
-from mart.recorder.catalog import Row
-from mart.recorder.export.choice import Choice
-from mart.recorder.export.transitions import Transitions, read_transitions
+from mart.recorder.export.selection import ExportSelection, read_data
 
 # robomimic.envs.env_base.EnvType.GYM_TYPE. It knows four types, and none of them makes a world of MART: its rollouts
 # have to be off.
 _GYM_TYPE = 2
 
 
-def write_robomimic(choice: Choice, path: Path) -> int:
-    """How many transitions were written. The file has its name when it is whole.
+def write_robomimic(selection: ExportSelection, path: Path) -> int:
+    """Write the file and return how many transitions are in it; it has its name when it is whole.
 
-    Raises Conflict where it is there already or cannot be written, and what read_transitions raises.
+    Raises Conflict where it is there already or cannot be written, and what `read_data` raises.
     """
     if path.exists():
         raise Conflict(f"{path} is there already; name another file or remove it.")
     half = path.with_name(path.name + ".half")
     try:
         with h5py.File(half, "w") as file:
-            ticks = _write(file, choice)
+            ticks = _write(file, selection)
         os.replace(half, path)
     except OSError as error:
         raise Conflict(f"{path} could not be written: {error}.") from error
@@ -48,48 +47,49 @@ def write_robomimic(choice: Choice, path: Path) -> int:
 
 
 def key_of(name: str) -> str:
-    """Of an observation of the catalogue, in robomimic's files."""
+    """Return the name in robomimic's files of an observation of the task catalogue."""
     return name.replace("/", "_")
 
 
-def _write(file: h5py.File, choice: Choice) -> int:
+def _write(file: h5py.File, selection: ExportSelection) -> int:
     data = file.create_group("data")
     total, groups = 0, defaultdict(list)
-    for number, (episode, row) in enumerate(choice.episodes):
+    for number, episode in enumerate(selection.episodes):
         demo = f"demo_{number}"
-        transitions = read_transitions(episode, choice.task)
-        _write_demo(data.create_group(demo), transitions, episode, row)
-        total += len(transitions)
-        for key in filter(None, (row.outcome, row.skill, *(f"dataset-{name}" for name in row.datasets))):
+        episode_data = read_data(episode, selection.task)
+        _write_demo(data.create_group(demo), episode_data, episode)
+        total += len(episode_data)
+        in_data_sets = (f"dataset-{name}" for name in episode.datasets)
+        for key in filter(None, (episode.outcome, episode.skill, *in_data_sets)):
             groups[key].append(demo)
     data.attrs["total"] = total
-    data.attrs["env_args"] = json.dumps(_environment(choice))
-    data.attrs["observations"] = json.dumps(_observations(choice.task))
+    data.attrs["env_args"] = json.dumps(_environment(selection))
+    data.attrs["observations"] = json.dumps(_observations(selection.task))
     for key, demos in groups.items():
         file[f"mask/{key}"] = np.array(demos, dtype="S")
     return total
 
 
-def _write_demo(group: h5py.Group, transitions: Transitions, episode: EpisodeFile, row: Row) -> None:
-    last = np.arange(1, len(transitions) + 1) == len(transitions)
-    group["states"] = transitions.states[:-1]
-    group["actions"] = transitions.actions.reshape(len(transitions), -1)
-    group["rewards"] = transitions.success.astype(np.float64)
+def _write_demo(group: h5py.Group, data: EpisodeData, episode: LabelledEpisode) -> None:
+    last = np.arange(1, len(data) + 1) == len(data)
+    group["states"] = data.integration_states[:-1]
+    group["actions"] = data.actions.reshape(len(data), -1)
+    group["rewards"] = data.success[1:].astype(np.float64)
     group["dones"] = last.astype(np.int64)
-    for name, values in transitions.observations.items():
+    for name, values in data.observations.items():
         group[f"obs/{key_of(name)}"] = values[:-1]
         group[f"next_obs/{key_of(name)}"] = values[1:]
-    group.attrs["num_samples"] = len(transitions)
-    group.attrs["episode"] = episode.path.name
-    group.attrs["outcome"] = row.outcome
-    group.attrs["operators"] = json.dumps(row.operators)
+    group.attrs["num_samples"] = len(data)
+    group.attrs["episode"] = episode.file_path.name
+    group.attrs["outcome"] = episode.outcome
+    group.attrs["operators"] = json.dumps(episode.operators)
 
 
-def _environment(choice: Choice) -> dict[str, object]:
-    arguments = {"control_hz": choice.control_hz, "arms": len(choice.task.arms)}
-    return {"env_name": choice.task.name, "type": _GYM_TYPE, "env_kwargs": arguments}
+def _environment(selection: ExportSelection) -> dict[str, object]:
+    arguments = {"control_hz": selection.control_hz, "arms": len(selection.task.arms)}
+    return {"env_name": selection.task.name, "type": _GYM_TYPE, "env_kwargs": arguments}
 
 
 def _observations(task: Task) -> dict[str, object]:
-    """By key: the catalogue's name, shape and unit, and whose operators see it."""
+    """Return by key the catalogue's name, shape and unit, and whose operators see it."""
     return {key_of(observation.name): asdict(observation) for observation in task.observations}

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import logging
-import os
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +14,9 @@ from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
 from mart.episodes.reader import EpisodeFile
+from mart.runtime.atomic_file import PUBLIC, write_atomically
 from mart.trainer.data.episode import EpisodeArrays, read_episode
-from mart.trainer.data.layout import Layout
+from mart.trainer.data.layout import ObservationLayout
 
 _log = logging.getLogger(__name__)
 
@@ -24,12 +24,15 @@ _VERSION = 1  # of EpisodeArrays: another one is read anew
 
 
 def sha256_of(path: Path) -> str:
+    """Return the SHA-256 of a file in hexadecimal digits."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def read_cached(file: EpisodeFile, layout: Layout, sha256: str, folder: Path | None) -> EpisodeArrays:
-    """Raises what `read_episode` raises. `folder`: of the cache; None reads the file itself."""
+def read_cached(
+    file: EpisodeFile, layout: ObservationLayout, sha256: str, folder: Path | None
+) -> EpisodeArrays:
+    """Read an episode, from the cache where it is there. Raises what `read_episode` raises. `folder`: of the cache; None reads the file itself."""
     if folder is None:
         return read_episode(file, layout)
     entry = folder / f"{sha256}-{layout.sha256[:16]}-{_VERSION}.safetensors"
@@ -52,9 +55,6 @@ def _load(entry: Path) -> EpisodeArrays | None:
 
 
 def _save(entry: Path, episode: EpisodeArrays) -> None:
-    """Several trainings may do so at once: each writes a file of its own, and the last one holds."""
-    entry.parent.mkdir(parents=True, exist_ok=True)
+    """Write an entry. Several trainings may do so at once: each writes a file of its own, and the last one holds."""
     arrays = {name: np.ascontiguousarray(array) for name, array in vars(episode).items()}
-    own = entry.with_suffix(f".{os.getpid()}")
-    own.write_bytes(save(arrays))
-    own.replace(entry)
+    write_atomically(entry, save(arrays), PUBLIC)

@@ -12,18 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
+from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import InvalidInput
 from mart.trainer.data.cache import read_cached, sha256_of
+from mart.trainer.data.data_spec import DataSetName, Selection
 from mart.trainer.data.episode import EpisodeArrays
-from mart.trainer.data.layout import Layout
-from mart.trainer.data.named import NamedData, account
-from mart.trainer.data.select import Candidate, candidates, select
-from mart.trainer.request import DataSetName, Selection
+from mart.trainer.data.layout import ObservationLayout
+from mart.trainer.data.named_dataset import NamedData, account
+from mart.trainer.data.selection import candidates, select
 
 S = TypeVar("S", bound=np.generic)
 
 
-class Used(BaseModel):
+class UsedEpisode(BaseModel):
     """One episode that was learned from."""
 
     model_config = ConfigDict(frozen=True)
@@ -36,7 +37,7 @@ class Used(BaseModel):
     operators: tuple[str, ...]
 
 
-class Digest(BaseModel):
+class DataDigest(BaseModel):
     """What a training learned from; `sha256` is over the files' hashes in their order."""
 
     model_config = ConfigDict(frozen=True)
@@ -45,7 +46,7 @@ class Digest(BaseModel):
     control_hz: float
     arms: tuple[str, ...]
     selection: Selection
-    episodes: tuple[Used, ...]
+    episodes: tuple[UsedEpisode, ...]
     ticks: int
     sha256: str
     dataset: NamedData | None = None
@@ -59,8 +60,8 @@ class Dataset:
     ends: int64[rows], the row of the last state of the same episode.
     """
 
-    digest: Digest
-    layout: Layout
+    digest: DataDigest
+    layout: ObservationLayout
     observations: NDArray[np.float32]
     actions: NDArray[np.float32]
     sources: NDArray[np.int8]
@@ -93,12 +94,12 @@ def load_dataset(
         )
     chosen = select(found, selection)
     task, rate, arms = _facts(chosen[0])
-    layout = Layout.of_arms(task, len(arms))
-    hashes = [sha256_of(one.path) for one in chosen]
+    layout = ObservationLayout.of_arms(task, len(arms))
+    hashes = [sha256_of(one.file_path) for one in chosen]
     episodes = [
-        read_cached(one.file, layout, sha256, cache) for one, sha256 in zip(chosen, hashes, strict=True)
+        read_cached(one.open(), layout, sha256, cache) for one, sha256 in zip(chosen, hashes, strict=True)
     ]
-    digest = Digest(
+    digest = DataDigest(
         task=task,
         control_hz=rate,
         arms=arms,
@@ -111,7 +112,7 @@ def load_dataset(
     return join(digest, layout, episodes)
 
 
-def join(digest: Digest, layout: Layout, episodes: Iterable[EpisodeArrays]) -> Dataset:
+def join(digest: DataDigest, layout: ObservationLayout, episodes: Iterable[EpisodeArrays]) -> Dataset:
     """The episodes as one; each gets a row without action at its end."""
     listed = list(episodes)
     lengths = np.array([len(episode.observations) for episode in listed])
@@ -125,21 +126,20 @@ def join(digest: Digest, layout: Layout, episodes: Iterable[EpisodeArrays]) -> D
     )
 
 
-def _facts(first: Candidate) -> tuple[str, float, tuple[str, ...]]:
-    episode = first.episode
-    if episode.task is None or episode.control_hz is None:
-        raise InvalidInput(f"{first.path} does not say its task and control rate; leave it out.")
-    return episode.task, episode.control_hz, episode.arms
+def _facts(first: LabelledEpisode) -> tuple[str, float, tuple[str, ...]]:
+    if first.task is None or first.control_hz is None:
+        raise InvalidInput(f"{first.file_path} does not say its task and control rate; leave it out.")
+    return first.task, first.control_hz, first.arms
 
 
-def _used(one: Candidate, sha256: str, episode: EpisodeArrays) -> Used:
-    return Used(
-        path=str(one.path),
+def _used(one: LabelledEpisode, sha256: str, episode: EpisodeArrays) -> UsedEpisode:
+    return UsedEpisode(
+        path=str(one.file_path),
         sha256=sha256,
         ticks=len(episode.actions),
         outcome=one.outcome,
         verdict=one.verdict,
-        operators=tuple(sorted({f"{shift.operator} {shift.name}".rstrip() for shift in one.drivers})),
+        operators=tuple(sorted({f"{shift.operator} {shift.name}".rstrip() for shift in one.shifts})),
     )
 
 

@@ -1,4 +1,4 @@
-"""One episode as arrays, read from its file.
+"""Read one episode as arrays of what a model takes.
 
 A tick's state carries the action that led to it, so a transition is: observation of state t, action in state t + 1,
 observation of state t + 1 (docs/protocol.md, section 3).
@@ -12,18 +12,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.episodes.arrays import arrays_from_states
 from mart.episodes.reader import EpisodeFile
-from mart.protocol import codec
-from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import InvalidInput
-from mart.protocol.messages import ArmState, State
-from mart.protocol.recording import STATE
-from mart.trainer.data.layout import Layout
+from mart.protocol.messages import State
+from mart.trainer.data.layout import ObservationLayout
 
 
 @dataclass(frozen=True)
 class EpisodeArrays:
-    """T transitions of an episode, T + 1 observations.
+    """Hold T transitions of an episode, T + 1 observations.
 
     observations: float32[T + 1, layout.width].
     actions: float32[T, arms, 7], what was applied in the tick after each observation but the last.
@@ -35,61 +33,20 @@ class EpisodeArrays:
     sources: NDArray[np.int8]
 
 
-def read_episode(file: EpisodeFile, layout: Layout) -> EpisodeArrays:
-    """Raises Corrupt where the file is damaged and InvalidInput, naming it, where it cannot be learned from."""
+def read_episode(file: EpisodeFile, layout: ObservationLayout) -> EpisodeArrays:
+    """Read an episode. Raises Corrupt where the file is damaged and InvalidInput, naming it, where it is not whole."""
     try:
-        return from_states(layout, [codec.decode(State, one.payload) for one in file.messages(STATE)])
+        return from_states(layout, list(file.states()))
     except InvalidInput as error:
         raise InvalidInput(f"{file.path} cannot be learned from: {error}") from error
 
 
-def from_states(layout: Layout, states: Sequence[State]) -> EpisodeArrays:
-    """The states of one episode in their order, the one after the reset first."""
-    if len(states) < 2:
-        raise InvalidInput(f"it has {len(states)} states, and at least 2 are needed.")
-    steps = np.diff([state.episode_tick for state in states])
-    if (steps != 1).any():
-        tick = states[int((steps != 1).argmax())].episode_tick
-        raise InvalidInput(f"ticks are missing after tick {tick}; every one must be there.")
-    moved = [_arms(layout, state) for state in states[1:]]
+def from_states(layout: ObservationLayout, states: Sequence[State]) -> EpisodeArrays:
+    """Turn the states of one episode in their order, the one after the reset first, into arrays."""
+    shapes = {field.name: field.shape for field in layout.fields}
+    data = arrays_from_states(states, layout.arms, shapes)
     return EpisodeArrays(
-        observations=layout.vector(_observations(layout, states)),
-        actions=_actions(moved),
-        sources=np.array([[arm.source for arm in arms] for arms in moved], dtype=np.int8),
+        observations=layout.vector(data.observations),
+        actions=data.actions.astype(np.float32),
+        sources=data.sources,
     )
-
-
-def _observations(layout: Layout, states: Sequence[State]) -> dict[str, NDArray[np.float64]]:
-    """By name, each [states, *shape]."""
-    named = [{seen.name: seen.value for seen in state.observations} for state in states]
-    missing = [seen.name for seen in layout.seen if any(seen.name not in state for state in named)]
-    if missing:
-        raise InvalidInput(f"the observation {missing[0]} is missing; it must be in every state.")
-    try:
-        return {
-            seen.name: np.array([state[seen.name] for state in named]).reshape(-1, *seen.shape)
-            for seen in layout.seen
-        }
-    except ValueError as error:
-        raise InvalidInput("an observation has another shape than the task catalogue says.") from error
-
-
-def _arms(layout: Layout, state: State) -> list[ArmState]:
-    """In the task's order."""
-    arms = {arm.arm: arm for arm in state.arms}
-    if tuple(sorted(arms)) != tuple(sorted(layout.arms)):
-        raise InvalidInput(
-            f"tick {state.episode_tick} has the arms {', '.join(sorted(arms)) or 'none'}; "
-            f"all of {', '.join(layout.arms)} must be there."
-        )
-    return [arms[name] for name in layout.arms]
-
-
-def _actions(moved: Sequence[Sequence[ArmState]]) -> NDArray[np.float32]:
-    """[ticks, arms, 7]."""
-    if any(len(arm.action) != ACTION_SIZE for arms in moved for arm in arms):
-        raise InvalidInput(f"an arm has no action of {ACTION_SIZE} numbers after the first state.")
-    actions = np.array([[arm.action for arm in arms] for arms in moved], dtype=np.float32)
-    if not np.isfinite(actions).all():
-        raise InvalidInput("an action holds NaN or infinity; every number must be finite.")
-    return actions

@@ -22,10 +22,10 @@ class Normaliser(nn.Module):
         self.register_buffer("deviation", torch.ones(width))
 
     def fit(self, dataset: Dataset) -> None:
-        seen = torch.from_numpy(dataset.observations).double()
-        self.mean.copy_(seen.mean(0))
-        self.deviation.copy_(seen.std(0, correction=0).clamp(min=_LEAST_DEVIATION))
+        obs = torch.from_numpy(dataset.observations).double()
+        self.mean.copy_(obs.mean(0))
+        self.deviation.copy_(obs.std(0, correction=0).clamp(min=_LEAST_DEVIATION))
 
-    def forward(self, seen: Tensor) -> Tensor:
+    def forward(self, obs: Tensor) -> Tensor:
         """[..., D] → [..., D]."""
-        return ((seen - self.mean) / self.deviation).clamp(-_FARTHEST, _FARTHEST)
+        return ((obs - self.mean) / self.deviation).clamp(-_FARTHEST, _FARTHEST)

@@ -10,8 +10,8 @@ import click
 from mart.runtime.cli import json_option, print_result
 
 if TYPE_CHECKING:
-    from mart.trainer.evaluate.judge import Judge
-    from mart.trainer.evaluate.result import Evaluation
+    from mart.trainer.evaluate.evaluation import Evaluation
+    from mart.trainer.evaluate.evaluator import Evaluator
 
 
 @click.command("eval")
@@ -56,26 +56,27 @@ def evaluate(
     as_json: bool,
 ) -> None:
     """Judge a checkpoint, or a whole run, by episodes in worlds that every model is judged in."""
-    from mart.trainer.evaluate import words
-    from mart.trainer.evaluate.judge import Judge, Rules
+    from mart.trainer.evaluate import formatting
+    from mart.trainer.evaluate.config import EvalConfig
+    from mart.trainer.evaluate.evaluator import Evaluator
     from mart.trainer.evaluate.replicas import worlds
 
-    rules = Rules(episodes, score_episodes, seed, time_limit, keep)
+    config = EvalConfig(episodes, score_episodes, seed, time_limit, keep)
     chosen = _chosen(checkpoint, task)
     with worlds([name for name in replicas.split(",") if name]) as client:
-        judge = Judge(client, rules, device)
-        evaluations = _judged(judge, chosen, as_json=as_json)
-    result: dict[str, Any] = {"evaluations": [words.as_json(found) for found in evaluations]}
-    print_result(result, words.summary(evaluations), as_json)
+        evaluator = Evaluator(client, config, device)
+        evaluations = _evaluated(evaluator, chosen, as_json=as_json)
+    result: dict[str, Any] = {"evaluations": [formatting.as_json(found) for found in evaluations]}
+    print_result(result, formatting.summary(evaluations), as_json)
 
 
 def _chosen(checkpoint: Path, task: str | None) -> Path:
     """Looked at before worlds are started. Raises NotFound, Corrupt, InvalidInput."""
-    from mart.trainer.checkpoint import RECORD, read_record
-    from mart.trainer.evaluate.judge import require_task
-    from mart.trainer.runs import REQUEST, RunDirectory
+    from mart.trainer.evaluate.evaluator import require_task
+    from mart.trainer.models.checkpoint import RECORD, read_record
+    from mart.trainer.train.run_directory import SPEC_FILE, RunDirectory
 
-    if (checkpoint / REQUEST).is_file() and not (checkpoint / RECORD).is_file():
+    if (checkpoint / SPEC_FILE).is_file() and not (checkpoint / RECORD).is_file():
         run = RunDirectory(checkpoint)
         first = [
             run.checkpoint(updates, seed)
@@ -91,22 +92,22 @@ def _chosen(checkpoint: Path, task: str | None) -> Path:
     return checkpoint
 
 
-def _judged(judge: Judge, chosen: Path, *, as_json: bool) -> list[Evaluation]:
-    from mart.trainer.checkpoint import RECORD
-    from mart.trainer.evaluate import words
-    from mart.trainer.evaluate.judge import run_of
-    from mart.trainer.evaluate.seeds import Purpose
-    from mart.trainer.runs import RunDirectory
+def _evaluated(evaluator: Evaluator, chosen: Path, *, as_json: bool) -> list[Evaluation]:
+    from mart.trainer.evaluate import formatting
+    from mart.trainer.evaluate.evaluator import run_of
+    from mart.trainer.evaluate.world_seeds import Purpose
+    from mart.trainer.models.checkpoint import RECORD
+    from mart.trainer.train.run_directory import RunDirectory
 
     def say(evaluation: Evaluation) -> None:
         if not as_json:
-            click.echo(words.line(evaluation), err=True)
+            click.echo(formatting.line(evaluation), err=True)
 
     if not (chosen / RECORD).is_file():
         run = RunDirectory(chosen)
-        judge.new(run, say)
-        judge.score(run, say)
-        return [*judge.known(run, Purpose.SELECTION), *judge.known(run, Purpose.SCORE)]
+        evaluator.evaluate_new(run, say)
+        evaluator.score_best(run, say)
+        return [*evaluator.known(run, Purpose.SELECTION), *evaluator.known(run, Purpose.SCORE)]
     run_or_none = run_of(chosen)
     kept_in = None if run_or_none is None else run_or_none.path / "rollouts"
-    return judge.checkpoints([chosen], Purpose.SELECTION, kept_in)
+    return evaluator.evaluate_checkpoints([chosen], Purpose.SELECTION, kept_in)

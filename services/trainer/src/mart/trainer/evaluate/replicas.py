@@ -6,7 +6,6 @@ The trainer never imports the sim. It starts `mart replica` as anybody would, wh
 from __future__ import annotations
 
 import contextlib
-import socket
 import subprocess
 import tempfile
 import threading
@@ -20,8 +19,9 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.rollouts.client import RolloutClient
 from mart.runtime.bus.base import Bus
 from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.child_process import MART, start_child, stop_child
+from mart.runtime.ports import free_port
 from mart.runtime.settings import Settings
-from mart.trainer import leash
 
 _START_TIMEOUT_S = 60.0
 _NAME = "replica-1"
@@ -50,15 +50,15 @@ def _private() -> Iterator[tuple[Bus, Sequence[str]]]:
         raise Unavailable(
             "No sim can be reached for rollouts: none is installed here; name running replicas with --replicas."
         )
-    endpoint = f"tcp/127.0.0.1:{_free_port()}"
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
     environment = {"MART_ROUTER": endpoint, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         log = stack.enter_context((folder / "log").open("wb"))
 
         def start(*command: str) -> subprocess.Popen[bytes]:
-            process = leash.start((leash.MART, *command), log, environment)
-            stack.callback(leash.stop, process)
+            process = start_child((MART, *command), log, environment)
+            stack.callback(stop_child, process)
             return process
 
         start("router")
@@ -84,9 +84,3 @@ def _connected(endpoint: str, replica: subprocess.Popen[bytes], log: Path) -> It
                         f"The replica for rollouts did not start: {words or 'it says nothing'}."
                     )
         yield bus
-
-
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])

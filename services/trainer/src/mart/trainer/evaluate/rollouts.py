@@ -1,4 +1,4 @@
-"""Policies in worlds, in lockstep: everything that acts in one tick is one request."""
+"""Roll policies out in worlds, in lockstep: everything that acts in one tick is one request."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.protocol.batch_state import ACTION_SIZE, BatchState
 from mart.protocol.errors import InvalidInput
 from mart.protocol.tasks import Task, get_task
-from mart.rollouts.client import ACTION_SIZE, BatchState, RolloutClient
-from mart.trainer.evaluate.result import Outcome, Played
+from mart.rollouts.client import RolloutClient
+from mart.trainer.evaluate.evaluation import EpisodeResult, RolloutOutcome
 
 if TYPE_CHECKING:
-    from mart.trainer.policies.policy import Policy
+    from mart.trainer.models.policies.policy import Policy
 
 Array = NDArray[np.float64]
 
@@ -26,21 +27,21 @@ _WORLDS_AT_ONCE = 250
 
 
 @dataclass(frozen=True)
-class Course:
-    """One episode and what was done in it. actions: float64[ticks, arms, 7]."""
+class RolloutResult:
+    """One episode of a policy and what it did. actions: float64[ticks, arms, 7]."""
 
-    played: Played
+    result: EpisodeResult
     actions: Array
 
 
-def play(
+def roll_out(
     policies: Sequence[Policy],
     client: RolloutClient,
     seeds: Sequence[int],
     policy_seed: int,
     time_limit_s: float | None = None,
-) -> list[list[Course]]:
-    """One episode of every policy in every world; the courses by policy, in the order of `seeds`.
+) -> list[list[RolloutResult]]:
+    """Let every policy act for one episode in every world; return the results by policy, in the order of `seeds`.
 
     All policies are of one task and rate and drive all of its arms. An episode ends with success, with an irrecoverable
     failure, or after `time_limit_s`, the length of the task's trials unless told.
@@ -48,21 +49,21 @@ def play(
     """
     task = _common_task(policies)
     together = _WORLDS_AT_ONCE // min(len(seeds), SEEDS_AT_ONCE)
-    panels = [policies[first : first + together] for first in range(0, len(policies), together)]
+    groups = [policies[first : first + together] for first in range(0, len(policies), together)]
     limit_s = task.trial_limit_s if time_limit_s is None else time_limit_s
-    courses: list[list[Course]] = []
-    for panel in panels:
-        found: list[list[Course]] = [[] for _ in panel]
+    results: list[list[RolloutResult]] = []
+    for group in groups:
+        found: list[list[RolloutResult]] = [[] for _ in group]
         for first in range(0, len(seeds), SEEDS_AT_ONCE):
-            batch = _Batch(task, panel, seeds[first : first + SEEDS_AT_ONCE])
-            batch.play(client, policy_seed + first, limit_s)
-            for of_policy, more in zip(found, batch.courses(), strict=True):
+            batch = _PolicyBatch(task, group, seeds[first : first + SEEDS_AT_ONCE])
+            batch.roll_out(client, policy_seed + first, limit_s)
+            for of_policy, more in zip(found, batch.results(), strict=True):
                 of_policy.extend(more)
-        courses += found
-    return courses
+        results += found
+    return results
 
 
-class _Batch:
+class _PolicyBatch:
     """Worlds of several policies side by side: those of policy k are `slices[k]`."""
 
     def __init__(self, task: Task, policies: Sequence[Policy], seeds: Sequence[int]) -> None:
@@ -77,7 +78,7 @@ class _Batch:
         self._ticks = np.zeros(number, int)
         self._actions: list[Array] = []
 
-    def play(self, client: RolloutClient, policy_seed: int, limit_s: float) -> None:
+    def roll_out(self, client: RolloutClient, policy_seed: int, limit_s: float) -> None:
         control_hz, arms = self._policies[0].control_hz, len(self._task.arms)
         worlds = client.reset(self._task.name, list(self._seeds) * len(self._policies), control_hz, arms)
         for policy in self._policies:
@@ -110,31 +111,31 @@ class _Batch:
         self._success |= worlds.success
         self._failed |= worlds.failed & ~worlds.success
 
-    def courses(self) -> list[list[Course]]:
+    def results(self) -> list[list[RolloutResult]]:
         actions = np.array(self._actions)
         return [
             [
-                self._course(world, seed, actions)
+                self._result(world, seed, actions)
                 for world, seed in zip(range(own.start, own.stop), self._seeds, strict=True)
             ]
             for own in self._slices
         ]
 
-    def _course(self, world: int, seed: int, actions: Array) -> Course:
+    def _result(self, world: int, seed: int, actions: Array) -> RolloutResult:
         ticks = int(self._ticks[world])
         names = [subtask.name for subtask in self._task.subtasks]
-        played = Played(
+        result = EpisodeResult(
             seed=seed,
             outcome=self._outcome(world),
             time_s=ticks / self._policies[0].control_hz,
             done=tuple(name for name, done in zip(names, self._done[world], strict=True) if done),
         )
-        return Course(played, actions[:ticks, world])
+        return RolloutResult(result, actions[:ticks, world])
 
-    def _outcome(self, world: int) -> Outcome:
+    def _outcome(self, world: int) -> RolloutOutcome:
         if self._success[world]:
-            return "success"
-        return "failure" if self._failed[world] else "time"
+            return RolloutOutcome.SUCCESS
+        return RolloutOutcome.FAILURE if self._failed[world] else RolloutOutcome.TIME
 
 
 def _common_task(policies: Sequence[Policy]) -> Task:

@@ -1,4 +1,4 @@
-"""One job: what is trained and judged, and how far that has come. Pure: `now_ns` is an argument.
+"""One job: what is trained and evaluated, and how far that has come. Pure: `now_ns` is an argument.
 
 queued ─► running ─► done
    ▲         ├─────► failed      what was given cannot be trained, or it was tried three times
@@ -11,15 +11,18 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import IntEnum, StrEnum
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from mart.protocol.errors import Conflict
-from mart.trainer.request import TrainRequest
+from mart.trainer.evaluate.config import EvaluationSpec
+from mart.trainer.train.spec import TrainingSpec
 
 MAX_ATTEMPTS = 3
 
 
-class State(StrEnum):
+class JobState(StrEnum):
+    """Name how far a job has come, as in the job table and, with the prefix JOB_STATE_, on the wire."""
+
     QUEUED = "queued"
     RUNNING = "running"
     DONE = "done"
@@ -27,8 +30,8 @@ class State(StrEnum):
     CANCELLED = "cancelled"
 
 
-class End(IntEnum):
-    """How the process of a job ended: its exit code. Any other is a crash."""
+class ExitCode(IntEnum):
+    """Tell how the process of a job ended. Any other exit code is a crash."""
 
     DONE = 0
     REFUSED = 1  # what was given is wrong: trying again would not help
@@ -37,28 +40,25 @@ class End(IntEnum):
     LOST = 76  # whoever ran it is gone, and it did nothing wrong
 
 
-class Judging(BaseModel):
-    """How checkpoints are judged; as evaluate.judge.Rules. replicas: running ones; none: one is started."""
+class JobSpec(BaseModel):
+    """Say what one job trains and how its checkpoints are evaluated; in files under the names `request` and `judging`."""
 
-    model_config = ConfigDict(frozen=True)
+    model_config = ConfigDict(frozen=True, validate_by_name=True, serialize_by_alias=True)
 
-    task: str
-    episodes: int = 30
-    score_episodes: int = 100
-    replicas: tuple[str, ...] = ()
+    training: TrainingSpec = Field(alias="request")
+    evaluation: EvaluationSpec = Field(alias="judging")
 
 
 @dataclass(frozen=True)
 class Job:
-    """run: its folder, below the trainer's data folder. Stamps are Unix time; 0: not yet."""
+    """One job of the queue. run: its folder, below the trainer's data folder. Stamps are Unix time; 0: not yet."""
 
     number: int
     sweep: int
-    request: TrainRequest
-    judging: Judging
+    spec: JobSpec
     executor: str
     run: str
-    state: State = State.QUEUED
+    state: JobState = JobState.QUEUED
     attempt: int = 0
     detail: str = ""
     submitted_ns: int = 0
@@ -67,37 +67,43 @@ class Job:
 
     @property
     def id(self) -> str:
+        """The job's name for people and on the wire, such as `job-0007`."""
         return f"job-{self.number:04}"
 
     @property
     def is_over(self) -> bool:
-        return self.state in (State.DONE, State.FAILED, State.CANCELLED)
+        """Whether the job was done, failed or was cancelled."""
+        return self.state in (JobState.DONE, JobState.FAILED, JobState.CANCELLED)
 
     def started(self, now_ns: int) -> Job:
+        """Return the job as it is when its next attempt begins."""
         return replace(
-            self, state=State.RUNNING, attempt=self.attempt + 1, started_ns=now_ns, ended_ns=0, detail=""
+            self, state=JobState.RUNNING, attempt=self.attempt + 1, started_ns=now_ns, ended_ns=0, detail=""
         )
 
     def ended(self, code: int, why: str, now_ns: int) -> Job:
-        """`why`: in words, where it was not done. A job that is not running stays as it is."""
-        if self.state is not State.RUNNING:
+        """Return the job as it is when its process has ended with `code`; one that is not running stays as it is.
+
+        why: in words, where it was not done.
+        """
+        if self.state is not JobState.RUNNING:
             return self
-        if code == End.DONE:
-            return replace(self, state=State.DONE, ended_ns=now_ns, detail="")
-        if code == End.LOST:
-            return replace(self, state=State.QUEUED, attempt=self.attempt - 1, detail=why)
-        if code == End.REFUSED or self.attempt >= MAX_ATTEMPTS:
-            return replace(self, state=State.FAILED, ended_ns=now_ns, detail=why)
-        return replace(self, state=State.QUEUED, detail=f"tried again, because {why}")
+        if code == ExitCode.DONE:
+            return replace(self, state=JobState.DONE, ended_ns=now_ns, detail="")
+        if code == ExitCode.LOST:
+            return replace(self, state=JobState.QUEUED, attempt=self.attempt - 1, detail=why)
+        if code == ExitCode.REFUSED or self.attempt >= MAX_ATTEMPTS:
+            return replace(self, state=JobState.FAILED, ended_ns=now_ns, detail=why)
+        return replace(self, state=JobState.QUEUED, detail=f"tried again, because {why}")
 
     def cancelled(self, now_ns: int) -> Job:
-        """Raises Conflict where it is over."""
+        """Return the cancelled job. Raises Conflict where it is over."""
         if self.is_over:
             raise Conflict(f"{self.id} is {self.state} already; there is nothing to cancel.")
-        return replace(self, state=State.CANCELLED, ended_ns=now_ns, detail="")
+        return replace(self, state=JobState.CANCELLED, ended_ns=now_ns, detail="")
 
     def retried(self) -> Job:
-        """Raises Conflict unless it failed or was cancelled."""
-        if self.state not in (State.FAILED, State.CANCELLED):
+        """Return the job as it is queued anew. Raises Conflict unless it failed or was cancelled."""
+        if self.state not in (JobState.FAILED, JobState.CANCELLED):
             raise Conflict(f"{self.id} is {self.state}; only a failed or cancelled job can be tried again.")
-        return replace(self, state=State.QUEUED, attempt=0, ended_ns=0, detail="")
+        return replace(self, state=JobState.QUEUED, attempt=0, ended_ns=0, detail="")

@@ -6,59 +6,55 @@ import itertools
 import logging
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from mart.protocol.errors import Conflict, NotFound
-from mart.trainer.jobs.executors.executor import Ended, Executor
-from mart.trainer.jobs.job import End, Job, Judging, State
-from mart.trainer.jobs.order import WorkOrder
+from mart.trainer.jobs.executors.executor import Executor, JobEnded
+from mart.trainer.jobs.job import ExitCode, Job, JobSpec, JobState
+from mart.trainer.jobs.job_files import save_spec
 from mart.trainer.jobs.table import JobTable
-from mart.trainer.request import TrainRequest
 
 _log = logging.getLogger(__name__)
 
 MAX_WAITING = 1000
 
 
-@dataclass(frozen=True)
-class Wish:
-    """One run that somebody wants."""
+class JobQueue:
+    """Bring jobs to their ends on their executors. For one thread.
 
-    request: TrainRequest
-    judging: Judging
-
-
-class Queue:
-    """`data_dir`: what the folders of runs are relative to. Stamps are Unix time."""
+    data_dir: what the folders of runs are relative to. Stamps are Unix time.
+    """
 
     def __init__(self, table: JobTable, executors: Mapping[str, Executor], data_dir: Path) -> None:
         self._table = table
         self._executors = executors
         self._data_dir = data_dir
         self._busy: dict[int, str] = {}  # job → executor, until its process has ended, also a cancelled one's
-        for job in table.in_state(State.RUNNING):  # their processes died with the trainer that started them
-            self._put(job.ended(code=End.LOST, why="the trainer was stopped meanwhile", now_ns=0))
+        for job in table.in_state(
+            JobState.RUNNING
+        ):  # their processes died with the trainer that started them
+            self._put(job.ended(code=ExitCode.LOST, why="the trainer was stopped meanwhile", now_ns=0))
 
-    def submit(self, wishes: Sequence[Wish], executor: str, now_ns: int) -> list[Job]:
-        """One sweep. Raises NotFound for an unknown executor and Conflict where too many are waiting already."""
+    def submit(self, specs: Sequence[JobSpec], executor: str, now_ns: int) -> list[Job]:
+        """Accept one sweep, a job for each spec, and return its jobs. Raises NotFound for an unknown executor and Conflict where too many are waiting already."""
         if executor not in self._executors:
             raise NotFound.named("executor", executor, self._executors)
-        waiting = len(self._table.in_state(State.QUEUED))
-        if waiting + len(wishes) > MAX_WAITING:
+        waiting = len(self._table.in_state(JobState.QUEUED))
+        if waiting + len(specs) > MAX_WAITING:
             raise Conflict(
-                f"{len(wishes)} jobs were submitted, but {waiting} of at most {MAX_WAITING} wait already; "
+                f"{len(specs)} jobs were submitted, but {waiting} of at most {MAX_WAITING} wait already; "
                 "cancel some or wait."
             )
         job, sweep = self._table.last()
         numbers = itertools.count(job + 1)
-        jobs = [self._job(next(numbers), sweep + 1, wish, executor, now_ns) for wish in wishes]
+        jobs = [self._job(next(numbers), sweep + 1, spec, executor, now_ns) for spec in specs]
         self._table.put(jobs)
         return jobs
 
     def advance(self, now_ns: int) -> None:
-        """Starts what can be started, the oldest first."""
-        for job in self._table.in_state(State.QUEUED):
+        """Start what can be started, the oldest first."""
+        for job in self._table.in_state(JobState.QUEUED):
             executor = self._executors.get(job.executor)
             if executor is None or job.number in self._busy:
                 continue
@@ -67,8 +63,8 @@ class Queue:
             elif executor.trouble and not job.detail:
                 self._put(replace(job, detail=executor.trouble))
 
-    def end(self, ended: Ended, now_ns: int) -> None:
-        """A job's process has ended. One that was cancelled meanwhile stays cancelled."""
+    def end(self, ended: JobEnded, now_ns: int) -> None:
+        """Take note that a job's process has ended. One that was cancelled meanwhile stays cancelled."""
         self._busy.pop(ended.job, None)
         job = self._table.get(ended.job)
         after = job.ended(ended.code, ended.why, now_ns)
@@ -76,7 +72,7 @@ class Queue:
         self._put(after)
 
     def cancel(self, jobs: Iterable[Job], now_ns: int) -> list[Job]:
-        """Raises Conflict where all of them are over."""
+        """Cancel those of the jobs that are not over. Raises Conflict where all of them are."""
         given = list(jobs)
         going = [job for job in given if not job.is_over]
         if not going:
@@ -88,22 +84,22 @@ class Queue:
         return [self._table.get(job.number) for job in going]
 
     def retry(self, job: Job) -> Job:
-        """Raises Conflict unless it failed or was cancelled."""
+        """Queue a job anew. Raises Conflict unless it failed or was cancelled."""
         again = job.retried()
         self._put(again)
         return again
 
     def _start(self, job: Job, executor: Executor, now_ns: int) -> None:
         run = self._data_dir / job.run
-        WorkOrder(request=job.request, judging=job.judging).save(run)
+        save_spec(run, job.spec)
         self._put(job.started(now_ns))
         self._busy[job.number] = job.executor
         executor.start(job.number, run.resolve())
-        _log.info("%s starts: %s, attempt %d", job.id, job.request.model, job.attempt + 1)
+        _log.info("%s starts: %s, attempt %d", job.id, job.spec.training.model, job.attempt + 1)
 
     def _put(self, job: Job) -> None:
         self._table.put([job])
 
-    def _job(self, number: int, sweep: int, wish: Wish, executor: str, now_ns: int) -> Job:
+    def _job(self, number: int, sweep: int, spec: JobSpec, executor: str, now_ns: int) -> Job:
         run = f"runs/sweep-{sweep:04}/job-{number:04}"
-        return Job(number, sweep, wish.request, wish.judging, executor, run, submitted_ns=now_ns)
+        return Job(number, sweep, spec, executor, run, submitted_ns=now_ns)

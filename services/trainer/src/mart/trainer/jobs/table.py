@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from mart.protocol.errors import Corrupt, NotFound
-from mart.trainer.jobs.job import Job, Judging, State
-from mart.trainer.request import TrainRequest
+from mart.trainer.evaluate.config import EvaluationSpec
+from mart.trainer.jobs.job import Job, JobSpec, JobState
+from mart.trainer.train.spec import TrainingSpec
 
 _VERSION = 1
 _SCHEMA = """
@@ -38,11 +39,48 @@ _PUT = f"INSERT OR REPLACE INTO jobs ({_NAMES}) VALUES ({_PLACES})"  # noqa: S60
 
 
 class JobTable:
-    """For one thread. Raises Corrupt where the file is no job table of this version."""
+    """Keep jobs in a SQLite file. For one thread. Raises Corrupt where the file is no job table of this version."""
 
     def __init__(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         self._connection = sqlite3.connect(path)
+        try:
+            self._open(path)
+        except Corrupt:
+            self._connection.close()
+            raise
+
+    def close(self) -> None:
+        self._connection.close()
+
+    def put(self, jobs: Sequence[Job]) -> None:
+        """Write the jobs, all of them or none; they are on the disk when this returns."""
+        with self._connection:
+            self._connection.executemany(_PUT, [_row(job) for job in jobs])
+
+    def get(self, number: int) -> Job:
+        """Return the job with this number. Raises NotFound."""
+        found = self._select("WHERE number = ?", number)
+        if not found:
+            raise NotFound(f"There is no job {f'job-{number:04}'!r}; `mart jobs list` tells which there are.")
+        return found[0]
+
+    def newest(self, limit: int, sweep: int | None = None) -> list[Job]:
+        if sweep is None:
+            return self._select("ORDER BY number DESC LIMIT ?", limit)
+        return self._select("WHERE sweep = ? ORDER BY number DESC LIMIT ?", sweep, limit)
+
+    def in_state(self, state: JobState) -> list[Job]:
+        """Return the jobs in this state, the oldest first."""
+        return self._select("WHERE state = ? ORDER BY number", state)
+
+    def last(self) -> tuple[int, int]:
+        """Return the highest numbers of a job and of a sweep so far; 0 before the first."""
+        job, sweep = self._connection.execute("SELECT max(number), max(sweep) FROM jobs").fetchone()
+        return job or 0, sweep or 0
+
+    def _open(self, path: Path) -> None:
+        """Make the tables where the file is new. Raises Corrupt where it is another's."""
         try:
             self._connection.execute("PRAGMA journal_mode = WAL")
             self._connection.execute("PRAGMA synchronous = FULL")
@@ -55,35 +93,6 @@ class JobTable:
         if version != _VERSION:
             raise Corrupt(f"{path} is of version {version}; this trainer reads {_VERSION}: move it away.")
 
-    def close(self) -> None:
-        self._connection.close()
-
-    def put(self, jobs: Sequence[Job]) -> None:
-        """All of them or none, on the disk when this returns."""
-        with self._connection:
-            self._connection.executemany(_PUT, [_row(job) for job in jobs])
-
-    def get(self, number: int) -> Job:
-        """Raises NotFound."""
-        found = self._select("WHERE number = ?", number)
-        if not found:
-            raise NotFound(f"There is no job {f'job-{number:04}'!r}; `mart jobs list` tells which there are.")
-        return found[0]
-
-    def newest(self, limit: int, sweep: int | None = None) -> list[Job]:
-        if sweep is None:
-            return self._select("ORDER BY number DESC LIMIT ?", limit)
-        return self._select("WHERE sweep = ? ORDER BY number DESC LIMIT ?", sweep, limit)
-
-    def in_state(self, state: State) -> list[Job]:
-        """The oldest first."""
-        return self._select("WHERE state = ? ORDER BY number", state)
-
-    def last(self) -> tuple[int, int]:
-        """The highest numbers of a job and of a sweep so far."""
-        job, sweep = self._connection.execute("SELECT max(number), max(sweep) FROM jobs").fetchone()
-        return job or 0, sweep or 0
-
     def _select(self, clause: str, *values: int | str) -> list[Job]:
         rows = self._connection.execute(f"SELECT {_NAMES} FROM jobs {clause}", values)  # noqa: S608
         return [_job(dict(zip(_COLUMNS, row, strict=True))) for row in rows]
@@ -91,19 +100,16 @@ class JobTable:
 
 def _row(job: Job) -> tuple[int | str, ...]:
     text = {
-        "request": job.request.model_dump_json(),
-        "judging": job.judging.model_dump_json(),
+        "request": job.spec.training.model_dump_json(),
+        "judging": job.spec.evaluation.model_dump_json(),
         "state": str(job.state),
     }
     return tuple(text[name] if name in text else getattr(job, name) for name in _COLUMNS)
 
 
 def _job(values: dict[str, Any]) -> Job:
-    return Job(
-        **values
-        | {
-            "request": TrainRequest.model_validate_json(values["request"]),
-            "judging": Judging.model_validate_json(values["judging"]),
-            "state": State(values["state"]),
-        }
+    spec = JobSpec(
+        training=TrainingSpec.model_validate_json(values.pop("request")),
+        evaluation=EvaluationSpec.model_validate_json(values.pop("judging")),
     )
+    return Job(spec=spec, **values | {"state": JobState(values["state"])})

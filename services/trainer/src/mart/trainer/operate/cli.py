@@ -21,7 +21,7 @@ def policies(room: str | None) -> None:
     from mart.trainer.operate.settings import PoliciesSettings
 
     def loader() -> Load:
-        from mart.trainer.policies import load_policy
+        from mart.trainer.models.policies.load import load_policy
 
         return load_policy
 
@@ -41,9 +41,9 @@ def policies(room: str | None) -> None:
 @json_option
 def operate(*, checkpoint: Path, room: str, arms: tuple[str, ...], name: str, as_json: bool) -> None:
     """Take seats for a policy and drive them until Ctrl-C, beside people who may take over and hand back."""
+    from mart.trainer.models.policies.load import load_policy
     from mart.trainer.operate.service import operate as drive
     from mart.trainer.operate.settings import OperateSettings
-    from mart.trainer.policies import load_policy
 
     def seated(called: str, taken: tuple[str, ...]) -> None:
         text = f"{called} drives {', '.join(taken)} in {room}. Ctrl-C leaves."

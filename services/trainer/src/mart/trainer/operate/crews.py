@@ -20,7 +20,7 @@ from mart.runtime.throttled_log import ThrottledLog
 from mart.trainer.operate.operator import PolicyOperator, parts_of
 
 if TYPE_CHECKING:
-    from mart.trainer.policies.policy import Policy
+    from mart.trainer.models.policies.policy import Policy
 
 REPEAT_S = 0.1  # while no new state comes: the barrier hears that the policy is still there
 _log = logging.getLogger(__name__)

@@ -27,7 +27,7 @@ from mart.protocol.pose import Pose, quaternion_exp, quaternion_multiply
 from mart.protocol.tasks import Limits, Task
 
 if TYPE_CHECKING:
-    from mart.trainer.policies.policy import Policy  # with all of torch behind it
+    from mart.trainer.models.policies.policy import Policy
 
 Array = NDArray[np.float64]
 

@@ -21,7 +21,7 @@ from mart.trainer.operate.operator import parts_of
 from mart.trainer.operate.settings import OperateSettings, PoliciesSettings
 
 if TYPE_CHECKING:
-    from mart.trainer.policies.policy import Policy
+    from mart.trainer.models.policies.policy import Policy
 
 _QUERY_TIMEOUT_S = 5.0
 _NICEST = 19

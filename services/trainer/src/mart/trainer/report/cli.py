@@ -70,8 +70,8 @@ def table3(folder: Path, html: Path | None, as_json: bool) -> None:
 @json_option
 def dependence(folder: Path, checkpoints: tuple[Path, ...], html: Path | None, as_json: bool) -> None:
     """How much each arm's next action depends on the other arms, over the successful episodes in FOLDER."""
-    from mart.trainer.checkpoint import read_record
-    from mart.trainer.policies import load_policy
+    from mart.trainer.models.checkpoint import read_record
+    from mart.trainer.models.policies.load import load_policy
     from mart.trainer.report.coupling import read_couplings
 
     names = sorted({read_record(path).name for path in checkpoints})

@@ -29,7 +29,7 @@ class Attempt:
 
 
 @dataclass(frozen=True)
-class Stage:
+class CoordinationStage:
     """entered, passed: how many episodes began and completed it, all stages before included."""
 
     subtasks: tuple[str, ...]
@@ -41,7 +41,7 @@ class Stage:
 @dataclass(frozen=True)
 class Coordination:
     task: str
-    stages: tuple[Stage, ...]
+    stages: tuple[CoordinationStage, ...]
     episodes: int
     successes: int
 
@@ -56,12 +56,12 @@ class Coordination:
 def coordination(task: Task, attempts: Sequence[Attempt]) -> Coordination:
     kinds = groupby(task.subtasks, lambda subtask: subtask.coordinated)
     planned = [(coordinated, tuple(subtask.name for subtask in group)) for coordinated, group in kinds]
-    stages: list[Stage] = []
+    stages: list[CoordinationStage] = []
     left: Sequence[Attempt] = attempts
     for number, (coordinated, names) in enumerate(planned, start=1):
         passed = [attempt for attempt in left if attempt.done.issuperset(names)]
         if number == len(planned):
             passed = [attempt for attempt in passed if attempt.success]
-        stages.append(Stage(names, coordinated, len(left), len(passed)))
+        stages.append(CoordinationStage(names, coordinated, len(left), len(passed)))
         left = passed
     return Coordination(task.name, tuple(stages), len(attempts), sum(attempt.success for attempt in attempts))

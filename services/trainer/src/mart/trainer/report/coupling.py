@@ -11,22 +11,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mart.episodes.paths import episode_files
-from mart.episodes.reader import EpisodeFile
-from mart.protocol import codec
+from mart.episodes.arrays import EpisodeData
+from mart.episodes.filter import EpisodeFilter
+from mart.episodes.folder import list_episodes
+from mart.episodes.labelled_episode import LabelledEpisode, require_readable
 from mart.protocol.errors import InvalidInput, NotFound
-from mart.protocol.messages import State
-from mart.protocol.recording import STATE
 from mart.protocol.tasks import Arm, Task, get_task
-from mart.trainer.data.episode import from_states
-from mart.trainer.data.layout import Layout
-from mart.trainer.report.dependence import BINS, MIN_EPISODES, Dependence, Recorded, dependence
+from mart.protocol.vocabulary import EpisodeOutcome
+from mart.trainer.data.layout import ObservationLayout
+from mart.trainer.report.dependence import BINS, MIN_EPISODES, Dependence, ObservedEpisode, dependence
 
 if TYPE_CHECKING:
-    from mart.trainer.policies.policy import Policy
+    from mart.trainer.models.policies.policy import Policy
 
 Array = NDArray[np.float64]
 _POLICY_SEED = 0
+_SUCCESSFUL = EpisodeFilter(outcomes=(EpisodeOutcome.SUCCESS,))
 
 
 @dataclass(frozen=True)
@@ -61,72 +61,64 @@ class Coupling:
 
 
 def read_couplings(folder: Path, policies: Sequence[Policy] = ()) -> list[Coupling]:
-    """Of every task with successful episodes in a folder; of a policy for it, if one is among `policies`.
+    """Read every task with successful episodes in a folder, as labelled since; dropped ones don't count.
 
+    policies: of each task the one among these is looked at.
     Raises NotFound where there are none, InvalidInput where there are too few, Corrupt where one cannot be read.
     """
-    by_task: defaultdict[tuple[str, int], list[Path]] = defaultdict(list)
-    for path in episode_files([folder]):
-        record = EpisodeFile.open(path).episode
-        if record.outcome == "success" and record.task is not None:
-            by_task[record.task, len(record.arms)].append(path)
+    listed = list_episodes(folder)
+    require_readable(listed)
+    by_task: defaultdict[tuple[str, int], list[LabelledEpisode]] = defaultdict(list)
+    for episode in _SUCCESSFUL.apply(listed):
+        if episode.task is not None:
+            by_task[episode.task, len(episode.arms)].append(episode)
     if not by_task:
         raise NotFound(f"There are no successful episodes in {folder}; `mart collect` records some.")
-    for (task, _), paths in sorted(by_task.items()):
-        if len(paths) < MIN_EPISODES:  # told before hours may have gone into the other tasks
+    for (task, _), episodes in sorted(by_task.items()):
+        if len(episodes) < MIN_EPISODES:  # told before hours may have gone into the other tasks
             raise InvalidInput(
-                f"{len(paths)} successful episodes of {task} are in {folder}; at least {MIN_EPISODES} of a task "
+                f"{len(episodes)} successful episodes of {task} are in {folder}; at least {MIN_EPISODES} of a task "
                 "tell something about dependence: record more, or move these elsewhere."
             )
     chosen = {(policy.task, len(policy.arms)): policy for policy in policies}
     return [
-        _coupling(get_task(*kind), [_states(path) for path in paths], chosen.get(kind))
-        for kind, paths in sorted(by_task.items())
+        _coupling(get_task(*kind), episodes, chosen.get(kind)) for kind, episodes in sorted(by_task.items())
     ]
 
 
-def _coupling(task: Task, episodes: Sequence[Sequence[State]], policy: Policy | None) -> Coupling:
-    layout = Layout.of(task)
-    recorded = [_recorded(layout, states) for states in episodes]
+def _coupling(task: Task, episodes: Sequence[LabelledEpisode], policy: Policy | None) -> Coupling:
+    layout = ObservationLayout.of(task)
+    data = [episode.open().arrays(task) for episode in episodes]
+    observed = [_observed(layout, one) for one in data]
     return Coupling(
         task=task,
-        episodes=len(episodes),
+        episodes=len(data),
         found={
-            arm: dependence(recorded, layout.columns_of(arm.name), index)
+            arm: dependence(observed, layout.columns_of(arm.name), index)
             for index, arm in enumerate(task.arms)
         },
-        reached=_reached(task, episodes),
-        reliance={}
-        if policy is None
-        else _reliance(task, policy, [_seen(task, states) for states in episodes]),
+        reached=_reached(task, data),
+        reliance={} if policy is None else _reliance(task, policy, [_before_actions(one) for one in data]),
     )
 
 
-def _states(path: Path) -> list[State]:
-    return [codec.decode(State, message.payload) for message in EpisodeFile.open(path).messages(STATE)]
+def _observed(layout: ObservationLayout, data: EpisodeData) -> ObservedEpisode:
+    return ObservedEpisode(layout.vector(data.observations)[:-1].astype(np.float64), data.actions)
 
 
-def _recorded(layout: Layout, states: Sequence[State]) -> Recorded:
-    arrays = from_states(layout, states)
-    return Recorded(arrays.observations[:-1].astype(np.float64), arrays.actions.astype(np.float64))
-
-
-def _reached(task: Task, episodes: Sequence[Sequence[State]]) -> list[tuple[str, float, bool]]:
+def _reached(task: Task, episodes: Sequence[EpisodeData]) -> list[tuple[str, float, bool]]:
     found = []
-    for index, subtask in enumerate(task.subtasks):
-        done = [[state.progress.subtasks[index].done for state in states] for states in episodes]
-        shares = [own.index(True) / max(1, len(own) - 1) for own in done if any(own)]
+    for subtask in task.subtasks:
+        done = [one.subtasks[subtask.name] for one in episodes if subtask.name in one.subtasks]
+        shares = [int(own.argmax()) / max(1, len(own) - 1) for own in done if own.any()]
         if shares:
             found.append((subtask.name, sum(shares) / len(shares), subtask.coordinated))
     return found
 
 
-def _seen(task: Task, states: Sequence[State]) -> dict[str, Array]:
-    """By name, float64[ticks, *shape], before each action."""
-    values = [{seen.name: seen.value for seen in state.observations} for state in states[:-1]]
-    return {
-        o.name: np.array([value[o.name] for value in values]).reshape(-1, *o.shape) for o in task.observations
-    }
+def _before_actions(data: EpisodeData) -> dict[str, Array]:
+    """Return by name float64[T, *shape], what was seen before each action."""
+    return {name: values[:-1] for name, values in data.observations.items()}
 
 
 def _reliance(task: Task, policy: Policy, episodes: Sequence[Mapping[str, Array]]) -> dict[Arm, list[float]]:

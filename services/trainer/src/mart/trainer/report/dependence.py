@@ -37,7 +37,7 @@ MIN_EPISODES = 2 * _FOLDS
 
 
 @dataclass(frozen=True)
-class Recorded:
+class ObservedEpisode:
     """One episode: observations [T, width] before each action, actions [T, arms, 7]."""
 
     observations: Array
@@ -59,7 +59,9 @@ class Dependence:
     overall: float
 
 
-def dependence(episodes: Sequence[Recorded], own: NDArray[np.int64], arm: int, seed: int = 0) -> Dependence:
+def dependence(
+    episodes: Sequence[ObservedEpisode], own: NDArray[np.int64], arm: int, seed: int = 0
+) -> Dependence:
     """Of one arm. own: the columns of the observations that its operator sees.
 
     Raises InvalidInput where there are fewer than MIN_EPISODES episodes.
@@ -80,7 +82,7 @@ def dependence(episodes: Sequence[Recorded], own: NDArray[np.int64], arm: int, s
     return _scores(sums, random)
 
 
-def _partners(episodes: Sequence[Recorded], random: np.random.Generator) -> list[Recorded]:
+def _partners(episodes: Sequence[ObservedEpisode], random: np.random.Generator) -> list[ObservedEpisode]:
     """For each episode another one of the same fold."""
     partner = np.arange(len(episodes))
     for fold in range(_FOLDS):
@@ -90,7 +92,9 @@ def _partners(episodes: Sequence[Recorded], random: np.random.Generator) -> list
     return [episodes[i] for i in partner.tolist()]
 
 
-def _stack(episodes: Sequence[Recorded], partners: Sequence[Recorded], own: NDArray[np.int64]) -> Array:
+def _stack(
+    episodes: Sequence[ObservedEpisode], partners: Sequence[ObservedEpisode], own: NDArray[np.int64]
+) -> Array:
     """[ticks, width + 2]: own columns, the partner's at the same share of its length, and the time."""
     parts = []
     for episode, partner in zip(episodes, partners, strict=True):

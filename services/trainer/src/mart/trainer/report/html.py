@@ -8,7 +8,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from mart.trainer.evaluate.result import NOT_HELD
+from mart.trainer.evaluate.evaluation import NOT_HELD
 from mart.trainer.report import paper, plots
 from mart.trainer.report.coupling import Coupling
 from mart.trainer.report.results import Cell, Results
@@ -19,7 +19,7 @@ _NOT_HELD = "all done, not held"
 def results_page(results: Results) -> str:
     models = sorted({model for task in results.tasks for model in results.models(task)}, key=_rank)
     cells = [cell for task in results.tasks for cell in results.cells[task].values()]
-    numbers = sorted({len(cell.judgement.seeds) for cell in cells})
+    numbers = sorted({len(cell.rates.seeds) for cell in cells})
     return _page(
         "results.html",
         title=results.title,
@@ -29,7 +29,7 @@ def results_page(results: Results) -> str:
             for model in models
         ],
         seeds=" to ".join(map(str, sorted({numbers[0], numbers[-1]}))),
-        episodes=cells[0].judgement.episodes,
+        episodes=cells[0].rates.episodes,
     )
 
 
@@ -93,15 +93,13 @@ def _cell(results: Results, model: str, task: str) -> dict[str, Any]:
     cell, reported = results.cells[task].get(model), results.paper(model, task)
     shown: dict[str, Any] = {"ours": None, "fresh": "–", "best": False}
     if cell is not None:
-        judged = cell.judgement
+        judged = cell.rates
         shown["ours"] = f"{100 * judged.paper.mean:.1f} ± {100 * judged.paper.deviation:.1f}"
         if judged.pooled is not None:
             low, high = judged.pooled.interval
             shown["fresh"] = f"{100 * judged.pooled.value:.1f} ({100 * low:.0f}–{100 * high:.0f})"
             shown["best"] = judged.pooled.value == max(
-                other.judgement.pooled.value
-                for other in results.cells[task].values()
-                if other.judgement.pooled
+                other.rates.pooled.value for other in results.cells[task].values() if other.rates.pooled
             )
     shown["paper"] = "–" if reported is None else f"{reported.mean:.1f} ± {reported.deviation:.1f}"
     return shown

@@ -33,7 +33,7 @@ def success(results: Results, task: str) -> str:
     models = results.models(task)
     with _figure(5.4, 0.9 + 0.36 * len(models)) as (figure, axes):
         for row, model in enumerate(models):
-            judged, reported = results.cells[task][model].judgement, results.paper(model, task)
+            judged, reported = results.cells[task][model].rates, results.paper(model, task)
             if reported is not None:
                 _bar(axes, row + 0.16, reported.mean, (reported.deviation, reported.deviation), filled=False)
             axes.plot(100 * judged.paper.mean, row, "|", color=_ACCENT, markersize=10, markeredgewidth=1.5)
@@ -51,9 +51,9 @@ def learning(results: Results, task: str) -> str:
     """Success of checkpoints over training, a line a model."""
     with _figure(5.4, 3.2) as (figure, axes):
         for (color, dash), model in zip(_LINES, results.models(task), strict=False):
-            course = results.cells[task][model].course
+            curve = results.cells[task][model].learning_curve
             axes.plot(
-                [u for u, _ in course], [100 * rate for _, rate in course], dash, color=color, label=model
+                [u for u, _ in curve], [100 * rate for _, rate in curve], dash, color=color, label=model
             )
         axes.set_ylim(-3, 103)
         axes.set_xlabel("updates")

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mart.protocol.errors import NotFound
-from mart.trainer.evaluate import result
-from mart.trainer.evaluate.protocols import Judgement, judgement
-from mart.trainer.evaluate.result import Evaluation
-from mart.trainer.evaluate.seeds import Purpose
+from mart.trainer.evaluate.evaluation import Evaluation, read_evaluations
 from mart.trainer.evaluate.statistics import Spread
+from mart.trainer.evaluate.success_rates import SuccessRates, success_rates
+from mart.trainer.evaluate.world_seeds import Purpose
 from mart.trainer.report import paper
 
 
@@ -20,11 +19,11 @@ from mart.trainer.report import paper
 class Cell:
     """One model on one task."""
 
-    judgement: Judgement
+    rates: SuccessRates
     evaluations: tuple[Evaluation, ...]
 
     @property
-    def course(self) -> list[tuple[int, float]]:
+    def learning_curve(self) -> list[tuple[int, float]]:
         """Success rate of the checkpoints over updates, averaged over seeds."""
         rates: defaultdict[int, list[float]] = defaultdict(list)
         for found in self.evaluations:
@@ -72,12 +71,12 @@ def read_results(folder: Path, title: str, reported: paper.Results) -> Results:
     """
     found: defaultdict[tuple[str, str], list[Evaluation]] = defaultdict(list)
     for number, path in enumerate(sorted(folder.rglob("evaluations.jsonl"))):
-        for evaluation in _by_newest_rules(result.read(path)):
+        for evaluation in _by_newest_rules(read_evaluations(path)):
             own = evaluation.model_copy(update={"seed": evaluation.seed + number * _SEEDS_OF_A_RUN})
             found[evaluation.task, evaluation.model].append(own)
     cells: dict[str, dict[str, Cell]] = {}
     for (task, model), evaluations in found.items():
-        judged = judgement(evaluations)
+        judged = success_rates(evaluations)
         if judged is not None:
             cells.setdefault(task, {})[model] = Cell(judged, tuple(evaluations))
     if not cells:
@@ -107,7 +106,7 @@ def in_words(results: Results) -> str:
     for task in results.tasks:
         lines += ["", paper.TITLES.get(task, task)]
         for model in results.models(task):
-            judged = results.cells[task][model].judgement
+            judged = results.cells[task][model].rates
             fresh = "–" if judged.honest is None else f"{_percent(judged.honest)} {_interval(judged)}"
             reported = results.paper(model, task)
             beside = "–" if reported is None else f"{reported.mean:.1f} ± {reported.deviation:.1f}"
@@ -123,7 +122,7 @@ def as_rows(results: Results) -> list[dict[str, object]]:
     for task in results.tasks:
         for model in results.models(task):
             cell = results.cells[task][model]
-            judged, reported = cell.judgement, results.paper(model, task)
+            judged, reported = cell.rates, results.paper(model, task)
             rows.append(
                 {
                     "task": task,
@@ -150,7 +149,7 @@ def _percent(spread: Spread) -> str:
     return f"{100 * spread.mean:.1f} ± {100 * spread.deviation:.1f}"
 
 
-def _interval(judged: Judgement) -> str:
+def _interval(judged: SuccessRates) -> str:
     if judged.pooled is None:
         return ""
     low, high = judged.pooled.interval

@@ -9,7 +9,7 @@ from typing import Protocol
 
 
 @dataclass(frozen=True)
-class Ended:
+class JobEnded:
     """code: see job.End. why: in words, where it was not done."""
 
     job: int
@@ -17,7 +17,7 @@ class Ended:
     why: str = ""
 
 
-OnEnded = Callable[[Ended], None]  # from any thread, once for each start
+OnEnded = Callable[[JobEnded], None]  # from any thread, once for each start
 
 
 class Executor(Protocol):
@@ -32,7 +32,7 @@ class Executor(Protocol):
         ...
 
     def start(self, job: int, run: Path) -> None:
-        """Runs `mart.trainer.jobs.work` on the folder `run`."""
+        """Runs `mart.trainer.jobs.worker` on the folder `run`."""
         ...
 
     def stop(self, job: int) -> None:

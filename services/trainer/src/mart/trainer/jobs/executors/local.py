@@ -7,16 +7,16 @@ import sys
 import threading
 from pathlib import Path
 
-from mart.trainer import leash
-from mart.trainer.jobs.executors.executor import Ended, OnEnded
-from mart.trainer.jobs.job import End
-from mart.trainer.jobs.order import LOG, why_ended
+from mart.runtime.child_process import start_child, stop_child
+from mart.trainer.jobs.executors.executor import JobEnded, OnEnded
+from mart.trainer.jobs.job import ExitCode
+from mart.trainer.jobs.job_files import LOG, why_ended
 
 _STOP_TIMEOUT_S = 30.0
 
 
 class LocalExecutor:
-    """Its methods are called from one thread that lives as long as the trainer: see mart.trainer.leash."""
+    """Its methods are called from one thread that lives as long as the trainer: see mart.runtime.child_process."""
 
     def __init__(self, slots: int, ended: OnEnded) -> None:
         self.slots = slots
@@ -28,7 +28,7 @@ class LocalExecutor:
     def start(self, job: int, run: Path) -> None:
         run.mkdir(parents=True, exist_ok=True)
         with (run / LOG).open("ab") as log:
-            process = leash.start((sys.executable, "-m", "mart.trainer.jobs.work", run), log, {})
+            process = start_child((sys.executable, "-m", "mart.trainer.jobs.worker", run), log, {})
         self._processes[job] = process
         waiter = threading.Thread(target=self._wait, args=(job, run, process), daemon=True)
         self._waiters = [thread for thread in self._waiters if thread.is_alive()] + [waiter]
@@ -46,10 +46,10 @@ class LocalExecutor:
         for process in self._processes.values():
             process.terminate()
         for process in self._processes.values():
-            leash.stop(process)
+            stop_child(process)
         for waiter in self._waiters:
             waiter.join()
 
     def _wait(self, job: int, run: Path, process: subprocess.Popen[bytes]) -> None:
         code = process.wait()
-        self._ended(Ended(job, code, "" if code == End.DONE else why_ended(run, code)))
+        self._ended(JobEnded(job, code, "" if code == ExitCode.DONE else why_ended(run, code)))

@@ -18,10 +18,10 @@ from typing import IO
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
-from mart.trainer import leash
-from mart.trainer.jobs.executors.executor import Ended, OnEnded
-from mart.trainer.jobs.job import End
-from mart.trainer.jobs.order import why_ended
+from mart.runtime.child_process import start_child, stop_child
+from mart.trainer.jobs.executors.executor import JobEnded, OnEnded
+from mart.trainer.jobs.job import ExitCode
+from mart.trainer.jobs.job_files import why_ended
 
 _AGAIN_S = 2.0  # between attempts to reach a head that is away
 _LOOK_S = 2.0  # between looks whether it is there
@@ -68,7 +68,7 @@ class RayExecutor:
         if has_driver:
             self._say(start=job, run=str(run))
         else:
-            self._tell(job, End.LOST)
+            self._tell(job, ExitCode.LOST)
 
     def stop(self, job: int) -> None:
         self._say(stop=job)
@@ -78,13 +78,13 @@ class RayExecutor:
         if driver is not None:
             assert driver.stdin is not None
             driver.stdin.close()
-            leash.stop(driver)
+            stop_child(driver)
 
     def _connect(self) -> None:
         self._log.parent.mkdir(parents=True, exist_ok=True)
         command = (sys.executable, "-m", "mart.trainer.jobs.executors.ray_driver", self._address)
         with self._log.open("ab") as log:
-            self._driver = leash.start(
+            self._driver = start_child(
                 command, log, {"RAY_gcs_rpc_server_reconnect_timeout_s": "5"}, piped=True
             )
         assert self._driver.stdout is not None
@@ -110,7 +110,7 @@ class RayExecutor:
             if "slots" in said:
                 self._slots = said["slots"]
             else:
-                if said["code"] == End.LOST and not _answers(self._head, _LOOK_S):
+                if said["code"] == ExitCode.LOST and not _answers(self._head, _LOOK_S):
                     driver.kill()
                     self._slots = 0
                 self._tell(said["ended"], said["code"])
@@ -121,7 +121,7 @@ class RayExecutor:
             self._driver = None
             lost = list(self._runs)
         for job in lost:
-            self._tell(job, End.LOST)
+            self._tell(job, ExitCode.LOST)
 
     def _look(self, driver: subprocess.Popen[bytes]) -> None:
         misses = 0
@@ -144,12 +144,12 @@ class RayExecutor:
             run = self._runs.pop(job, None)
         if run is None:
             return
-        if code == End.DONE:
-            self._ended(Ended(job, code))
-        elif code == End.LOST:
-            self._ended(Ended(job, code, f"waits for the Ray cluster at {self._address}, which was lost"))
+        if code == ExitCode.DONE:
+            self._ended(JobEnded(job, code))
+        elif code == ExitCode.LOST:
+            self._ended(JobEnded(job, code, f"waits for the Ray cluster at {self._address}, which was lost"))
         else:
-            self._ended(Ended(job, code, why_ended(run, code)))
+            self._ended(JobEnded(job, code, why_ended(run, code)))
 
 
 def _host_and_port(address: str) -> tuple[str, int]:

@@ -3,7 +3,7 @@
 `python -m mart.trainer.jobs.executors.ray_driver ADDRESS`. Lines of JSON: in {"start": 7, "run": "/…/job-0007"} and
 {"stop": 7}; out {"slots": 8} once it is connected and {"ended": 7, "code": 0}. It ends with its input.
 
-Every job runs as `mart.trainer.jobs.work` in a process of its own on a node of the cluster, which must have MART
+Every job runs as `mart.trainer.jobs.worker` in a process of its own on a node of the cluster, which must have MART
 installed and see the run's folder under the same path.
 """
 
@@ -20,9 +20,9 @@ from typing import Any, TextIO
 
 import ray
 
-from mart.trainer import leash
-from mart.trainer.jobs.job import End
-from mart.trainer.jobs.order import LOG
+from mart.runtime.child_process import start_child
+from mart.trainer.jobs.job import ExitCode
+from mart.trainer.jobs.job_files import LOG
 
 _POLL_S = 0.5
 
@@ -31,7 +31,7 @@ _POLL_S = 0.5
 def _work(run: str) -> int:
     """On a node. Killing this task kills the job's process with it."""
     with (Path(run) / LOG).open("ab") as log:
-        process = leash.start((sys.executable, "-m", "mart.trainer.jobs.work", run), log, {})
+        process = start_child((sys.executable, "-m", "mart.trainer.jobs.worker", run), log, {})
     return process.wait()
 
 
@@ -62,9 +62,9 @@ def _code(task: ray.ObjectRef[int]) -> int:
     try:
         code: int = ray.get(task)
     except (ray.exceptions.TaskCancelledError, ray.exceptions.WorkerCrashedError):
-        return End.STOPPED
+        return ExitCode.STOPPED
     except ray.exceptions.RayError:
-        return End.LOST
+        return ExitCode.LOST
     return code
 
 

@@ -1,0 +1,109 @@
+"""Write one episode's MCAP file: stock `mcap`, small chunks, on the disk whenever it is flushed."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from google.protobuf.message import Message
+from mcap.well_known import MessageEncoding
+from mcap.writer import CompressionType, Writer
+from mcap_protobuf.schema import register_schema
+
+from mart.episodes.mcap_entries import McapEntry
+from mart.protocol.messages import Model
+from mart.protocol.recording import MODEL_ATTACHMENT, PROFILE, RoomRecord
+
+_CHUNK_BYTES = 256 * 1024  # what one damaged sector can cost
+
+
+class EpisodeWriter:
+    """Write an episode file, which is this object's own until `move_to`, `abandon` or `discard`.
+
+    Every method may raise OSError: the disk is full or broken. The path is locked meanwhile, so that a repair leaves it
+    alone; a lock dies with its process.
+    """
+
+    def __init__(self, path: Path) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self.path = path
+        self.messages = 0
+        self.described = False
+        self.has_model = False
+        opening = path.with_name(f".{path.name}.opening")  # a repair must not find it before it is locked
+        self._file = opening.open("wb")
+        self._lock = opening.open("rb")
+        fcntl.flock(self._lock, fcntl.LOCK_EX)
+        opening.rename(path)
+        self._mcap = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
+        self._schemas: dict[str, int] = {}
+        self._channels: dict[str, int] = {}
+        self._mcap.start(profile=PROFILE)
+
+    def add(self, entry: McapEntry) -> None:
+        """Append one message; its topic and schema are described in the file when they first come."""
+        channel = self._channels.get(entry.topic)
+        if channel is None:
+            channel = self._channel(entry.topic, entry.schema)
+        self._mcap.add_message(channel, entry.arrived_ns, entry.payload, entry.sent_ns, entry.sequence)
+        self.messages += 1
+
+    def describe(self, record: RoomRecord) -> None:
+        """Say of what room this file is, once that is known."""
+        self.described = True
+        self.add_record(record.NAME, record.to_strings())
+
+    def attach_model(self, model: Model, now_ns: int) -> None:
+        """Attach the compiled MuJoCo model. now_ns: Unix time."""
+        self.has_model = True
+        self._mcap.add_attachment(now_ns, now_ns, MODEL_ATTACHMENT, "application/octet-stream", model.mjb)
+
+    def add_record(self, name: str, strings: Mapping[str, str]) -> None:
+        """Write one metadata record."""
+        self._mcap.add_metadata(name, dict(strings))
+
+    def flush(self) -> None:
+        """Bring everything so far onto the disk: a kill or a power cut takes nothing of it afterwards."""
+        self._mcap.flush()  # type: ignore[no-untyped-call]
+        os.fsync(self._file.fileno())
+
+    def finish(self) -> None:
+        """Write the summary and close the file, which stays locked."""
+        self._mcap.finish()  # type: ignore[no-untyped-call]
+        self._file.flush()
+        os.fsync(self._file.fileno())
+        self._file.close()
+
+    def move_to(self, path: Path) -> None:
+        """Give the finished file its name, for good also across a power cut."""
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self.path = self.path.rename(path)
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
+            self._lock.close()
+
+    def abandon(self) -> None:
+        """Close the file as it is: what reached the disk stays there for a repair."""
+        with contextlib.suppress(OSError):  # closing tries to write what could not be written before
+            self._file.close()
+        self._lock.close()
+
+    def _channel(self, topic: str, schema: type[Message]) -> int:
+        name = schema.DESCRIPTOR.full_name
+        if name not in self._schemas:
+            self._schemas[name] = register_schema(self._mcap, schema)
+        self._channels[topic] = self._mcap.register_channel(
+            topic, MessageEncoding.Protobuf, self._schemas[name]
+        )
+        return self._channels[topic]
+
+    def discard(self) -> None:
+        """Take the file away: there was nothing to record."""
+        self.abandon()
+        self.path.unlink()

@@ -1,0 +1,38 @@
+"""Make folders of files in one step: a reader, or a crash, finds all of their files or no folder."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+
+_HALF = ".half"
+
+
+def write_directory_atomically(path: Path, fill: Mapping[str, bytes]) -> None:
+    """A directory with these files, at once and on the disk when this returns. One that is there stays as it is."""
+    half = path.with_name(path.name + _HALF)
+    shutil.rmtree(half, ignore_errors=True)
+    for name, content in fill.items():
+        file = half / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with file.open("wb") as opened:
+            opened.write(content)
+            opened.flush()
+            os.fsync(opened.fileno())
+    for folder in {half, *((half / name).parent for name in fill)}:
+        _sync(folder)
+    if path.exists():
+        shutil.rmtree(half)
+        return
+    half.rename(path)
+    _sync(path.parent)
+
+
+def _sync(folder: Path) -> None:
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

@@ -1,1 +1,0 @@
-"""What people ask about recorded episodes, answered over the bus: `mart catalogue`."""

@@ -1,0 +1,1 @@
+"""Answer what people ask about recorded episodes over the bus: `mart catalogue`."""

@@ -1,0 +1,188 @@
+"""Answer questions about recorded episodes, one at a time. For one thread."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from mart.episodes import datasets, labels
+from mart.episodes.labelled_episode import LabelledEpisode
+from mart.episodes.labels import Label, LabelKind
+from mart.episodes.reader import EpisodeFile
+from mart.protocol import clock, codec
+from mart.protocol.errors import InvalidInput, NotFound
+from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RecordedView, State
+from mart.protocol.recording import EVENT, VERSIONS, CadenceRecord, VerificationRecord, video_topic
+from mart.recorder.catalogue import dataset_editing, pictures
+from mart.recorder.catalogue.dataset_editing import DataSetEdit
+from mart.recorder.catalogue.episode_catalogue import list_folder
+from mart.recorder.catalogue.listing import episode_message, filter_of, listing
+from mart.recorder.catalogue.timeline import timeline
+
+PIECE_BYTES = 1024 * 1024
+_FRESH_S = 1.0
+_MAX_KEPT = 64
+_MAX_KEPT_BYTES = 128 * 1024 * 1024
+
+
+class CatalogueHandlers:
+    """Answer what is asked about the episodes in the folder `root`; of what is there, only labels ever change."""
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+        self._rows: dict[str, LabelledEpisode] = {}
+        self._read_s = float("-inf")
+        self._kept: OrderedDict[tuple[str, ...], bytes] = OrderedDict()
+        self._handlers: dict[str, Callable[[Any], CatalogueReply]] = {
+            "list": self._list,
+            "show": lambda asked: CatalogueReply(details=self._details(asked.path)),
+            "label": lambda asked: CatalogueReply(episode=episode_message(self._label(asked))),
+            "file": lambda asked: CatalogueReply(piece=self._file_piece(asked)),
+            "video": lambda asked: CatalogueReply(piece=self._video_piece(asked)),
+            "picture": lambda asked: CatalogueReply(piece=_piece(self._picture(asked.path), 0)),
+            "curate": lambda asked: self._curated(self._curate(asked)),
+            "undo": lambda asked: self._curated(self._undo(asked)),
+        }
+
+    def answer(self, request: CatalogueRequest) -> CatalogueReply:
+        """Answer one request. Raises NotFound, InvalidInput, Corrupt or Conflict."""
+        what = request.WhichOneof("what")
+        if what is None:
+            raise InvalidInput(f"An empty request was given; ask for one of {', '.join(self._handlers)}.")
+        return self._handlers[what](getattr(request, what))
+
+    def _list(self, asked: CatalogueRequest.List) -> CatalogueReply:
+        self._refresh()
+        held = datasets.named(labels.read_folded(self._root)).values()
+        return CatalogueReply(listing=listing(list(self._rows.values()), asked, held))
+
+    def _refresh(self) -> None:
+        now_s = clock.monotonic_s()
+        if now_s - self._read_s >= _FRESH_S:
+            rows = list_folder(self._root) if self._root.is_dir() else []
+            self._rows = {row.path: row for row in rows}
+            self._read_s = now_s
+
+    def _row(self, path: str) -> LabelledEpisode:
+        """Return the episode at a path that is listed; no other can be asked for, so none leads out of the folder."""
+        if path not in self._rows:
+            self._read_s = float("-inf")
+            self._refresh()
+        if path not in self._rows:
+            raise NotFound(f"There is no episode {path[:200]!r}; the list shows those that there are.")
+        return self._rows[path]
+
+    def _file(self, path: str) -> EpisodeFile:
+        return EpisodeFile.open(self._row(path).file_path)
+
+    def _details(self, path: str) -> CatalogueReply.Details:
+        file = self._file(path)
+        states: dict[int, State] = {}
+        for state in file.states():
+            states.setdefault(state.tick, state)
+        events = [codec.decode(Event, message.payload) for message in file.messages(EVENT)]
+        details = timeline(list(states.values()), events)
+        details.episode.CopyFrom(episode_message(self._rows[path]))
+        if states:
+            details.views.extend(_views(file, next(iter(states.values())).stamps.stepped_ns))
+        details.cadence.update(file.metadata.get(CadenceRecord.NAME, {}))
+        details.versions.update(file.metadata.get(VERSIONS, {}))
+        details.verification = file.metadata.get(VerificationRecord.NAME, {}).get("detail", "")
+        return details
+
+    def _label(self, asked: CatalogueRequest.Label) -> LabelledEpisode:
+        row, now_ns = self._row(asked.path), clock.wall_ns()
+        said: dict[LabelKind, str] = {}
+        if asked.HasField("outcome"):
+            said[LabelKind.OUTCOME] = asked.outcome
+        if asked.HasField("note"):
+            said[LabelKind.NOTE] = asked.note
+        if asked.HasField("dropped"):
+            said[LabelKind.USE] = labels.DROP if asked.dropped else labels.KEEP
+        if not said:
+            raise InvalidInput("Nothing to say was given; say an outcome, a note, or whether to drop it.")
+        labels.append(self._root, [Label(row.path, kind, value, now_ns) for kind, value in said.items()])
+        row = row.with_labels(labels.read_folded(self._root).get(row.path))
+        self._rows[row.path] = row
+        return row
+
+    def _curate(self, asked: CatalogueRequest.Curate) -> DataSetEdit:
+        self._refresh()
+        known, now_ns = list(self._rows.values()), clock.wall_ns()
+        by_filter = asked.HasField("all")
+        if by_filter == bool(asked.paths):
+            raise InvalidInput("Name the episodes, or give a filter that lets them through: one of the two.")
+        chosen = filter_of(asked.all).apply(known) if by_filter else map(self._row, asked.paths)
+        if asked.take_out:
+            return dataset_editing.take_out(self._root, asked.dataset, [row.path for row in chosen], now_ns)
+        return dataset_editing.take_in(self._root, asked.dataset, chosen, known, now_ns)
+
+    def _undo(self, asked: CatalogueRequest.Undo) -> DataSetEdit:
+        return dataset_editing.undo(self._root, asked.dataset, asked.act_ns, clock.wall_ns())
+
+    def _curated(self, done: DataSetEdit) -> CatalogueReply:
+        self._read_s = float("-inf")  # the rows say what they are part of
+        curated = CatalogueReply.Curated(
+            dataset=done.dataset.name,
+            changed=done.changed,
+            left_out=done.left_out,
+            episodes=len(done.dataset.episodes),
+            act_ns=done.act_ns,
+        )
+        return CatalogueReply(curated=curated)
+
+    def _file_piece(self, asked: CatalogueRequest.File) -> CatalogueReply.Piece:
+        path = self._row(asked.path).file_path
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            file.seek(min(asked.offset, size))
+            return CatalogueReply.Piece(piece=file.read(PIECE_BYTES), size_bytes=size)
+
+    def _video_piece(self, asked: CatalogueRequest.Video) -> CatalogueReply.Piece:
+        path, camera = asked.path, asked.camera
+        return _piece(self._kept_or(("video", path, camera), lambda: self._video(path, camera)), asked.offset)
+
+    def _video(self, path: str, camera: str) -> bytes:
+        return pictures.as_mp4(pictures.frames_of(self._file(path), camera))
+
+    def _picture(self, path: str) -> bytes:
+        return self._kept_or(("picture", path), lambda: self._draw(path))
+
+    def _draw(self, path: str) -> bytes:
+        file = self._file(path)
+        for arm in file.episode.arms:
+            try:
+                return pictures.last_picture(pictures.frames_of(file, arm))
+            except NotFound:
+                continue
+        raise NotFound(f"No picture was recorded in {path}.")
+
+    def _kept_or(self, key: tuple[str, ...], make: Callable[[], bytes]) -> bytes:
+        """Return what was made before, as far as memory may be used for it; the oldest goes first."""
+        if key not in self._kept:
+            self._kept[key] = make()
+        self._kept.move_to_end(key)
+        while len(self._kept) > 1 and (
+            len(self._kept) > _MAX_KEPT or sum(map(len, self._kept.values())) > _MAX_KEPT_BYTES
+        ):
+            self._kept.popitem(last=False)
+        return self._kept[key]
+
+
+def _views(file: EpisodeFile, start_ns: int) -> list[RecordedView]:
+    """Return when the video of each arm begins that is in the file. start_ns: when the first state was there."""
+    cameras = {video_topic(arm): arm for arm in file.episode.arms}
+    first_ns: dict[str, int] = {}
+    for message in file.messages(*cameras):
+        first_ns.setdefault(cameras[message.topic], message.sent_ns)
+    return [
+        RecordedView(camera=camera, start_s=(first_ns[camera] - start_ns) / 1e9)
+        for camera in cameras.values()
+        if camera in first_ns
+    ]
+
+
+def _piece(whole: bytes, offset: int) -> CatalogueReply.Piece:
+    return CatalogueReply.Piece(piece=whole[offset : offset + PIECE_BYTES], size_bytes=len(whole))

@@ -1,0 +1,75 @@
+"""Answer which episodes a question means, and turn them into messages. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from mart.episodes.datasets import NamedDataSet
+from mart.episodes.filter import EpisodeFilter
+from mart.episodes.labelled_episode import LabelledEpisode
+from mart.protocol.messages import CatalogueReply, CatalogueRequest, RecordedEpisode
+from mart.protocol.messages import NamedDataSet as NamedDataSetMessage
+from mart.protocol.vocabulary import EpisodeOutcome
+
+DEFAULT_COUNT = 50
+MAX_COUNT = 200
+MAX_OPERATORS = 200
+
+
+def listing(
+    rows: Sequence[LabelledEpisode], wanted: CatalogueRequest.List, datasets: Iterable[NamedDataSet] = ()
+) -> CatalogueReply.Listing:
+    """Return one page of what is wanted, newest first, and what there is to choose from. rows: oldest first."""
+    matching = filter_of(wanted).apply(reversed(rows))
+    count = min(wanted.count or DEFAULT_COUNT, MAX_COUNT)
+    return CatalogueReply.Listing(
+        episodes=map(episode_message, matching[wanted.offset : wanted.offset + count]),
+        matching=len(matching),
+        successes=sum(row.outcome == EpisodeOutcome.SUCCESS for row in matching),
+        tasks=sorted({row.task for row in rows if row.task}),
+        operators=sorted({name for row in rows for name in names_of(row)})[:MAX_OPERATORS],
+        datasets=map(dataset_message, datasets),
+        skills=sorted({row.skill for row in rows if row.skill}),
+    )
+
+
+def filter_of(wanted: CatalogueRequest.List) -> EpisodeFilter:
+    """Return the filter that a question asks for; dropped and unreadable episodes are listed too."""
+
+    def one(word: str) -> tuple[str, ...]:
+        return (word,) if word else ()
+
+    return EpisodeFilter(
+        tasks=one(wanted.task),
+        outcomes=one(wanted.outcome),
+        verdicts=one(wanted.verdict),
+        rooms=one(wanted.room),
+        skills=one(wanted.skill),
+        datasets=one(wanted.dataset),
+        driven_by=wanted.operator,
+        unusable=True,
+    )
+
+
+def names_of(row: LabelledEpisode) -> set[str]:
+    """Return the names of the people and policies that drove."""
+    return {shift.name for shift in row.shifts if shift.name}
+
+
+def dataset_message(dataset: NamedDataSet) -> NamedDataSetMessage:
+    """Return a data set as it travels."""
+    return NamedDataSetMessage(
+        name=dataset.name,
+        episodes=len(dataset.episodes),
+        sha256=dataset.sha256,
+        created_ns=dataset.created_ns,
+    )
+
+
+def episode_message(row: LabelledEpisode) -> RecordedEpisode:
+    """Return an episode as it travels."""
+    known = row.model_dump(exclude_none=True)
+    return RecordedEpisode(**{name: known[name] for name in known if name in _FIELDS})
+
+
+_FIELDS = {field.name for field in RecordedEpisode.DESCRIPTOR.fields}

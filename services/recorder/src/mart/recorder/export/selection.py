@@ -1,0 +1,64 @@
+"""Choose the episodes of an export and read them: one task, one control rate, the same arms."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mart.episodes.arrays import EpisodeData
+from mart.episodes.compatibility import require_alike
+from mart.episodes.filter import DROPPED, EpisodeFilter
+from mart.episodes.labelled_episode import LabelledEpisode, require_readable
+from mart.protocol.errors import InvalidInput
+from mart.protocol.tasks import Task, get_task
+
+
+@dataclass(frozen=True)
+class ExportSelection:
+    """Hold episodes of one task, one control rate and the same arms, the oldest first."""
+
+    task: Task
+    control_hz: float
+    episodes: tuple[LabelledEpisode, ...]
+
+
+def choose(episodes: Iterable[LabelledEpisode], wanted: EpisodeFilter) -> ExportSelection:
+    """Choose what the filter takes, each file once.
+
+    Raises Corrupt where a file cannot be read, and InvalidInput where nothing is left or where they do not belong
+    together.
+    """
+    listed = list({episode.file_path.resolve(): episode for episode in episodes}.values())
+    require_readable(listed)
+    taken = wanted.apply(listed)
+    if not taken:
+        raise InvalidInput(_why_none(listed))
+    taken.sort(key=lambda episode: (episode.started_ns, episode.file_path))
+    require_alike(taken, "a file holds one: export each by itself")
+    first = taken[0]
+    if first.task is None or first.control_hz is None:
+        raise InvalidInput(f"{first.file_path} does not say its task and control rate; leave it out.")
+    return ExportSelection(get_task(first.task, len(first.arms)), first.control_hz, tuple(taken))
+
+
+def read_data(episode: LabelledEpisode, task: Task) -> EpisodeData:
+    """Read an episode into arrays, as the task's catalogue entry says.
+
+    Raises Corrupt where the file is damaged and InvalidInput, naming it, where it is not whole, not finite, or an
+    action is outside -1 … 1.
+    """
+    data = episode.open().arrays(task)
+    if (np.abs(data.actions) > 1.0).any():
+        raise InvalidInput(f"{episode.file_path} cannot be exported: an action is outside -1 … 1.")
+    return data
+
+
+def _why_none(episodes: Sequence[LabelledEpisode]) -> str:
+    if not episodes:
+        return "There are no episodes in what was given; name episode files or folders of them."
+    kinds = Counter(DROPPED if one.dropped else f"{one.outcome} and {one.verdict}" for one in episodes)
+    found = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
+    return f"None of the episodes that were given is taken ({found}); widen --outcome or --verdict."

@@ -1,0 +1,132 @@
+"""Tell of episodes in words and in JSON, for the command line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from mart.episodes.datasets import NamedDataSet
+from mart.episodes.labelled_episode import LabelledEpisode
+from mart.recorder.catalogue.dataset_editing import DataSetEdit
+from mart.recorder.repair.repair import RepairResult
+from mart.recorder.verify.resimulation import ComparedStretch
+
+_COLUMNS = ("path", "outcome", "verdict", "ticks", "real time", "operators", "")
+
+
+def listed(episode: LabelledEpisode) -> dict[str, Any]:
+    """Return one episode of `list --json`; its path is the one that was asked for."""
+    return episode.model_dump() | {"path": str(episode.file_path), "verified": episode.verified}
+
+
+def table(episodes: Sequence[LabelledEpisode], paths: Sequence[str] | None = None) -> str:
+    """Return a line for each episode. paths: how they are named; None names their files."""
+    if not episodes:
+        return "There are no episodes."
+    names = [str(episode.file_path) for episode in episodes] if paths is None else paths
+    cells = [_COLUMNS, *(_cells(name, one) for name, one in zip(names, episodes, strict=True))]
+    widths = [max(len(line[i]) for line in cells) for i in range(len(_COLUMNS))]
+    return "\n".join(
+        "  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in cells
+    )
+
+
+def _cells(path: str, row: LabelledEpisode) -> tuple[str, ...]:
+    if row.error is not None:
+        return (path, "–", "–", "–", "–", "–", row.error)
+    marks = {
+        "incomplete": not row.complete,
+        "repaired": row.repaired,
+        "paused": row.interrupted,
+        "dropped": row.dropped,
+    }
+    remarks = [word for word, holds in marks.items() if holds] + ([row.note] if row.note else [])
+    pace = "–" if row.real_time_factor is None else f"{row.real_time_factor:.3f}"
+    drivers = ", ".join(f"{arm} {who}" for arm, who in row.operators.items())
+    return (path, row.outcome, row.verdict, str(row.ticks), pace, drivers, "; ".join(remarks))
+
+
+def details(result: Mapping[str, Any]) -> str:
+    """Return nested facts as text, two spaces a level."""
+    return "\n".join(_lines(result, ""))
+
+
+def _lines(facts: Mapping[str, Any], indent: str) -> list[str]:
+    lines = []
+    for name, value in facts.items():
+        if isinstance(value, Mapping):
+            lines += [f"{indent}{name}", *_lines(value, indent + "  ")]
+        elif value is not None:
+            lines.append(f"{indent}{name}: {value}")
+    return lines
+
+
+def replayed(path: Path, stretches: Sequence[ComparedStretch]) -> tuple[dict[str, Any], str]:
+    """Return what `replay` found, as JSON and in words."""
+    told = [
+        {"first_tick": s.first_tick, "last_tick": s.last_tick, "different": list(s.different)}
+        for s in stretches
+    ]
+    lines = [f"{path}: {len(stretches)} stretch{'es' * (len(stretches) != 1)} without a missing tick"]
+    lines += [f"  ticks {s.first_tick} to {s.last_tick}: {_agreement(s)}" for s in stretches]
+    return {"path": str(path), "stretches": told}, "\n".join(lines)
+
+
+def _agreement(stretch: ComparedStretch) -> str:
+    if not stretch.different:
+        return "the same, bit for bit"
+    ticks = ", ".join(map(str, stretch.different[:10])) + (", …" if len(stretch.different) > 10 else "")
+    return f"{len(stretch.different)} differ: {ticks}"
+
+
+def repaired(repaired: Sequence[RepairResult]) -> tuple[dict[str, Any], str]:
+    """Return what `repair` did, as JSON and in words."""
+    told = [
+        {"part": str(r.part), "path": str(r.saved.path) if r.saved else None, "detail": r.detail}
+        for r in repaired
+    ]
+    lines = [f"{t['part']} → {t['path'] or 'not repaired'}. {t['detail']}" for t in told]
+    return {"repaired": told}, "\n".join(lines) or "There is nothing to repair."
+
+
+def dataset(found: NamedDataSet) -> dict[str, Any]:
+    """Return a data set as JSON."""
+    return {
+        "name": found.name,
+        "count": len(found.episodes),
+        "sha256": found.sha256,
+        "created": datetime.fromtimestamp(found.created_ns / 1e9, UTC).isoformat(timespec="seconds"),
+    }
+
+
+def dataset_table(told: Sequence[Mapping[str, Any]]) -> str:
+    """Return a line for each data set."""
+    if not told:
+        return "There are no data sets. `mart datasets create NAME` makes one of all good episodes."
+    return "\n".join(map(_dataset_line, told))
+
+
+def dataset_text(found: NamedDataSet, held: Sequence[LabelledEpisode], left_out: Mapping[str, str]) -> str:
+    """Return a data set in words. left_out: why each episode is not learned from, empty for one that is."""
+    unfit = [f"Left out of a training: {path} ({why})." for path, why in left_out.items() if why]
+    return "\n".join([_dataset_line(dataset(found)), table(held, [one.path for one in held]), *unfit])
+
+
+def curated(done: DataSetEdit, what: str) -> tuple[dict[str, Any], str]:
+    """Return what changed in a data set, as JSON and in words. what: the verb (`put into it`)."""
+    told = dataset(done.dataset) | {"changed": done.changed, "left_out": dict(done.left_out)}
+    left_out = ", ".join(f"{count} {why}" for why, count in sorted(done.left_out.items()))
+    held = len(done.dataset.episodes)
+    text = f"{done.dataset.name}: {done.changed} {_episodes(done.changed)} {what}, it holds {held} now"
+    return told, f"{text}; left out: {left_out}." if left_out else f"{text}."
+
+
+def _dataset_line(told: Mapping[str, Any]) -> str:
+    count = told["count"]
+    return f"{told['name']}  {count} {_episodes(count)}  {told['sha256'][:12]}  since {told['created']}"
+
+
+def _episodes(count: int) -> str:
+    return "episode" if count == 1 else "episodes"

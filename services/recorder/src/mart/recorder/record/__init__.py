@@ -1,0 +1,1 @@
+"""Record every episode of every room into a file of its own."""

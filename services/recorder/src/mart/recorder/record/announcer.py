@@ -1,0 +1,75 @@
+"""Tell rooms what the recorder did: events on the bus, and a line in the log for each.
+
+An event may be lost. Whoever counts on an episode asks for its file: `mart.episodes.find_episodes`, or the catalogue.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from pathlib import Path
+
+from mart.protocol import clock, codec, keys
+from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import Event, outcome_from_word
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
+from mart.recorder.record.finalize import SavedEpisode
+from mart.runtime.bus import Bus, Publisher
+
+_log = logging.getLogger(__name__)
+
+_LEVELS = {"info": logging.INFO, "warning": logging.WARNING, "error": logging.ERROR}
+
+
+class Announcer:
+    """Tell rooms of notices and saved episodes. Safe for several threads."""
+
+    def __init__(self, bus: Bus, data_dir: Path) -> None:
+        self._bus = bus
+        self._data_dir = data_dir
+        self._publishers: dict[str, Publisher] = {}
+        self._lock = threading.Lock()
+
+    def notice(self, room: str, level: str, text: str) -> None:
+        """Tell a room in words. level: info, warning or error."""
+        _log.log(_LEVELS[level], "%s: %s", room, text)
+        self._put(room, Event(notice=Event.Notice(level=level, text=text, **{"from": "recorder"})))
+
+    def saved(self, saved: SavedEpisode) -> None:
+        """Tell a room that an episode of it has its file."""
+        episode, verification = saved.episode, saved.verification
+        _log.info("%s: %s", episode.room, _in_words(saved))
+        told = Event.EpisodeSaved(
+            number=episode.number,
+            path=saved.path.relative_to(self._data_dir).as_posix(),
+            verified=verification.verdict is Verdict.VERIFIED,
+            verdict=verification.verdict.value,
+            size_bytes=saved.size_bytes,
+        )
+        if episode.outcome != EpisodeOutcome.UNSPECIFIED:
+            told.outcome = outcome_from_word(episode.outcome)
+        self._put(episode.room, Event(episode_saved=told, tick=episode.last_tick))
+
+    def _put(self, room: str, event: Event) -> None:
+        event.wall_ns = clock.wall_ns()
+        event.room = room
+        with self._lock:
+            if room not in self._publishers:
+                try:
+                    self._publishers[room] = self._bus.publisher(keys.event(room))
+                except InvalidInput as error:  # a repaired file may name a room that cannot exist
+                    _log.warning("Nobody can be told: %s", error)
+                    return
+            self._publishers[room].put(codec.encode(event))
+
+
+def _in_words(saved: SavedEpisode) -> str:
+    episode = saved.episode
+    parts = [
+        f"episode {episode.number} saved: {saved.path}",
+        f"{saved.size_bytes / 1e6:.1f} MB",
+        f"{episode.ticks} ticks",
+        f"{episode.outcome}{'' if episode.complete else ', incomplete'}",
+        f"{saved.verification.verdict.value} ({saved.verification.detail})",
+    ]
+    return ", ".join(parts)

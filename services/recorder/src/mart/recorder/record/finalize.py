@@ -1,0 +1,106 @@
+"""Complete a file: verify while it is still a `.part`, write what is known, read it back, and only then name it."""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from importlib.metadata import distributions
+from pathlib import Path
+from types import MappingProxyType
+
+from mart.episodes.reader import EpisodeFile
+from mart.episodes.writer import EpisodeWriter
+from mart.protocol import clock
+from mart.protocol.messages import Model
+from mart.protocol.recording import (
+    PART_SUFFIX,
+    SUFFIX,
+    VERSIONS,
+    EpisodeRecord,
+    RoomRecord,
+    VerificationRecord,
+)
+from mart.recorder.record.episode_accumulator import EpisodeAccumulator
+from mart.recorder.record.room_facts import RoomFacts
+
+VerifyFile = Callable[[EpisodeFile, RoomRecord], VerificationRecord]
+
+_LAST_DAY_S = 253402300799  # of the year 9999: a file's stamps are only what its bytes say
+_SAFE = re.compile(r"[a-z0-9][a-z0-9_-]*")
+_WRITES = ("mcap", "protobuf", "zstandard")  # besides MART's own parts
+
+
+@dataclass(frozen=True)
+class SavedEpisode:
+    """Tell of an episode file that has its name."""
+
+    path: Path
+    episode: EpisodeRecord
+    verification: VerificationRecord
+    size_bytes: int
+
+
+def finalize(
+    file: EpisodeWriter,
+    episode: EpisodeAccumulator,
+    facts: RoomFacts,
+    root: Path,
+    verify: VerifyFile,
+    *,
+    repaired: bool,
+) -> SavedEpisode:
+    """Complete `file` and move it to its name under `root`. repaired: whether a crash had left it.
+
+    Raises OSError where the disk is full and Corrupt where what was written does not read back; the `.part` stays.
+    """
+    if not file.described:
+        file.describe(facts.record())
+    file.flush()
+    verification = verify(EpisodeFile(file.path, {}), facts.record())
+    record = episode.record(facts, repaired)
+    for known in (record, episode.cadence(), episode.operators(facts), verification):
+        file.add_record(known.NAME, known.to_strings())
+    file.add_record(VERSIONS, versions())
+    file.finish()
+    EpisodeFile(file.path, {}).check(file.messages)
+    file.move_to(free_path(root, record))
+    return SavedEpisode(file.path, record, verification, file.path.stat().st_size)
+
+
+def part_path(root: Path, episode: EpisodeAccumulator, facts: RoomFacts) -> Path:
+    """Return where to write an episode that begins; nothing is there yet."""
+    return free_path(root, episode.record(facts), PART_SUFFIX)
+
+
+def free_path(root: Path, record: EpisodeRecord, suffix: str = SUFFIX) -> Path:
+    """Return `{date}/{room}-{number}-{task}`; an episode in several files, cut by a restart, goes on with -2, -3, …"""
+    day = datetime.fromtimestamp(min(record.started_ns / 1e9, _LAST_DAY_S), UTC).strftime("%Y-%m-%d")
+    room = record.room if _SAFE.fullmatch(record.room) else "room"
+    stem = f"{room}-{record.number:04}-{record.task or 'unknown'}"
+    count = 1
+    while True:
+        path = root / day / f"{stem}{'' if count == 1 else f'-{count}'}{suffix}"
+        if not path.exists():
+            return path
+        count += 1
+
+
+@functools.cache
+def versions() -> Mapping[str, str]:
+    """Return every installed part of MART and the libraries that shape the file; looked up once, in 70 ms."""
+    installed = {d.name: d.version for d in distributions()}
+    parts = {n: v for n, v in sorted(installed.items()) if n.startswith("mart-") or n in _WRITES}
+    return MappingProxyType(parts)
+
+
+def describe_room(file: EpisodeWriter, facts: RoomFacts, model: Model | None) -> None:
+    """Write what is known about the room and its model into an open file, once each, as soon as it is known."""
+    if model is not None and not file.has_model:
+        facts.learn_model(model)
+    if facts.is_complete and not file.described:
+        file.describe(facts.record())
+    if model is not None and not file.has_model and file.described:
+        file.attach_model(model, clock.wall_ns())

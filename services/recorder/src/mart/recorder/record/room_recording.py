@@ -1,0 +1,149 @@
+"""Record one room: its tracker decides what belongs into which file, and here it is done."""
+
+from __future__ import annotations
+
+import copy
+import logging
+import shutil
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from mart.episodes.writer import EpisodeWriter
+from mart.protocol import keys
+from mart.protocol.messages import Command, Event, RoomStatus, State
+from mart.recorder.record.announcer import Announcer
+from mart.recorder.record.arrival_decoder import ArrivedMessage, decode_arrival
+from mart.recorder.record.episode_accumulator import EpisodeAccumulator
+from mart.recorder.record.finalize import describe_room, part_path
+from mart.recorder.record.finalize_worker import FinalizeWorker
+from mart.recorder.record.inbox import BusArrival
+from mart.recorder.record.room_models import RoomModels
+from mart.recorder.record.room_tracker import CloseFile, FileAction, OpenFile, RoomTracker
+
+_log = logging.getLogger(__name__)
+
+FLUSH_S = 0.5
+_LOW_SPACE_BYTES = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class RecordingTools:
+    """Hold what every room's recording uses. root: the folder of the episodes."""
+
+    root: Path
+    models: RoomModels
+    announcer: Announcer
+    finalizer: FinalizeWorker
+
+
+class RoomRecording:
+    """Write the episodes of one room, one file after another. A full disk ends the file at hand, never the room."""
+
+    def __init__(self, room: str, tools: RecordingTools) -> None:
+        self.file: EpisodeWriter | None = None
+        self._room = room
+        self._tools = tools
+        self._tracker = RoomTracker(room)
+        self._boot = 0
+        self._flushed_s = 0.0
+
+    def take(self, arrival: BusArrival, now_s: float) -> None:
+        """Write what has arrived, if it belongs into a file. Raises InvalidInput for what cannot be used."""
+        self._apply(self._decide(decode_arrival(arrival), arrival, now_s))
+
+    def advance(self, now_s: float) -> None:
+        """Do what it is time for: close a file that is over, bring an open one onto the disk."""
+        self._apply(self._tracker.advance(now_s))
+        if self.file is not None and now_s - self._flushed_s >= FLUSH_S:
+            self.flush(now_s)
+
+    def flush(self, now_s: float) -> None:
+        """Bring the open file onto the disk, with what is known about the room by now."""
+        assert self.file is not None
+        self._flushed_s = now_s
+        try:
+            describe_room(self.file, self._tracker.facts, self._tools.models.known(self._room, self._boot))
+            self.file.flush()
+        except OSError as error:
+            self._give_up(error)
+
+    def finish(self, reason: str) -> None:
+        """End what is being recorded; the file says why it was not finished."""
+        self._apply(self._tracker.finish(reason))
+
+    def count_losses(self, messages: int, frames: int, text: str) -> None:
+        """Note in the open file what the recorder could not keep up with, and tell the room in these words."""
+        self._tracker.lost(messages, frames)
+        if self.file is not None:
+            self._tools.announcer.notice(self._room, "error" if messages else "warning", text)
+
+    def _decide(self, message: ArrivedMessage, arrival: BusArrival, now_s: float) -> Sequence[FileAction]:
+        payload, arrived_ns = arrival.payload, arrival.arrived_ns
+        match message:
+            case State():
+                self._notice_boot(message.boot)
+                return self._tracker.state(message, payload, arrived_ns, now_s)
+            case RoomStatus():
+                self._notice_boot(message.boot)
+                return self._tracker.status(message, now_s)
+            case Event():
+                return self._tracker.event(message, payload, arrived_ns, now_s)
+            case Command():
+                return self._tracker.command(keys.arm_of(arrival.key), message, payload, arrived_ns)
+            case _:
+                return self._tracker.video(keys.camera_of(arrival.key), message, payload, arrived_ns)
+
+    def _notice_boot(self, boot: int) -> None:
+        if self._boot != boot:
+            self._boot = boot
+            self._tools.finalizer.fetch_model(self._room, boot)
+
+    def _apply(self, actions: Iterable[FileAction]) -> None:
+        for action in actions:
+            try:
+                self._act(action)
+            except OSError as error:
+                self._give_up(error)
+                return
+
+    def _act(self, action: FileAction) -> None:
+        if isinstance(action, OpenFile):
+            self._open(action.episode)
+        elif isinstance(action, CloseFile):
+            self._close(action.episode)
+        elif self.file is not None:
+            self.file.add(action)
+
+    def _open(self, episode: EpisodeAccumulator) -> None:
+        self.file = None
+        self.file = EpisodeWriter(part_path(self._tools.root, episode, self._tracker.facts))
+        self._flushed_s = float("-inf")  # the first state is on the disk at once
+        _log.info("%s: recording episode %d into %s", episode.room, episode.number, self.file.path)
+        if self._tools.models.known(self._room, episode.boot) is None:
+            self._tools.finalizer.fetch_model(self._room, episode.boot)  # the first answer may have been lost
+        free = shutil.disk_usage(self._tools.root).free
+        if free < _LOW_SPACE_BYTES:
+            text = f"The recorder's disk has {free / 1e6:.0f} MB left; make room before it is full."
+            self._tools.announcer.notice(episode.room, "warning", text)
+
+    def _close(self, episode: EpisodeAccumulator) -> None:
+        file, self.file = self.file, None
+        if file is None:
+            return
+        if episode.is_glimpse:
+            file.discard()
+        else:
+            self._tools.finalizer.finalize(file, episode, copy.deepcopy(self._tracker.facts))
+
+    def _give_up(self, error: OSError) -> None:
+        """Leave this episode: the disk is full or broken. The room and its next episode go on."""
+        episode, file = self._tracker.episode, self.file
+        self._tracker.abandon()
+        self.file = None
+        if file is not None:
+            file.abandon()
+        number = f" {episode.number}" if episode is not None else ""
+        where = f" What was written until now is in {file.path}." if file is not None else ""
+        text = f"Recording of episode{number} stopped: {error.strerror}.{where} The next one is tried again."
+        self._tools.announcer.notice(self._room, "error", text)

@@ -1,0 +1,1 @@
+"""Make episode files of what crashes have left."""

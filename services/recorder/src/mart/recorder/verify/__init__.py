@@ -1,0 +1,1 @@
+"""Step recorded episodes again and compare: do their ticks follow from each other?"""

@@ -1,0 +1,33 @@
+"""What a training learns from, as it is asked for: which episodes, and of which named data set."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind, Verdict
+
+
+class Selection(BaseModel):
+    """Which episodes are learned from, and how much of them. Empty: no such limit.
+
+    operators: everybody who drove an arm of the episode is one of these (words as in an episode's operators).
+    names: names of people, skills or policies, as recorded; every arm's driver must be one of them.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    outcomes: tuple[EpisodeOutcome, ...] = (EpisodeOutcome.SUCCESS,)
+    verdicts: tuple[Verdict, ...] = (Verdict.VERIFIED,)
+    operators: tuple[OperatorKind, ...] = ()
+    names: tuple[str, ...] = ()
+    first: int | None = Field(None, ge=1)  # this many episodes, the oldest
+    last: int | None = Field(None, ge=1)  # the newest
+
+
+class DataSetName(BaseModel):
+    """A named data set and the digest of what it held when it was asked for."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str
+    sha256: str

@@ -1,0 +1,117 @@
+"""Turn what was submitted into jobs: a sweep is models x tasks (x groups of seeds)."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from mart.protocol.errors import InvalidInput, NotFound
+from mart.protocol.messages import Order, TrainerRequest
+from mart.protocol.recording import SUFFIX
+from mart.protocol.tasks import get_task, task_names
+from mart.trainer.data.data_spec import DataSetName, Selection
+from mart.trainer.data.named_dataset import WHOLE, find_dataset
+from mart.trainer.evaluate.config import EvaluationSpec
+from mart.trainer.jobs.job import JobSpec
+from mart.trainer.jobs.service.settings import TrainerSettings
+from mart.trainer.models.architecture import ModelSpec
+from mart.trainer.train.presets import preset
+from mart.trainer.train.spec import TrainingSpec
+
+MAX_MODELS = 16
+MAX_TASKS = 16
+MAX_JOBS = 256
+MAX_EPISODES = 1000
+SCORE_EPISODES = 100
+DEFAULT_DATA = "episodes"
+DEFAULT_PRESET = "fast"
+
+
+def job_specs(submit: TrainerRequest.Submit, settings: TrainerSettings) -> list[JobSpec]:
+    """Return a spec for each job of a submission.
+
+    Raises InvalidInput or NotFound, in words, where anything cannot be done: nothing is accepted then.
+    """
+    _require_number("models", len(submit.models), MAX_MODELS)
+    _require_number("tasks", len(submit.tasks), MAX_TASKS)
+    order = submit.order
+    if max(order.evaluation_episodes, order.score_episodes) > MAX_EPISODES:
+        most = max(order.evaluation_episodes, order.score_episodes)
+        raise InvalidInput(f"{most} episodes were given; at most {MAX_EPISODES} judge a checkpoint.")
+    groups = _groups(tuple(order.seeds) or (0,), submit.seeds_per_job)
+    found = [
+        _job_spec(model, task, seeds, order, settings)
+        for task, model, seeds in itertools.product(submit.tasks, submit.models, groups)
+    ]
+    _require_number("jobs", len(found), MAX_JOBS)
+    return found
+
+
+def _job_spec(
+    model: str, task: str, seeds: Sequence[int], order: Order, settings: TrainerSettings
+) -> JobSpec:
+    preset(order.preset or DEFAULT_PRESET)
+    folder = settings.data_dir / (order.data or DEFAULT_DATA)
+    named, files = _dataset(folder, order.dataset, task) if order.dataset else (None, _files(folder, task))
+    try:
+        training = TrainingSpec(
+            model=ModelSpec.parse(model).name,
+            data=files,
+            dataset=named,
+            selection=WHOLE if named else Selection(),
+            seeds=tuple(seeds),
+            preset=order.preset or DEFAULT_PRESET,
+            device=settings.device,
+        )
+    except ValidationError as error:
+        fault = error.errors()[0]
+        raise InvalidInput(f"{fault['loc'][0]} = {fault['input']!r} was given: {fault['msg']}.") from error
+    evaluation = EvaluationSpec(
+        task=task,
+        episodes=order.evaluation_episodes,
+        score_episodes=order.score_episodes if order.HasField("score_episodes") else SCORE_EPISODES,
+        replicas=settings.replica_names,
+    )
+    return JobSpec(training=training, evaluation=evaluation)
+
+
+def _dataset(folder: Path, name: str, task: str) -> tuple[DataSetName, tuple[Path, ...]]:
+    """Return a named data set and its files as they are now. Raises NotFound, and InvalidInput where it is of another task, by the names of its files."""
+    found, files = find_dataset(folder, name)
+    other = {task_in(path.name) for path in files} - {"", get_task(task).name}
+    if other:
+        raise InvalidInput(
+            f"The data set {name!r} holds episodes of {', '.join(sorted(other))}, and {task} was asked for; "
+            "train that task, or choose another data set."
+        )
+    return found, files
+
+
+def task_in(name: str) -> str:
+    """Return the task that an episode's file is named after; empty for a name of another form."""
+    return next((task for task in task_names() if f"-{task}" in name), "")
+
+
+def _files(folder: Path, task: str) -> tuple[Path, ...]:
+    """Return the task's files in a folder, by the names that episode files have. Raises NotFound where there is none."""
+    name = get_task(task).name
+    folder = folder.resolve()
+    files = tuple(sorted(folder.rglob(f"*-{name}*{SUFFIX}"))) if folder.is_dir() else ()
+    if not files:
+        raise NotFound(
+            f"There are no episodes of {name} in {folder}; `mart collect --task {name}` records some."
+        )
+    return files
+
+
+def _groups(seeds: tuple[int, ...], together: int) -> list[tuple[int, ...]]:
+    size = together or len(seeds)
+    return [seeds[first : first + size] for first in range(0, len(seeds), size)]
+
+
+def _require_number(what: str, given: int, most: int) -> None:
+    if not 1 <= given <= most:
+        raise InvalidInput(f"{given} {what} were given; 1 to {most} are allowed at once.")

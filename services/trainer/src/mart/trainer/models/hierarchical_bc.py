@@ -1,0 +1,219 @@
+"""The networks of one point of the grid, for many seeds at once: who plans, who acts and who corrects.
+
+    subgoal  g ~ planner(o)                       every `window` ticks
+    action   a = actor(o, g)                      every tick
+    result   a + residual(o, a)                   where there is a residual
+
+Planner and actor are trained apart, the actor on subgoals that were really reached (robomimic's mode "separate"). The
+residual is trained after both, on what the base does with the demonstrated subgoal in its planner's words, drawn from
+the posterior. Given the true one, there is nothing left to correct; given one of the prior's, which may be another
+intention, it would learn to act against what is intended (decision 0024).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import torch
+from torch import Tensor, nn
+
+from mart.protocol.batch_state import ACTION_SIZE
+from mart.trainer.data.layout import ObservationLayout
+from mart.trainer.data.windows import WindowBatch
+from mart.trainer.models.architecture import ModelSpec
+from mart.trainer.models.arm_partition import ArmPartition
+from mart.trainer.models.hyperparameters import Hyperparameters
+from mart.trainer.models.layers.actors import Actor, Memory, Memoryless, Recurrent
+from mart.trainer.models.layers.heads import MeanHead, MixtureHead
+from mart.trainer.models.layers.residual import Residual
+from mart.trainer.models.layers.vae import Planner
+from mart.trainer.models.losses import Losses
+from mart.trainer.models.rng import Rng, weight_generators
+
+
+class HierarchicalBC(nn.Module):
+    """Planner, actor and residual, any but the actor possibly absent."""
+
+    def __init__(
+        self,
+        model: ModelSpec,
+        layout: ObservationLayout,
+        sizes: Hyperparameters,
+        seeds: Sequence[int],
+        dtype: torch.dtype = torch.float32,
+    ) -> None:
+        super().__init__()
+        self.model, self.sizes, self.seeds = model, sizes, len(seeds)
+        self.partition = ArmPartition(layout, model.actor)
+        self.planner_partition = None if model.planner == "none" else ArmPartition(layout, model.planner)
+        self.residual_partition = None if model.residual == "none" else ArmPartition(layout, model.residual)
+        self.planner = self._planner(layout, seeds)
+        self.actor = self._actor(seeds, dtype)
+        self.residual = self._residual(seeds)
+
+    def base_losses(self, batch: WindowBatch, rng: Rng) -> Losses:
+        """Of planner and actor."""
+        losses, looks = {}, {}
+        goal = None
+        if self.planner is not None and self.planner_partition is not None:
+            partition = self.planner_partition
+            obs, goal = partition.of(batch.obs[:, 0]), partition.of(batch.goal)
+            plan = self.planner.loss(
+                obs, goal, rng.normal(partition.units, obs.shape[1], self.planner.latent)
+            )
+            each = plan.reconstruction + self.sizes.kl_weight * plan.divergence
+            weights = None if batch.weights is None else _mean_weights(partition, batch.weights[:, 0])
+            losses["planner"] = _mean(each, weights)
+            looks = {"reconstruction": plan.reconstruction.mean(1), "divergence": plan.divergence.mean(1)}
+            goal = self._routed(goal)
+        each = self.actor.loss(self._inputs(batch.obs, goal), self.partition.split(batch.actions))
+        weights = None if batch.weights is None else _mean_weights(self.partition, batch.weights)
+        losses["actor"] = _mean(each, weights)
+        return Losses(losses, {name: value.detach() for name, value in looks.items()})
+
+    def residual_losses(self, batch: WindowBatch, rng: Rng) -> Losses:
+        """Of the residual; base and planner are frozen, and the base acts on reconstructed subgoals."""
+        assert self.residual is not None
+        assert self.residual_partition is not None
+        with torch.no_grad():
+            base = self._sequence(batch, rng)
+        partition = self.residual_partition
+        actions = partition.split(base)
+        delta = self.residual(partition.of(batch.obs), actions)
+        each = ((actions + delta - partition.split(batch.actions)) ** 2).mean(-1)
+        weights = None if batch.weights is None else _mean_weights(partition, batch.weights)
+        length = delta.detach().unflatten(-1, (-1, ACTION_SIZE)).norm(dim=-1)
+        looks = {
+            "base": ((base - batch.actions) ** 2).flatten(1).mean(1),
+            "correction": length.flatten(1).mean(1),
+            "correction_at_bound": (length > 0.95 * self.residual.epsilon).float().flatten(1).mean(1),
+        }
+        return Losses({"residual": _mean(each, weights)}, looks)
+
+    def start(self, batch: int) -> Memory:
+        return self.actor.body.start(batch)
+
+    def plan(self, obs: Tensor, rng: Rng) -> Tensor | None:
+        """A subgoal as the actor takes it. obs: [S, B, D] → [M, B, G]; None without a planner."""
+        if self.planner is None or self.planner_partition is None:
+            return None
+        partition, batch = self.planner_partition, obs.shape[1]
+        choice = rng.uniform(partition.units, batch)
+        drawn = rng.normal(partition.units, batch, self.planner.latent)
+        return self._routed(self.planner.sample(partition.of(obs), choice, drawn))
+
+    def act(self, obs: Tensor, goal: Tensor | None, memory: Memory, rng: Rng) -> tuple[Tensor, Memory]:
+        """One tick. obs: [S, B, D] → [S, B, arms, 7], and what the actor remembers."""
+        inputs = self._inputs(obs[:, None], goal)[:, 0]
+        actions, memory = self.actor.step(inputs, memory, *self._draws(obs.shape[1], rng))
+        merged = self.partition.merge(actions)
+        if self.residual is not None and self.residual_partition is not None:
+            partition = self.residual_partition
+            merged = merged + partition.merge(self.residual(partition.of(obs), partition.split(merged)))
+        return merged.clamp(-1, 1), memory
+
+    def _sequence(self, batch: WindowBatch, rng: Rng) -> Tensor:
+        """What the base does over a window, on the way that was demonstrated: [S, T, B, arms, 7]."""
+        ticks, size = batch.obs.shape[1:3]
+        inputs = self._inputs(batch.obs, self._posterior_subgoal(batch, rng))
+        return self.partition.merge(self.actor.sequence(inputs, *self._draws(ticks * size, rng)))
+
+    def _posterior_subgoal(self, batch: WindowBatch, rng: Rng) -> Tensor | None:
+        """The demonstrated subgoal in the planner's words, as the actor takes it: [M, B, G]."""
+        if self.planner is None or self.planner_partition is None:
+            return None
+        partition, obs = self.planner_partition, batch.obs[:, 0]
+        drawn = rng.normal(partition.units, obs.shape[1], self.planner.latent)
+        return self._routed(self.planner.reconstruct(partition.of(obs), partition.of(batch.goal), drawn))
+
+    def _draws(self, batch: int, rng: Rng) -> tuple[Tensor, Tensor]:
+        return rng.uniform(self.partition.units, batch), rng.normal(
+            self.partition.units, batch, self.partition.action_size
+        )
+
+    def _inputs(self, obs: Tensor, goal: Tensor | None) -> Tensor:
+        """What the actor is given: [S, T, B, D] and [M, B, G] → [M, T, B, I]."""
+        own = self.partition.of(obs)
+        return own if goal is None else torch.cat((own, goal[:, None].expand(-1, own.shape[1], -1, -1)), -1)
+
+    def _routed(self, goal: Tensor) -> Tensor:
+        """From the planner's view to the actor's: [planners, B, width] → [actors, B, G].
+
+        To one actor from many planners they all go, side by side: where arms see the same thing, what is planned for
+        it may differ, and the actor is given every opinion. From one planner each of many actors gets its arm's part.
+        """
+        assert self.planner_partition is not None
+        if self.planner_partition.units == self.partition.units:
+            return goal
+        if self.planner_partition.units == 1:
+            return self.partition.of(goal)
+        return goal.unflatten(0, (-1, self.planner_partition.units)).movedim(1, -2).flatten(-2)
+
+    def _goal_mask(self) -> Tensor:
+        """bool[units, G]: which columns of the actor's subgoal are real."""
+        if self.planner_partition is None:
+            return torch.zeros(self.partition.units, 0, dtype=torch.bool)
+        return (
+            self.planner_partition.real.flatten()[None] if self.partition.units == 1 else self.partition.real
+        )
+
+    def _planner(self, layout: ObservationLayout, seeds: Sequence[int]) -> Planner | None:
+        if self.planner_partition is None:
+            return None
+        sizes, partition = self.sizes, self.planner_partition
+        return Planner(
+            partition.stacked(len(seeds)),
+            _equal_by_name(layout, partition).repeat(len(seeds), 1),
+            weight_generators(seeds, partition.units, "planner"),
+            hidden=sizes.vae_hidden,
+            latent=sizes.vae_latent,
+            modes=sizes.vae_prior_modes,
+        )
+
+    def _actor(self, seeds: Sequence[int], dtype: torch.dtype) -> Actor:
+        sizes, partition = self.sizes, self.partition
+        inputs = torch.cat((partition.real, self._goal_mask()), 1).repeat(len(seeds), 1)
+        own = weight_generators(seeds, partition.units, "actor")
+        body: Recurrent | Memoryless
+        if self.model.network == "rnn":
+            body = Recurrent(inputs, own, width=sizes.rnn_hidden, layers=sizes.rnn_layers, dtype=dtype)
+        else:
+            body = Memoryless(inputs, own, hidden=sizes.mlp_hidden)
+        head = (
+            MeanHead(body.features, partition.action_size, own)
+            if self.model.head == "l2"
+            else MixtureHead(body.features, partition.action_size, sizes.gmm_modes, own)
+        )
+        return Actor(body, head)
+
+    def _residual(self, seeds: Sequence[int]) -> Residual | None:
+        if self.residual_partition is None:
+            return None
+        sizes, partition = self.sizes, self.residual_partition
+        return Residual(
+            partition.stacked(len(seeds)),
+            weight_generators(seeds, partition.units, "residual"),
+            arms=partition.arms,
+            hidden=sizes.residual_hidden,
+            epsilon=sizes.residual_epsilon,
+        )
+
+
+def _equal_by_name(layout: ObservationLayout, partition: ArmPartition) -> Tensor:
+    """float32[units, width]: weights of columns so that each named observation counts the same; sum 1."""
+    groups = torch.from_numpy(layout.groups())
+    index = partition.index
+    group = torch.where(index >= 0, groups[index], len(layout.fields))
+    counts = torch.nn.functional.one_hot(group, len(layout.fields) + 1).sum(1)
+    names = (counts[:, :-1] > 0).sum(1, keepdim=True)
+    return partition.real / (torch.gather(counts, 1, group) * names)
+
+
+def _mean_weights(partition: ArmPartition, weights: Tensor) -> Tensor:
+    """Of each model, over the arms that it drives: [S, ..., arms] → [M, ...]."""
+    return partition.per_unit(weights).mean(-1)
+
+
+def _mean(each: Tensor, weights: Tensor | None) -> Tensor:
+    """[M, ...] → [M]."""
+    return (each if weights is None else each * weights).flatten(1).mean(1)

@@ -1,0 +1,43 @@
+"""From a point of the grid to its networks and to the windows that they learn from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import torch
+from torch import nn
+
+from mart.trainer.data.layout import ObservationLayout
+from mart.trainer.data.normalise import Normaliser
+from mart.trainer.data.windows import WindowSpec
+from mart.trainer.models.architecture import ModelSpec
+from mart.trainer.models.flow_policy_net import FlowPolicyNet
+from mart.trainer.models.hierarchical_bc import HierarchicalBC
+from mart.trainer.models.hyperparameters import Hyperparameters
+
+
+class Networks(nn.Module):
+    """What a checkpoint's weights belong to: the model of every seed, and how observations are normalised."""
+
+    def __init__(
+        self,
+        model: ModelSpec,
+        layout: ObservationLayout,
+        sizes: Hyperparameters,
+        seeds: Sequence[int],
+        dtype: torch.dtype = torch.float32,
+    ) -> None:
+        """`dtype`: of an LSTM's matrix products while training."""
+        super().__init__()
+        self.normaliser = Normaliser(layout.width)
+        self.model: HierarchicalBC | FlowPolicyNet = (
+            FlowPolicyNet(model, layout, sizes, seeds)
+            if model.network == "flow"
+            else HierarchicalBC(model, layout, sizes, seeds, dtype)
+        )
+
+
+def window_spec(model: ModelSpec, sizes: Hyperparameters) -> WindowSpec:
+    return (
+        WindowSpec.chunk(sizes.flow_chunk) if model.network == "flow" else WindowSpec.sequence(sizes.window)
+    )

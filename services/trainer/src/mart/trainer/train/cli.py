@@ -1,0 +1,200 @@
+"""`mart train`. Heavy modules are imported inside: `mart --help` loads this file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from pydantic import ValidationError
+
+from mart.protocol.errors import InvalidInput
+from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind, Verdict
+from mart.runtime.cli import json_option, print_result
+from mart.trainer.data.data_spec import DataSetName, Selection
+from mart.trainer.models.architecture import model_names
+from mart.trainer.train.presets import PRESETS
+from mart.trainer.train.spec import TrainingSpec
+
+if TYPE_CHECKING:
+    from mart.trainer.train.run_directory import RunDirectory
+    from mart.trainer.train.training import TrainingProgress
+
+_paths = click.Path(path_type=Path, exists=True)
+
+
+@click.command()
+@click.option(
+    "--model", help=f"{', '.join(model_names())}, or a point PLANNER/ACTOR/RESIDUAL[/NETWORK][/HEAD]."
+)
+@click.option("--data", type=_paths, multiple=True, help="Episode file or folder of them; may be repeated.")
+@click.option("--dataset", help="A named data set of the folder --data, whole.  [--data: data/episodes]")
+@click.option(
+    "--seeds",
+    type=click.IntRange(1, 64),
+    default=1,
+    show_default=True,
+    help="How many, from --first-seed on.",
+)
+@click.option(
+    "--first-seed", type=click.IntRange(0), default=0, show_default=True, help="The smallest of them."
+)
+@click.option("--preset", type=click.Choice(list(PRESETS)), default="fast", show_default=True)
+@click.option(
+    "--set", "changes", multiple=True, metavar="NAME=VALUE", help="Change one of the preset's numbers."
+)
+@click.option("--out", type=click.Path(path_type=Path), help="The run's folder; one that was begun goes on.")
+@click.option("--resume", type=_paths, help="Go on with this run; nothing else is asked then.")
+@click.option("--base", type=_paths, help="A run, or one of its checkpoints, that a residual corrects.")
+@click.option(
+    "--outcome", type=click.Choice([*EpisodeOutcome, "any"]), multiple=True, help="[default: success]"
+)
+@click.option("--verdict", type=click.Choice([*Verdict, "any"]), multiple=True, help="[default: verified]")
+@click.option(
+    "--operator", type=click.Choice(list(OperatorKind)), multiple=True, help="Only episodes driven by these."
+)
+@click.option("--name", multiple=True, help="Only episodes driven by these people, skills or policies.")
+@click.option("--first", type=click.IntRange(1), help="Only the oldest so many of them.")
+@click.option("--last", type=click.IntRange(1), help="Only the newest so many of them.")
+@click.option(
+    "--weight",
+    multiple=True,
+    metavar="SOURCE=W",
+    help="How much ticks driven by a source count, e.g. human=3.",
+)
+@click.option("--device", default="cpu", show_default=True, help="cpu, cuda, cuda:N or auto.")
+@json_option
+def train(resume: Path | None, out: Path | None, as_json: bool, **options: Any) -> int:
+    """Fit a policy to episodes."""
+    from mart.runtime.service import stop_requested
+    from mart.trainer.train.run_directory import RunDirectory
+    from mart.trainer.train.training import train as train_run
+
+    run = RunDirectory(_folder(resume, out))
+    spec = run.spec if resume else _spec(options)
+    with stop_requested() as stop:
+        train_run(spec, run.path, stop, lambda progress: click.echo(_line(progress), err=True))
+    result = {**_result(run), "complete": not stop.is_set()}
+    print_result(result, _words(result), as_json)
+    return 130 if stop.is_set() else 0
+
+
+def _folder(resume: Path | None, out: Path | None) -> Path:
+    if (resume is None) == (out is None):
+        raise InvalidInput("Give --out DIR for a new run, or --resume DIR for one that was begun.")
+    return resume or out or Path()
+
+
+def _spec(options: dict[str, Any]) -> TrainingSpec:
+    """Return what the options ask for. Raises InvalidInput for what cannot be asked."""
+    if not options["model"] or not (options["data"] or options["dataset"]):
+        raise InvalidInput("Give --model and --data or --dataset, or --resume DIR to go on with a run.")
+    dataset, data, usual = _data(options["data"], options["dataset"])
+    first, count = options["first_seed"], options["seeds"]
+    try:
+        return TrainingSpec(
+            model=options["model"],
+            data=data,
+            dataset=dataset,
+            seeds=tuple(range(first, first + count)),
+            preset=options["preset"],
+            changes={name: _value(text) for name, text in _pairs(options["changes"])},
+            selection={
+                "outcomes": _any(options["outcome"], usual.outcomes),
+                "verdicts": _any(options["verdict"], usual.verdicts),
+                "operators": options["operator"],
+                "names": options["name"],
+                "first": options["first"],
+                "last": options["last"],
+            },
+            weights={name: _value(text) for name, text in _pairs(options["weight"])},
+            base=options["base"].resolve() if options["base"] else None,
+            device=options["device"],
+        )
+    except ValidationError as error:
+        fault = error.errors()[0]
+        where = ".".join(map(str, fault["loc"]))
+        raise InvalidInput(f"{where} = {fault['input']!r} was given: {fault['msg']}; see --help.") from error
+
+
+def _data(
+    paths: tuple[Path, ...], name: str | None
+) -> tuple[DataSetName | None, tuple[Path, ...], Selection]:
+    """Return the data set, the files or folders to read, and what is taken of them where nothing is said."""
+    from mart.runtime.settings import Settings
+    from mart.trainer.data.named_dataset import WHOLE, find_dataset
+
+    if not name:
+        return None, tuple(path.resolve() for path in paths), Selection()
+    if len(paths) > 1:
+        raise InvalidInput(
+            f"{len(paths)} times --data was given; a data set is in one folder: give that one."
+        )
+    return *find_dataset(paths[0] if paths else Settings().episodes_dir, name), WHOLE
+
+
+def _any(given: tuple[str, ...], usual: tuple[str, ...]) -> tuple[str, ...]:
+    """Return what a selection takes: `any` is no limit."""
+    return () if "any" in given else given or usual
+
+
+def _pairs(given: tuple[str, ...]) -> list[tuple[str, str]]:
+    pairs = [tuple(text.split("=", 1)) for text in given]
+    wrong = [pair[0] for pair in pairs if len(pair) != 2]
+    if wrong:
+        raise InvalidInput(f"{wrong[0]!r} was given; write NAME=VALUE.")
+    return [(pair[0], pair[1]) for pair in pairs]
+
+
+def _value(text: str) -> Any:
+    """Return a number, a list or a word."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
+
+
+def _line(progress: TrainingProgress) -> str:
+    losses = "  ".join(f"{name} {value:.4g}" for name, value in progress.losses.items())
+    done = f"{progress.updates}/{progress.updates_in_all}"
+    return f"{progress.phase} {done}  {progress.updates_per_s:.1f}/s  {losses}"
+
+
+def _result(run: RunDirectory) -> dict[str, Any]:
+    checkpointed = run.checkpointed()
+    data = json.loads(run.data.read_bytes())
+    return {
+        "run": str(run.path),
+        "model": run.spec.model_spec.name,
+        "task": data["task"],
+        "episodes": len(data["episodes"]),
+        "ticks": data["ticks"],
+        "times_seen": round(run.spec.times_seen(data["ticks"]), 1),
+        "dataset": data.get("dataset"),
+        "seeds": list(run.spec.seeds),
+        "checkpoints": [
+            str(run.checkpoint(updates, seed)) for updates in checkpointed for seed in run.seeds(updates)
+        ],
+    }
+
+
+def _of_dataset(dataset: dict[str, Any] | None) -> str:
+    if dataset is None:
+        return ""
+    left_out = len(dataset["left_out"])
+    rest = f", {left_out} of its {dataset['episodes']} left out" if left_out else ""
+    return f" of the data set {dataset['name']} ({dataset['sha256'][:12]}{rest})"
+
+
+def _words(result: dict[str, Any]) -> str:
+    newest = result["checkpoints"][-len(result["seeds"]) :]
+    ticks = f"{result['ticks']} ticks, each seen {result['times_seen']:g} times"
+    learned = f"from {result['episodes']} episodes ({ticks}){_of_dataset(result['dataset'])}"
+    then = "Judge them: mart eval --checkpoint" if result["complete"] else "Go on: mart train --resume"
+    lines = [
+        f"{result['model']} for {result['task']}, {learned}, {len(result['checkpoints'])} checkpoints",
+        *newest,
+        f"{then} {result['run']}",
+    ]
+    return "\n".join(lines)

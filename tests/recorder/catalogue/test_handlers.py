@@ -1,0 +1,175 @@
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mart.episodes import labels
+from mart.episodes.labelled_episode import LabelledEpisode
+from mart.protocol.errors import Corrupt, InvalidInput, NotFound
+from mart.protocol.messages import CatalogueReply, CatalogueRequest
+from mart.recorder.catalogue import handlers
+from mart.recorder.catalogue.dataset_editing import take_in
+from mart.recorder.catalogue.handlers import CatalogueHandlers
+from tests.recorder import synthetic
+from tests.recorder.files import write_episode
+
+PATH = f"2026-09-21/room-1-0001-{synthetic.TASK}.mcap"
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    write_episode(tmp_path, ticks=30, number=1)
+    return tmp_path
+
+
+def show(answers: CatalogueHandlers) -> CatalogueReply.Details:
+    return answers.answer(CatalogueRequest(show=CatalogueRequest.Show(path=PATH))).details
+
+
+def listed(answers: CatalogueHandlers) -> list[str]:
+    listing = answers.answer(CatalogueRequest(list=CatalogueRequest.List())).listing
+    return [episode.path for episode in listing.episodes]
+
+
+def test_an_episode_is_listed_and_shown(root: Path) -> None:
+    asked = CatalogueHandlers(root)
+    assert listed(asked) == [PATH]
+    details = show(asked)
+    assert (details.episode.path, details.episode.ticks) == (PATH, 30)
+    assert details.wall_s == pytest.approx(1.5)
+    assert [(view.camera, view.start_s) for view in details.views] == [("arm0", 0.0)]
+    assert details.cadence["missing_ticks"] == "0"
+    assert details.verification
+
+
+def test_no_folder_is_no_episodes(tmp_path: Path) -> None:
+    assert listed(CatalogueHandlers(tmp_path / "none")) == []
+
+
+def test_a_new_episode_is_found_when_it_is_asked_for(root: Path) -> None:
+    asked = CatalogueHandlers(root)
+    assert listed(asked) == [PATH]
+    newer = write_episode(root, ticks=5, number=2).path.relative_to(root).as_posix()
+    request = CatalogueRequest(show=CatalogueRequest.Show(path=newer))
+    assert asked.answer(request).details.episode.number == 2
+
+
+def test_what_people_say_is_kept_beside_the_file(root: Path) -> None:
+    asked = CatalogueHandlers(root)
+    said = CatalogueRequest.Label(path=PATH, outcome="failure", note="dropped it", dropped=True)
+    episode = asked.answer(CatalogueRequest(label=said)).episode
+    assert (episode.outcome, episode.note, episode.dropped) == ("failure", "dropped it", True)
+    assert {label.kind for label in labels.read(root)} == {"outcome", "note", "use"}
+    again = asked.answer(CatalogueRequest(label=CatalogueRequest.Label(path=PATH, dropped=False))).episode
+    assert (again.outcome, again.dropped) == ("failure", False)
+    assert show(CatalogueHandlers(root)).episode.note == "dropped it"
+
+
+@pytest.mark.parametrize(
+    ("said", "complaint"),
+    [
+        (CatalogueRequest.Label(path=PATH), "Nothing to say"),
+        (CatalogueRequest.Label(path=PATH, outcome="great"), "must be success"),
+        (CatalogueRequest.Label(path=PATH, note="x" * 2001), "2000 are allowed"),
+    ],
+)
+def test_what_cannot_be_said_is_refused(root: Path, said: CatalogueRequest.Label, complaint: str) -> None:
+    with pytest.raises(InvalidInput, match=complaint):
+        CatalogueHandlers(root).answer(CatalogueRequest(label=said))
+    assert labels.read(root) == []
+
+
+def test_the_file_comes_in_pieces(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(handlers, "PIECE_BYTES", 1000)
+    asked, whole = CatalogueHandlers(root), (root / PATH).read_bytes()
+    got = b""
+    while len(got) < len(whole):
+        piece = asked.answer(CatalogueRequest(file=CatalogueRequest.File(path=PATH, offset=len(got)))).piece
+        assert 0 < len(piece.piece) <= 1000
+        assert piece.size_bytes == len(whole)
+        got += piece.piece
+    assert got == whole
+    beyond = CatalogueRequest.File(path=PATH, offset=2**60)
+    assert asked.answer(CatalogueRequest(file=beyond)).piece.piece == b""
+
+
+@pytest.mark.parametrize("path", ["", "../secret", "/etc/passwd", "2026-09-21", "labels.jsonl", PATH + "x"])
+def test_only_what_is_listed_can_be_asked_for(root: Path, path: str) -> None:
+    (root.parent / "secret").write_text("secret")
+    asked = CatalogueHandlers(root)
+    for request in (
+        CatalogueRequest(show=CatalogueRequest.Show(path=path)),
+        CatalogueRequest(file=CatalogueRequest.File(path=path)),
+        CatalogueRequest(video=CatalogueRequest.Video(path=path, camera="arm0")),
+        CatalogueRequest(picture=CatalogueRequest.Picture(path=path)),
+        CatalogueRequest(label=CatalogueRequest.Label(path=path, dropped=True)),
+    ):
+        with pytest.raises(NotFound, match="There is no episode"):
+            asked.answer(request)
+
+
+def test_a_camera_that_saw_nothing_and_pictures_that_are_none(root: Path) -> None:
+    asked = CatalogueHandlers(root)
+    with pytest.raises(NotFound, match="no picture of 'arm7'"):
+        asked.answer(CatalogueRequest(video=CatalogueRequest.Video(path=PATH, camera="arm7")))
+    with pytest.raises(Corrupt):  # the toy camera's bytes are no pictures
+        asked.answer(CatalogueRequest(picture=CatalogueRequest.Picture(path=PATH)))
+
+
+def test_a_damaged_file_says_what_is_wrong(root: Path) -> None:
+    (root / PATH).write_bytes(b"\x89MCAP0\r\n" + b"x" * 500)
+    with pytest.raises(Corrupt):
+        show(CatalogueHandlers(root))
+
+
+def test_an_empty_request_is_refused(root: Path) -> None:
+    with pytest.raises(InvalidInput, match="An empty request"):
+        CatalogueHandlers(root).answer(CatalogueRequest())
+
+
+def curate(asked: CatalogueHandlers, **wanted: Any) -> CatalogueReply.Curated:
+    return asked.answer(CatalogueRequest(curate=CatalogueRequest.Curate(**wanted))).curated
+
+
+def of_dataset(asked: CatalogueHandlers, name: str) -> tuple[int, list[str]]:
+    listed = CatalogueRequest.List(dataset=name)
+    told = asked.answer(CatalogueRequest(list=listed)).listing
+    return told.matching, [f"{one.name} {one.episodes}" for one in told.datasets]
+
+
+def test_a_data_set_is_put_together_by_name_or_by_filter_and_every_act_is_undone(root: Path) -> None:
+    write_episode(root, ticks=5, number=2)
+    asked = CatalogueHandlers(root)
+    first = curate(asked, dataset="good", paths=[PATH])
+    assert (first.changed, first.episodes, of_dataset(asked, "good")) == (1, 1, (1, ["good 1"]))
+    everything = CatalogueRequest.List(task=synthetic.TASK, count=1)
+    more = curate(asked, dataset="good", all=everything)
+    assert (more.changed, more.episodes) == (1, 2)
+    assert curate(asked, dataset="good", take_out=True, paths=[PATH]).episodes == 1
+    undo = CatalogueRequest.Undo(dataset="good", act_ns=more.act_ns)
+    assert asked.answer(CatalogueRequest(undo=undo)).curated.episodes == 0
+    assert of_dataset(CatalogueHandlers(root), "good") == (0, [])
+
+
+def test_what_cannot_be_put_together_is_refused_and_nothing_changes(root: Path) -> None:
+    asked = CatalogueHandlers(root)
+    other = synthetic.TASK.replace("cube", "tray")
+    rows = [
+        LabelledEpisode(path="a", size_bytes=1, task=synthetic.TASK),
+        LabelledEpisode(path="b", size_bytes=1, task=other),
+    ]
+    with pytest.raises(InvalidInput, match=r"several tasks were given.*a data set holds one"):
+        take_in(root, "both", rows, [], 1)
+    with pytest.raises(InvalidInput, match="several tasks were given"):
+        take_in(root, "held", rows[1:], [rows[0].model_copy(update={"datasets": ("held",)})], 1)
+    with pytest.raises(InvalidInput, match="Nothing was put into 'new': no episode was chosen"):
+        curate(asked, dataset="new", all=CatalogueRequest.List(outcome="failure"))
+    with pytest.raises(InvalidInput, match="one of the two"):
+        curate(asked, dataset="new")
+    with pytest.raises(NotFound, match="There is no episode"):
+        curate(asked, dataset="new", paths=["../secret"])
+    with pytest.raises(NotFound, match="Nothing was done to the data set 'new'"):
+        asked.answer(CatalogueRequest(undo=CatalogueRequest.Undo(dataset="new", act_ns=7)))
+    assert labels.read(root) == []

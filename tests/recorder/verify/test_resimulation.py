@@ -1,0 +1,140 @@
+"""Verdicts: what follows bit for bit, what differs, and what nobody can say."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mart.episodes.reader import EpisodeFile
+from mart.protocol import codec
+from mart.protocol.errors import Corrupt
+from mart.protocol.keys import alive, rollout
+from mart.protocol.messages import Error, RolloutReply, RolloutRequest, State
+from mart.protocol.recording import RoomRecord, VerificationRecord
+from mart.protocol.vocabulary import ServiceKind, Verdict
+from mart.recorder.verify.resimulation import compare, replica, stretches, verify
+from mart.runtime.bus.memory import MemoryNetwork
+from tests.recorder import synthetic
+from tests.recorder.files import write_part
+
+_ROOM = RoomRecord(
+    room=synthetic.ROOM, task=synthetic.TASK, control_hz=20.0, model_sha256=synthetic.MODEL.sha256
+)
+
+
+def recorded(root: Path, states: list[State]) -> EpisodeFile:
+    file, _, _ = write_part(root, states)
+    file.flush()
+    file.abandon()
+    return EpisodeFile(file.path, {})
+
+
+def verdict(root: Path, states: list[State], room: RoomRecord = _ROOM) -> VerificationRecord:
+    return verify(recorded(root, states), room, synthetic.resimulate)
+
+
+def test_an_episode_follows_bit_for_bit(tmp_path: Path) -> None:
+    said = verdict(tmp_path, synthetic.states(30))
+    assert (said.verdict, said.detail) == (Verdict.VERIFIED, "30 ticks re-simulated bit for bit.")
+    assert said.model_sha256 == synthetic.MODEL.sha256
+
+
+def test_one_bit_is_enough_to_differ(tmp_path: Path) -> None:
+    states = synthetic.states(30)
+    world = bytearray(states[17].integration_state)
+    world[-1] ^= 1
+    states[17].integration_state = bytes(world)
+    said = verdict(tmp_path, states)
+    assert (said.verdict, said.detail) == (Verdict.DIVERGED, "Re-simulation differs from tick 17 on.")
+
+
+def test_an_action_that_was_not_applied_differs(tmp_path: Path) -> None:
+    states = synthetic.states(30)
+    states[9].arms[1].action[0] += 1e-12
+    assert "tick 9" in verdict(tmp_path, states).detail
+
+
+def test_a_gap_is_said(tmp_path: Path) -> None:
+    said = verdict(tmp_path, list(synthetic.without(synthetic.states(30), 10, 11)))
+    assert said.verdict is Verdict.UNVERIFIED
+    assert said.detail == "27 ticks re-simulated bit for bit; not those from 9 to 12."
+
+
+def test_a_file_that_begins_in_the_middle_is_verified_from_there(tmp_path: Path) -> None:
+    assert verdict(tmp_path, synthetic.states(30)[12:]).detail.startswith("18 ticks")
+
+
+def test_one_state_alone_says_nothing(tmp_path: Path) -> None:
+    assert verdict(tmp_path, synthetic.states(0)).verdict is Verdict.UNVERIFIED
+
+
+@pytest.mark.parametrize("numbers", [[0.0] * 6, [0.0] * 8, [float("nan")] * 7], ids=["short", "long", "nan"])
+def test_an_action_that_is_none_is_no_crash(tmp_path: Path, numbers: list[float]) -> None:
+    states = synthetic.states(5)
+    states[3].arms[0].action[:] = numbers
+    assert verdict(tmp_path, states).verdict is Verdict.UNVERIFIED
+
+
+def test_a_room_that_is_not_known_cannot_be_stepped(tmp_path: Path) -> None:
+    said = verdict(tmp_path, synthetic.states(5), RoomRecord(room=synthetic.ROOM))
+    assert said.verdict is Verdict.UNVERIFIED
+    assert "does not say its task" in said.detail
+
+
+def test_every_tick_that_differs_is_listed(tmp_path: Path) -> None:
+    states = synthetic.states(10)
+    states[4].integration_state = b"elsewhere"
+    (stretch,) = compare(recorded(tmp_path, states), _ROOM, synthetic.resimulate)
+    assert (stretch.first_tick, stretch.last_tick, stretch.different) == (0, 10, (4,))
+
+
+@given(gone=st.sets(st.integers(0, 24)), most=st.integers(1, 30))
+def test_stretches_cover_every_tick_that_can_be_checked(gone: set[int], most: int) -> None:
+    kept = list(synthetic.without(synthetic.states(25), *gone))
+    ticks = [state.tick for state in kept]
+    found = list(stretches(iter(kept), most))
+    covered = [tick for stretch in found for tick in range(stretch.first_tick + 1, stretch.last_tick + 1)]
+    assert covered == [tick for tick in ticks if tick - 1 in ticks]
+    assert all(len(stretch.digests) <= most for stretch in found)
+    for stretch in found:
+        if stretch.digests:
+            assert synthetic.resimulate(stretch.request(_ROOM)) == b"".join(stretch.digests)
+
+
+def test_a_replica_is_asked_over_the_bus(tmp_path: Path) -> None:
+    network = MemoryNetwork()
+    server = network.connect()
+    server.serve(
+        rollout("replica-1"), lambda request: request.reply(synthetic.rollout_reply(request.payload))
+    )
+    server.announce(alive(ServiceKind.REPLICA, "replica-1"))
+    said = verify(recorded(tmp_path, synthetic.states(30)), _ROOM, replica(network.connect(), "replica-1"))
+    assert said.verdict is Verdict.VERIFIED
+
+
+def test_a_replica_that_is_away_leaves_the_file_unverified(tmp_path: Path) -> None:
+    ask = replica(MemoryNetwork().connect(), "replica-1")
+    said = verify(recorded(tmp_path, synthetic.states(30)), _ROOM, ask)
+    assert said.verdict is Verdict.UNVERIFIED
+    assert "No replica 'replica-1' is up" in said.detail
+
+
+def test_what_a_replica_refuses_is_said(tmp_path: Path) -> None:
+    network = MemoryNetwork()
+    server = network.connect()
+    refusal = codec.encode(RolloutReply(error=Error(code="Conflict", message="Another model is compiled.")))
+    server.serve(rollout("replica-1"), lambda request: request.reply(refusal))
+    server.announce(alive(ServiceKind.REPLICA, "replica-1"))
+    said = verify(recorded(tmp_path, synthetic.states(3)), _ROOM, replica(network.connect(), "replica-1"))
+    assert (said.verdict, said.detail) == (Verdict.UNVERIFIED, "Another model is compiled.")
+
+
+def test_an_answer_of_the_wrong_length_is_corrupt(tmp_path: Path) -> None:
+    def short(_request: RolloutRequest.Resimulate) -> bytes:
+        return b"short"
+
+    with pytest.raises(Corrupt, match="5 bytes for 3 ticks"):
+        list(compare(recorded(tmp_path, synthetic.states(3)), _ROOM, short))
