@@ -45,9 +45,11 @@ def roll_out(
 
     All policies are of one task and rate and drive all of its arms. An episode ends with success, with an irrecoverable
     failure, or after `time_limit_s`, the length of the task's trials unless told.
-    Raises InvalidInput where the policies do not fit together.
+    Raises InvalidInput where the policies do not fit together, or without seeds.
     """
-    task = _common_task(policies)
+    if not len(seeds):
+        raise InvalidInput("No seeds were given; give one for each world.")
+    task = common_task(policies)
     together = _WORLDS_AT_ONCE // min(len(seeds), SEEDS_AT_ONCE)
     groups = [policies[first : first + together] for first in range(0, len(policies), together)]
     limit_s = task.trial_limit_s if time_limit_s is None else time_limit_s
@@ -138,7 +140,8 @@ class _PolicyBatch:
         return RolloutOutcome.FAILURE if self._failed[world] else RolloutOutcome.TIME
 
 
-def _common_task(policies: Sequence[Policy]) -> Task:
+def common_task(policies: Sequence[Policy]) -> Task:
+    """Return the task that all policies are for. Raises InvalidInput where they do not fit together."""
     kinds = {(policy.task, policy.control_hz) for policy in policies}
     if len(kinds) != 1:
         given = ", ".join(f"{task} at {control_hz:g} Hz" for task, control_hz in sorted(kinds))

@@ -28,7 +28,10 @@ class RunDirectory:
 
     @property
     def spec(self) -> TrainingSpec:
-        """What the run was asked to do. Raises NotFound where this is no run and Corrupt where what it was asked cannot be read."""
+        """What the run was asked to do.
+
+        Raises NotFound where this is no run and Corrupt where what it was asked cannot be read.
+        """
         file = self.path / SPEC_FILE
         if not file.is_file():
             raise NotFound(f"There is no run {self.path}; name a directory that holds {SPEC_FILE}.")

@@ -34,7 +34,10 @@ class Phase:
 
 
 def training_phases(networks: Networks, sizes: Hyperparameters, *, has_base: bool) -> list[Phase]:
-    """Return the phases of a training. has_base: planner and actor are there already, and only a residual is to be learned."""
+    """Return the phases of a training.
+
+    has_base: planner and actor are there already, and only a residual is to be learned.
+    """
     model, weights = networks.model, dict(networks.named_parameters())
     residual = {name: weight for name, weight in weights.items() if name.startswith("model.residual.")}
     base = {name: weight for name, weight in weights.items() if name not in residual}
