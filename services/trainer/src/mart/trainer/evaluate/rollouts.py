@@ -100,7 +100,7 @@ class _PolicyBatch:
         return self._success | self._failed
 
     def _act(self, observations: Mapping[str, Array]) -> Array:
-        """float64[worlds, arms, 7]; zeros where a policy has nothing left to play."""
+        """Return what is done next, float64[worlds, arms, 7]; zeros where a policy has nothing left to play."""
         actions = np.zeros((len(self._ticks), len(self._task.arms), ACTION_SIZE))
         for policy, own in zip(self._policies, self._slices, strict=True):
             if not self._ended[own].all():
@@ -108,7 +108,7 @@ class _PolicyBatch:
         return actions
 
     def _look(self, worlds: BatchState) -> None:
-        """Worlds that have ended stand still, so looking again changes nothing."""
+        """Note how the worlds stand. Those that have ended stand still, so looking again changes nothing."""
         self._done |= worlds.subtasks
         self._success |= worlds.success
         self._failed |= worlds.failed & ~worlds.success

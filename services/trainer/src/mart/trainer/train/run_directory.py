@@ -42,26 +42,32 @@ class RunDirectory:
 
     @property
     def data(self) -> Path:
+        """What was learned from."""
         return self.path / "data.json"
 
     @property
     def metrics(self) -> Path:
+        """The curves, as lines of JSON."""
         return self.path / "metrics.jsonl"
 
     @property
     def tensorboard(self) -> Path:
+        """The curves, for TensorBoard."""
         return self.path / "tensorboard"
 
     @property
     def evaluations(self) -> Path:
+        """What evaluations said, as lines of JSON."""
         return self.path / "evaluations.jsonl"
 
     @property
     def checkpoints(self) -> Path:
+        """The folder of all checkpoints."""
         return self.path / "checkpoints"
 
     @property
     def resume(self) -> Path:
+        """The folder of what a continuation needs."""
         return self.path / "resume"
 
     def checkpointed(self) -> tuple[int, ...]:

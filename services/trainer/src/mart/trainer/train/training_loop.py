@@ -74,6 +74,7 @@ class TrainingLoop:
 
     @property
     def is_over(self) -> bool:
+        """Whether all updates were made."""
         return self.updates >= self.updates_in_all
 
     @property
@@ -152,7 +153,7 @@ class TrainingLoop:
         self._ema = None if self._sizes.ema is None else EMA(weights, self._sizes.ema)
 
     def _leave(self, phase: Phase) -> None:
-        """The averages become the weights: what comes after builds on what acts."""
+        """Make the averages the weights: what comes after builds on what acts."""
         if self._ema is not None:
             with torch.no_grad():
                 for name, weight in phase.weights.items():
