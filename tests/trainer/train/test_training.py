@@ -20,9 +20,10 @@ from torch import Tensor
 from mart.protocol.errors import Conflict, InvalidInput, NotFound, Unavailable
 from mart.trainer.data.data_spec import Selection
 from mart.trainer.models.checkpoint import WEIGHTS, read_record
+from mart.trainer.train.progress import TrainingProgress
 from mart.trainer.train.run_directory import RunDirectory
 from mart.trainer.train.spec import TrainingSpec
-from mart.trainer.train.training import TrainingProgress, train
+from mart.trainer.train.training import train
 from tests.trainer.conftest import Recorded
 
 

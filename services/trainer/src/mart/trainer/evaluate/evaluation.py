@@ -79,7 +79,7 @@ class Evaluation(BaseModel):
 
     @property
     def failures(self) -> dict[str, int]:
-        """The first subtask that was missing → in how many episodes; `success` where all were done but not held."""
+        """First subtask that was missing → in how many episodes; `success` where all were done but not held."""
         counted = Counter(self._missing(played) for played in self.played if not played.succeeded)
         return {name: counted[name] for name in (*self._subtasks, NOT_HELD) if counted[name]}
 

@@ -29,7 +29,7 @@ _POLL_S = 0.5
 
 @ray.remote(num_cpus=1, max_retries=0, scheduling_strategy="SPREAD")
 def _work(run: str) -> int:
-    """On a node. Killing this task kills the job's process with it."""
+    """Run a job on a node. Killing this task kills the job's process with it."""
     with (Path(run) / LOG).open("ab") as log:
         process = start_child((sys.executable, "-m", "mart.trainer.jobs.worker", run), log, {})
     return process.wait()

@@ -47,7 +47,7 @@ def training_options(settings: TrainerSettings, executors: Iterable[str]) -> Tra
 
 
 def data_sets(data_dir: Path) -> list[DataSet]:
-    """Return the folders with episodes, each followed by its named data sets: `episodes` first, days of one recording together."""
+    """Return the folders with episodes, each followed by its named data sets; `episodes` first, days together."""
     held: dict[Path, set[str]] = defaultdict(set)
     roots = [root for root in data_dir.glob("*") if root.is_dir() and root.name not in _NO_DATA]
     for path in (path for root in roots for path in root.rglob(f"*{SUFFIX}")):  # a root may be a link
