@@ -25,9 +25,9 @@ from report import Bar, report
 
 from mart.protocol.messages import Model
 from mart.sim.world.world import World
-from mart.teleop_gateway import encoder, tick_code
-from mart.teleop_gateway.quality import FAST
-from mart.teleop_gateway.renderer import Renderer, load_model
+from mart.teleop_gateway.video import encoder, tick_code
+from mart.teleop_gateway.video.quality import FAST
+from mart.teleop_gateway.video.seat_renderer import SeatRenderer, load_model
 
 CONTROL_HZ = 20.0
 FRAMES = 240
@@ -93,7 +93,7 @@ def pictures() -> Iterator[tick_code.Image]:
     world = World.build("two_arm_multi_cube_lifting", CONTROL_HZ)
     world.reset(seed=1)
     model = load_model(Model(mjb=world.model_bytes(), sha256=world.model_sha256))
-    renderer = Renderer(model, "arm0")
+    renderer = SeatRenderer(model, "arm0")
     for tick in range(FRAMES + WARM_UP):
         phase = 2 * np.pi * tick / 40
         swing = (
