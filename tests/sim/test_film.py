@@ -84,7 +84,7 @@ def test_the_command_says_where_the_video_is(
         ({}, {"viewpoint": "arm9"}, NotFound, "no viewpoint 'arm9'.*front"),
         ({}, {"width_px": 63}, InvalidInput, "both sides must be even"),
         ({}, {"width_px": 100_000}, InvalidInput, "from 1 to 4096 px"),
-        ({"model_sha256": "0" * 64}, {}, Corrupt, "not the one that was recorded"),
+        ({"model_sha256": "0" * 64}, {}, Corrupt, "does not match its SHA-256"),
         ({"control_hz": None}, {}, Corrupt, "how many ticks a second"),
     ],
 )

@@ -14,6 +14,7 @@ from av import VideoFrame
 
 from mart.protocol import clock
 from mart.protocol.tokens import Role
+from mart.render import Image
 from mart.teleop_gateway.input.phone_frame import Flag, PhoneFrame
 from mart.teleop_gateway.video import tick_code
 from mart.teleop_gateway.webrtc import status_channel
@@ -145,6 +146,6 @@ async def in_background(work: Awaitable[None]) -> AsyncIterator[None]:
             await task
 
 
-def luma(frame: VideoFrame) -> tick_code.Image:
+def luma(frame: VideoFrame) -> Image:
     """Shape (496, 640)."""
     return np.asarray(frame.to_ndarray(format="gray"), np.uint8)

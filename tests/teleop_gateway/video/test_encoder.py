@@ -8,6 +8,7 @@ import pytest
 from av.video.codeccontext import VideoCodecContext
 from av.video.frame import PictureType
 
+from mart.render import Image
 from mart.teleop_gateway.video import tick_code
 from mart.teleop_gateway.video.encoder import CLOCK_HZ, Codec, EncodedPicture, Encoder, to_i420
 from mart.teleop_gateway.video.quality import FULL
@@ -23,7 +24,7 @@ Y, X = np.mgrid[0 : tick_code.HEIGHT_PX, 0 : tick_code.WIDTH_PX]
 SCENE = np.stack([X * 0.3, Y * 0.4, 128 + 40 * np.sin(X / 30)], axis=2).astype(np.uint8)
 
 
-def picture(tick: int) -> tick_code.Image:
+def picture(tick: int) -> Image:
     """A scene in which everything moves, and its tick."""
     rgb = np.roll(SCENE, 3 * tick, axis=1)
     rgb[200:280, 4 * tick % 560 : 4 * tick % 560 + 80] = (213, 94, 0)

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mart.render import Image
 from mart.teleop_gateway.video import tick_code
 
 
-def picture(tick: int) -> tick_code.Image:
+def picture(tick: int) -> Image:
     rgb = np.zeros((tick_code.HEIGHT_PX, tick_code.WIDTH_PX, 3), np.uint8)
     tick_code.write(tick, rgb[tick_code.VIEW_HEIGHT_PX :])
     return rgb

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
 from mart.protocol.tasks import SHARED_VIEWPOINT, Observation, Task
-from mart.sim.renderer import Image, Renderer
+from mart.render import Image, Renderer
 from mart.sim.world import ACTION_SIZE, Diverged, World
 from mart.sim.world.meshes import Detail
 

@@ -8,6 +8,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.render import Image
 from mart.sim.envs.course import (
     MAX_SEED,
     RENDER_MODES,
@@ -18,7 +19,6 @@ from mart.sim.envs.course import (
     checked_seed,
     observation_space,
 )
-from mart.sim.renderer import Image
 
 
 class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integer[Any]]]):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
 from mart.protocol.errors import Conflict, InvalidInput
+from mart.render import Image
 from mart.sim.envs.course import (
     MAX_SEED,
     RENDER_MODES,
@@ -23,7 +24,6 @@ from mart.sim.envs.course import (
     checked_seed,
     observation_space,
 )
-from mart.sim.renderer import Image
 from mart.sim.world import ACTION_SIZE
 
 Infos = dict[str, dict[str, object]]

@@ -20,7 +20,7 @@ from mart.runtime.decoding_subscriber import DecodingSubscriber
 from mart.teleop_gateway.emulation.emulated_hand import EmulatedHand, PhoneReading, ToolIntent, resting_pose
 from mart.teleop_gateway.emulation.network_emulation import EmulatedLink, LinkProfile
 from mart.teleop_gateway.input.phone_frame import Flag, PhoneFrame
-from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, load_model
+from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, load_room_model
 from mart.teleop_gateway.webrtc import status_channel
 
 _log = logging.getLogger(__name__)
@@ -185,7 +185,7 @@ class EmulatedPhone:
     async def _camera_azimuth_rad(self) -> float:
         answer = await self._bus.query(keys.model(self.room), b"", _CONNECT_TIMEOUT_S)
         message = codec.decode(Model, answer)
-        return camera_azimuth_rad(message, load_model(message), self.arm)
+        return camera_azimuth_rad(message, load_room_model(message), self.arm)
 
 
 def _lossy(connection: RTCPeerConnection, label: str) -> RTCDataChannel:

@@ -16,7 +16,8 @@ import cv2
 from av.video.codeccontext import VideoCodecContext
 from av.video.frame import PictureType
 
-from mart.teleop_gateway.video.quality import FAST, Image, Quality
+from mart.render import Image
+from mart.teleop_gateway.video.quality import FAST, Quality
 
 CLOCK_HZ = 90_000  # RTP's video clock
 _TIME_BASE = Fraction(1, CLOCK_HZ)

@@ -8,9 +8,9 @@ from fractions import Fraction
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Image = NDArray[np.uint8]
+from mart.render import Image
+
 QualityName = Literal["fast", "full"]
 
 _SQUARES = 40  # of the strip, side by side

@@ -18,13 +18,14 @@ import cv2
 import mujoco
 
 from mart.protocol import clock
-from mart.protocol.errors import InvalidInput
+from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import State
+from mart.render import Image
 from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.video.adaptive_resolution import AdaptiveResolution
 from mart.teleop_gateway.video.encoder import CLOCK_HZ, Codec, EncodedPicture, Encoder, to_i420
 from mart.teleop_gateway.video.motion_to_photon import PictureStamps
-from mart.teleop_gateway.video.quality import FAST, Image, Quality
+from mart.teleop_gateway.video.quality import FAST, Quality
 from mart.teleop_gateway.video.render_queue import RenderQueue, RenderQueueClosed, UndrawnState
 from mart.teleop_gateway.video.seat_renderer import SeatRenderer
 from mart.teleop_gateway.video.thumbnail import Thumbnail, ThumbnailMaker
@@ -126,10 +127,8 @@ class SeatView:
             pipeline = _RenderPipeline(
                 SeatRenderer(self._model, self._camera, self._quality), self._quality, self._frames_per_s
             )
-        except Exception:  # noqa: BLE001  # EGL and OpenGL fail with errors of their own
-            _log.exception(
-                "The view of %s cannot be drawn; `mart doctor` tells what is missing", self._camera
-            )
+        except MartError as error:
+            _log.error("%s gets no picture: %s", self._camera, error)  # the sentence says it all
             return
         try:
             self._draw_until_closed(pipeline)

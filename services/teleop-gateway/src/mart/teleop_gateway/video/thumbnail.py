@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import cv2
 
-from mart.teleop_gateway.video.quality import Image
+from mart.render import Image
 
 EVERY_S = 2.0
 _SIZE_PX = (384, 288)

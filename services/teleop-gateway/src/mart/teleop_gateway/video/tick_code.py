@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Image = NDArray[np.uint8]
+from mart.render import Image
 
 WIDTH_PX = 640
 VIEW_HEIGHT_PX = 480

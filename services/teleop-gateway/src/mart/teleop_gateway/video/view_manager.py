@@ -14,7 +14,7 @@ from mart.protocol.messages import Model, State
 from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.video.quality import Quality
-from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, load_model
+from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, load_room_model
 from mart.teleop_gateway.video.seat_view import SeatView, Sink
 
 _log = logging.getLogger(__name__)
@@ -99,7 +99,7 @@ class ViewManager:
         return DETAILED if self._quality.detailed else b""
 
     async def _use(self, message: Model) -> None:
-        model = await asyncio.to_thread(load_model, message, self._quality)
+        model = await asyncio.to_thread(load_room_model, message, self._quality)
         azimuth_rad = camera_azimuth_rad(message, model, self._arm)
         view = SeatView(model, self._arm, message.control_hz, self._sink, self._quality)
         view.set_codecs(self._codecs)
