@@ -19,7 +19,7 @@ from mart.teleop_gateway.emulation.emulated_hand import (
 )
 from mart.teleop_gateway.input.frame_validator import FrameValidator
 from mart.teleop_gateway.input.phone_frame import Flag
-from mart.teleop_gateway.input.retarget import Retarget, ToolTarget
+from mart.teleop_gateway.input.retarget import ArmTarget, Retarget
 from tests.teleop_gateway.input.strategies import NONE, angles_rad, phone_frame
 
 FRAME_S = 1 / 60
@@ -40,7 +40,7 @@ class Loop:
 
     def step(
         self, intent: ToolIntent | None, *, more: Flag = Flag.TRACKING
-    ) -> tuple[PhoneReading, ToolTarget]:
+    ) -> tuple[PhoneReading, ArmTarget]:
         self.now_s += FRAME_S
         self.sequence += 1
         self.hand.see(self.tool, self.now_s)

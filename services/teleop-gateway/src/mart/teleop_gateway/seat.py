@@ -32,9 +32,9 @@ from mart.teleop_gateway.process.seat_process_protocol import SERVED, SeatAssign
 from mart.teleop_gateway.seat_events import SeatEvents
 from mart.teleop_gateway.settings import GatewaySettings
 from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.live_view import SeatPicture
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
 from mart.teleop_gateway.video.quality import QUALITIES
-from mart.teleop_gateway.video.seat_view import SeatPicture
 from mart.teleop_gateway.video.thumbnail import Thumbnail
 from mart.teleop_gateway.video.video_publisher import VideoPublisher
 from mart.teleop_gateway.video.view_manager import ViewManager

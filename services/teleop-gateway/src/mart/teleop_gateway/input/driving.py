@@ -11,7 +11,7 @@ from mart.protocol.pose import Pose
 from mart.teleop_gateway.input.frame_validator import FrameValidator, HandSample
 from mart.teleop_gateway.input.grasp import GripperSample, holds
 from mart.teleop_gateway.input.phone_frame import Flag
-from mart.teleop_gateway.input.retarget import Retarget, ToolTarget
+from mart.teleop_gateway.input.retarget import ArmTarget, Retarget
 
 LOST_AFTER_S = 0.25
 _REMEMBERED_COMMANDS = 512
@@ -58,7 +58,7 @@ class Driving:
     _grip: GripperSample | None = None
     _sources: dict[InputDevice, _Source] = field(default_factory=dict)
     _rejected: Counter[str] = field(default_factory=Counter)
-    _target: ToolTarget | None = None
+    _target: ArmTarget | None = None
     _sent: int = 0
     _frame_numbers: dict[int, int] = field(default_factory=dict)
 
@@ -157,7 +157,7 @@ class Driving:
             self._rejected += _counts(self._sources[source].validator)
 
     def _command(
-        self, hand: HandSample, target: ToolTarget, clock_offset_ns: int | None, now_ns: int
+        self, hand: HandSample, target: ArmTarget, clock_offset_ns: int | None, now_ns: int
     ) -> Command:
         sequence = self.first_sequence + self._sent
         self._sent += 1

@@ -28,7 +28,7 @@ _TINY = 1e-9
 
 
 @dataclass(frozen=True)
-class ToolTarget:
+class ArmTarget:
     """What the arm is asked to do. gripper: 0 open … 1 closed."""
 
     pose_tool_in_base: Pose
@@ -58,7 +58,7 @@ class Retarget:
         self._grip: _ClutchReference | None = None
         self._held: Pose | None = None
 
-    def follow(self, hand: HandSample, measured_tool_in_base: Pose) -> ToolTarget:
+    def follow(self, hand: HandSample, measured_tool_in_base: Pose) -> ArmTarget:
         """The target after this frame.
 
         A press takes both poses as references and asks for the measured pose: nothing moves. An open clutch holds the
@@ -73,7 +73,7 @@ class Retarget:
             self._held = self._moved(self._grip, hand.pose_phone_in_session)
         if self._held is None:
             self._held = measured_tool_in_base
-        return ToolTarget(self._held, hand.frame.gripper, engaged=hand.clutch)
+        return ArmTarget(self._held, hand.frame.gripper, engaged=hand.clutch)
 
     def release(self) -> None:
         """Another hand takes over: the next frame with a held clutch takes its references anew."""

@@ -8,7 +8,7 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 from mart.protocol import codec, keys
 from mart.runtime.bus.base import Bus
 from mart.teleop_gateway.video.encoder import Codec
-from mart.teleop_gateway.video.seat_view import SeatPicture
+from mart.teleop_gateway.video.live_view import SeatPicture
 from mart.teleop_gateway.video.thumbnail import Thumbnail
 
 

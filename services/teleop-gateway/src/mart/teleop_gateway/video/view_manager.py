@@ -13,9 +13,9 @@ from mart.protocol.keys import DETAILED
 from mart.protocol.messages import Model, State
 from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.live_view import LiveView, Sink
 from mart.teleop_gateway.video.quality import Quality
 from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, load_room_model
-from mart.teleop_gateway.video.seat_view import SeatView, Sink
 
 _log = logging.getLogger(__name__)
 
@@ -44,7 +44,7 @@ class ViewManager:
         self._boot = 0
         self._sha256 = ""
         self._codecs: frozenset[Codec] = frozenset()
-        self._view: SeatView | None = None
+        self._view: LiveView | None = None
         self._fetching: asyncio.Task[None] | None = None
         self._stopping: asyncio.Future[None] | None = None  # the view before
 
@@ -101,13 +101,13 @@ class ViewManager:
     async def _use(self, message: Model) -> None:
         model = await asyncio.to_thread(load_room_model, message, self._quality)
         azimuth_rad = camera_azimuth_rad(message, model, self._arm)
-        view = SeatView(model, self._arm, message.control_hz, self._sink, self._quality)
+        view = LiveView(model, self._arm, message.control_hz, self._sink, self._quality)
         view.set_codecs(self._codecs)
         await self._replace(view)
         self._sha256 = message.sha256
         self._on_azimuth(azimuth_rad)
 
-    async def _replace(self, view: SeatView | None) -> None:
+    async def _replace(self, view: LiveView | None) -> None:
         before, self._view = self._view, None
         if before is not None:
             self._stopping = asyncio.ensure_future(asyncio.to_thread(before.stop))

@@ -36,7 +36,7 @@ _STALE_BYTES = 4 * 1024  # a channel with this much waiting gets no more telemet
 _GONE = ("closed", "failed")
 
 
-class Listener(Protocol):
+class PeerListener(Protocol):
     """Who is told what a peer does; always on the event loop."""
 
     def on_pose(self, peer: Peer, payload: bytes) -> None: ...
@@ -51,7 +51,7 @@ class Listener(Protocol):
 class Peer:
     """Answer its offer, then let it run; `close` ends it, also when it is already gone."""
 
-    def __init__(self, role: Role, listener: Listener, ice_servers: Sequence[str] = ()) -> None:
+    def __init__(self, role: Role, listener: PeerListener, ice_servers: Sequence[str] = ()) -> None:
         offer_playout_delay()
         self.role = role
         self.codec: Codec | None = None

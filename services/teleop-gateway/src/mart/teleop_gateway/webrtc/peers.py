@@ -18,7 +18,7 @@ SILENT_S = 10.0  # each peer pings once a second; aiortc alone finds a dead one 
 _DRIVING = (Role.BROWSER, Role.PHONE)
 
 
-class Listener(Protocol):
+class PeersListener(Protocol):
     """The seat, told on the event loop. Only peers that are present speak: a replaced one is silent at once."""
 
     def on_joined(self, peer: Peer) -> None: ...
@@ -33,7 +33,7 @@ class Listener(Protocol):
 
 
 class Peers:
-    def __init__(self, bus: AsyncBus, listener: Listener, ice_servers: Sequence[str]) -> None:
+    def __init__(self, bus: AsyncBus, listener: PeersListener, ice_servers: Sequence[str]) -> None:
         self._bus = bus
         self._listener = listener
         self._ice_servers = ice_servers

@@ -16,9 +16,9 @@ from mart.protocol.messages import Model, State, TickStamps
 from mart.sim.world.world import World
 from mart.teleop_gateway.video import tick_code
 from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.live_view import KEYFRAME_EVERY_S, LiveView, SeatPicture
 from mart.teleop_gateway.video.render_queue import RenderQueue, RenderQueueClosed
 from mart.teleop_gateway.video.seat_renderer import load_room_model
-from mart.teleop_gateway.video.seat_view import KEYFRAME_EVERY_S, SeatPicture, SeatView
 from mart.teleop_gateway.video.thumbnail import Thumbnail
 
 
@@ -29,7 +29,7 @@ class Watched:
         """A rate so low that no picture is late, however busy the machine."""
         self.pictures: queue.Queue[SeatPicture] = queue.Queue()
         self.stills: queue.Queue[Thumbnail] = queue.Queue()
-        self.view = SeatView(load_room_model(model), "arm0", frames_per_s, self._keep)
+        self.view = LiveView(load_room_model(model), "arm0", frames_per_s, self._keep)
         self.view.start()
 
     def _keep(self, made: SeatPicture | Thumbnail) -> None:

@@ -82,7 +82,7 @@ class _RenderPipeline:
         self.encoders = {codec: Encoder(codec, self._frames_per_s, quality) for codec in Codec}
 
 
-class SeatView:
+class LiveView:
     """Draws `camera` of `model` from `start` to `stop`. The sink is called on its thread: it may only hand over."""
 
     def __init__(
