@@ -24,10 +24,11 @@ from aiortc.codecs.vpx import Vp8Encoder
 from report import Bar, report
 
 from mart.protocol.messages import Model
+from mart.render import Image
 from mart.sim.world.world import World
-from mart.teleop_gateway import encoder, tick_code
-from mart.teleop_gateway.quality import FAST
-from mart.teleop_gateway.renderer import Renderer, load_model
+from mart.teleop_gateway.video import encoder, tick_code
+from mart.teleop_gateway.video.quality import FAST
+from mart.teleop_gateway.video.seat_renderer import SeatRenderer, load_room_model
 
 CONTROL_HZ = 20.0
 FRAMES = 240
@@ -40,12 +41,12 @@ class Contender:
     """One way from a picture to packets. cpu_ms, wall_ms: one number a frame."""
 
     name: str
-    to_packets: Callable[[tick_code.Image, int], list[bytes]]
+    to_packets: Callable[[Image, int], list[bytes]]
     cpu_ms: list[float] = field(default_factory=list)
     wall_ms: list[float] = field(default_factory=list)
     bytes_: list[int] = field(default_factory=list)
 
-    def take(self, picture_rgb: tick_code.Image, pts: int) -> None:
+    def take(self, picture_rgb: Image, pts: int) -> None:
         cpu_ns, wall_ns = time.process_time_ns(), time.perf_counter_ns()
         payloads = self.to_packets(picture_rgb, pts)
         self.wall_ms.append((time.perf_counter_ns() - wall_ns) * 1e-6)
@@ -70,7 +71,7 @@ class Contender:
 def ours(codec: encoder.Codec, packer: Encoder) -> Contender:
     encode = encoder.Encoder(codec, CONTROL_HZ).encode
 
-    def to_packets(picture_rgb: tick_code.Image, pts: int) -> list[bytes]:
+    def to_packets(picture_rgb: Image, pts: int) -> list[bytes]:
         encoded = encode(encoder.to_i420(picture_rgb), pts, keyframe=False)
         packet = av.Packet(encoded.data)
         packet.pts, packet.time_base = pts, Fraction(1, encoder.CLOCK_HZ)
@@ -80,7 +81,7 @@ def ours(codec: encoder.Codec, packer: Encoder) -> Contender:
 
 
 def theirs(name: str, stock: Encoder) -> Contender:
-    def to_packets(picture_rgb: tick_code.Image, pts: int) -> list[bytes]:
+    def to_packets(picture_rgb: Image, pts: int) -> list[bytes]:
         frame = av.VideoFrame.from_ndarray(picture_rgb[: tick_code.VIEW_HEIGHT_PX], format="rgb24")
         frame.pts, frame.time_base = pts, Fraction(1, encoder.CLOCK_HZ)
         return stock.encode(frame)[0]
@@ -88,12 +89,12 @@ def theirs(name: str, stock: Encoder) -> Contender:
     return Contender(name, to_packets)
 
 
-def pictures() -> Iterator[tick_code.Image]:
+def pictures() -> Iterator[Image]:
     """A scene in which both arms move all the time."""
     world = World.build("two_arm_multi_cube_lifting", CONTROL_HZ)
     world.reset(seed=1)
-    model = load_model(Model(mjb=world.model_bytes(), sha256=world.model_sha256))
-    renderer = Renderer(model, "arm0")
+    model = load_room_model(Model(mjb=world.model_bytes(), sha256=world.model_sha256))
+    renderer = SeatRenderer(model, "arm0")
     for tick in range(FRAMES + WARM_UP):
         phase = 2 * np.pi * tick / 40
         swing = (

@@ -9,9 +9,9 @@ from pathlib import Path
 from PIL import Image, ImageDraw, ImageFont
 
 from mart.protocol.tasks import SHARED_VIEWPOINT, Task, arm_counts, get_task, task_names
+from mart.render import Renderer
 from mart.sim.envs.registration import gymnasium_id
 from mart.sim.experts.run_experts import run_experts
-from mart.sim.renderer import Renderer
 from mart.sim.world import World
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"

@@ -14,9 +14,11 @@ from av import VideoFrame
 
 from mart.protocol import clock
 from mart.protocol.tokens import Role
-from mart.teleop_gateway import channel, tick_code
-from mart.teleop_gateway.aiortc_hooks import offer_playout_delay
-from mart.teleop_gateway.frame import Flag, PhoneFrame
+from mart.render import Image
+from mart.teleop_gateway.input.phone_frame import Flag, PhoneFrame
+from mart.teleop_gateway.video import tick_code
+from mart.teleop_gateway.webrtc import status_channel
+from mart.teleop_gateway.webrtc.aiortc_hooks import offer_playout_delay
 
 Exchange = Callable[[str], Awaitable[str]]
 
@@ -104,10 +106,10 @@ class Browser:
     async def synchronise(self) -> int:
         """Pings once and tells the offset; returns it, nanoseconds."""
         sent_us = clock.monotonic_ns() // 1000
-        self.status.send(channel.ping(sent_us))
+        self.status.send(status_channel.ping(sent_us))
         pong = await self.wait_told(lambda m: m["type"] == "pong")
         offset_ns = int(pong["gateway_ns"] - (sent_us + clock.monotonic_ns() // 1000) / 2 * 1000)
-        self.status.send(channel.clock_offset(offset_ns))
+        self.status.send(status_channel.clock_offset(offset_ns))
         return offset_ns
 
     async def close(self) -> None:
@@ -144,6 +146,6 @@ async def in_background(work: Awaitable[None]) -> AsyncIterator[None]:
             await task
 
 
-def luma(frame: VideoFrame) -> tick_code.Image:
+def luma(frame: VideoFrame) -> Image:
     """Shape (496, 640)."""
     return np.asarray(frame.to_ndarray(format="gray"), np.uint8)

@@ -31,8 +31,8 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.secret_file import load_or_create_secret
-from mart.teleop_gateway.emulator import EmulatedPhone
-from mart.teleop_gateway.link import LinkProfile
+from mart.teleop_gateway.emulation.emulated_phone import EmulatedPhone
+from mart.teleop_gateway.emulation.network_emulation import LinkProfile
 from tests.support.mailbox import Mailbox
 from tests.support.processes import Running, running_router, running_service
 from tests.teleop_gateway.browser import Exchange, connected, in_background
@@ -106,7 +106,7 @@ def on_platform(platform: Platform, body: Body) -> None:
 
 def children(pid: int) -> set[int]:
     """Processes that this process started and that still run."""
-    return {int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()}
+    return {int(process) for process in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()}
 
 
 def serving(gateway: Running, arm: str = "arm0") -> int:

@@ -13,7 +13,7 @@ from mart.protocol import clock, codec, keys
 from mart.protocol.errors import Conflict, Forbidden, InvalidInput, Unavailable
 from mart.protocol.messages import OPERATOR_POLICY, Offer
 from mart.protocol.tokens import Role
-from mart.teleop_gateway import peers
+from mart.teleop_gateway.webrtc import peers
 from tests.support.mailbox import Mailbox
 from tests.teleop_gateway.browser import Browser, connected
 from tests.teleop_gateway.room import OnSeat, SeatUnderTest
@@ -123,9 +123,11 @@ def test_the_bus_gets_what_the_operator_sees(on_seat: OnSeat) -> None:
 
 def test_the_bus_gets_stills_for_the_lobby(on_seat: OnSeat) -> None:
     async def body(seat: SeatUnderTest) -> None:
-        with Mailbox(seat.bus.bus, keys.still(seat.room.name, "arm0").key, CompressedImage) as stills:
-            still = await asyncio.to_thread(stills.wait_for, lambda image: image.data.startswith(b"\xff\xd8"))
-            assert (still.format, still.frame_id) == ("jpeg", "arm0")
+        with Mailbox(seat.bus.bus, keys.still(seat.room.name, "arm0").key, CompressedImage) as thumbnails:
+            thumbnail = await asyncio.to_thread(
+                thumbnails.wait_for, lambda image: image.data.startswith(b"\xff\xd8")
+            )
+            assert (thumbnail.format, thumbnail.frame_id) == ("jpeg", "arm0")
 
     on_seat(body)
 

@@ -12,8 +12,8 @@ from mart.protocol import clock, codec, keys
 from mart.protocol.errors import Forbidden, InvalidInput
 from mart.protocol.messages import OPERATOR_HOLD, ArmState, Event, Offer, State, pose_from_message
 from mart.protocol.tokens import Role
-from mart.teleop_gateway.driving import LOST_AFTER_S
-from mart.teleop_gateway.latency import STAGES
+from mart.teleop_gateway.input.driving import LOST_AFTER_S
+from mart.teleop_gateway.video.motion_to_photon import STAGES
 from tests.support.mailbox import Mailbox
 from tests.teleop_gateway.browser import connected, in_background
 from tests.teleop_gateway.room import OnSeat, SeatUnderTest

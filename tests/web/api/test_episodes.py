@@ -166,7 +166,9 @@ def test_garbage_is_answered_with_a_sentence(tmp_path: Path) -> None:
     reply = answer(CatalogueHandlers(tmp_path), b"\xff\xff\xff")
     assert isinstance(reply, CatalogueReply)
     assert reply.error.code == "InvalidInput"
-    assert answer(CatalogueHandlers(tmp_path), codec.encode(CatalogueRequest())).error.message.startswith("An empty")
+    assert answer(CatalogueHandlers(tmp_path), codec.encode(CatalogueRequest())).error.message.startswith(
+        "An empty"
+    )
 
 
 async def test_what_is_saved_without_a_word_is_found_in_the_catalogue(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 from collections.abc import Iterator
 from contextlib import closing
@@ -17,9 +16,9 @@ from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.messages import State
-from mart.protocol.recording import MODEL_ATTACHMENT, STATE
+from mart.protocol.recording import STATE
+from mart.render import Renderer, load_model
 from mart.runtime.atomic_file import PUBLIC, write_atomically
-from mart.sim.renderer import Renderer
 
 _QUALITY = {"crf": "20", "preset": "veryfast"}  # of x264: no difference to see, about 1 MB a minute
 
@@ -44,15 +43,13 @@ def render_episode(path: Path, out: Path, viewpoint: str, width_px: int, height_
 
 
 def _model(file: EpisodeFile) -> mujoco.MjModel:
-    mjb = file.model()
-    if hashlib.sha256(mjb).hexdigest() != file.room.model_sha256:
-        raise Corrupt(f"The model in {file.path} is not the one that was recorded.")
-    try:
-        return mujoco.MjModel.from_binary_path(MODEL_ATTACHMENT, {MODEL_ATTACHMENT: mjb})
-    except ValueError as error:
-        raise Corrupt(
-            f"The model in {file.path} is of MuJoCo {file.room.mujoco_version}; {mujoco.__version__} cannot load it."
-        ) from error
+    room = file.room
+    return load_model(
+        file.model(),
+        sha256=room.model_sha256 or "",
+        mujoco_version=room.mujoco_version or "an unknown version",
+        source=str(file.path),
+    )
 
 
 def _states(file: EpisodeFile) -> Iterator[bytes]:

@@ -38,17 +38,17 @@ def phone(
 
     from mart.protocol.vocabulary import ServiceKind
     from mart.runtime.service import AsyncService, announced, run_async
-    from mart.teleop_gateway.emulator import EmulatedPhone
-    from mart.teleop_gateway.link import LinkProfile
-    from mart.teleop_gateway.pairing import LobbyClient, Pairing
+    from mart.teleop_gateway.emulation.emulated_phone import EmulatedPhone
+    from mart.teleop_gateway.emulation.network_emulation import LinkProfile
+    from mart.teleop_gateway.emulation.pairing_client import PairingClient, PhonePairing
     from mart.teleop_gateway.settings import GatewaySettings
 
-    async def pair() -> Pairing:
-        async with LobbyClient(url, insecure) as lobby:
+    async def pair() -> PhonePairing:
+        async with PairingClient(url, insecure) as lobby:
             return await lobby.pair(code)
 
     async def drive(service: AsyncService) -> None:
-        async with LobbyClient(url, insecure) as lobby:
+        async with PairingClient(url, insecure) as lobby:
 
             async def exchange(sdp: str) -> str:
                 renewed = await lobby.renew(pairing)

@@ -15,8 +15,8 @@ from mart.protocol.messages import Event, OpenSeat, OpenSeatReply, RoomStatus, e
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.decoding_subscriber import DecodingSubscriber
-from mart.teleop_gateway.assignment import SERVED, Assignment
-from mart.teleop_gateway.child import Child, Spares
+from mart.teleop_gateway.process.seat_process_pool import SeatProcess, SeatProcessPool
+from mart.teleop_gateway.process.seat_process_protocol import SERVED, SeatAssignment
 
 _log = logging.getLogger(__name__)
 
@@ -30,9 +30,9 @@ class Gateway:
     def __init__(self, bus: AsyncBus, name: str) -> None:
         self.name = name
         self._bus = bus
-        self._spares = Spares()
-        self._wanted: dict[str, frozenset[Assignment]] = {}  # by room, as last told
-        self._running: dict[Assignment, asyncio.Task[None]] = {}
+        self._pool = SeatProcessPool()
+        self._wanted: dict[str, frozenset[SeatAssignment]] = {}  # by room, as last told
+        self._running: dict[SeatAssignment, asyncio.Task[None]] = {}
         self._gateways = {name}
         self._open: set[str] = set()  # ids of seats whose process answers offers, whoever runs it
         self._opened = asyncio.Condition()
@@ -48,7 +48,7 @@ class Gateway:
                 bus.serve(keys.open_seat(self.name), self._open_seat),
             ):
                 stack.callback(opened.close)
-            self._spares.prepare()
+            self._pool.prepare()
             try:
                 await asyncio.Event().wait()
             finally:
@@ -58,7 +58,7 @@ class Gateway:
 
     def _on_status(self, status: RoomStatus) -> None:
         arms = (seat.arm for seat in status.seats if seat.operator in SERVED)
-        self._wanted[status.room] = frozenset(Assignment(status.room, arm) for arm in arms)
+        self._wanted[status.room] = frozenset(SeatAssignment(status.room, arm) for arm in arms)
         self._reconcile()
 
     def _on_gateway_token(self, key: str, alive: bool) -> None:
@@ -76,7 +76,7 @@ class Gateway:
 
     def _reconcile(self) -> None:
         gateways = frozenset(self._gateways)
-        wanted = frozenset[Assignment]().union(*self._wanted.values())
+        wanted = frozenset[SeatAssignment]().union(*self._wanted.values())
         mine = {seat for seat in wanted if gateway_of(gateways, seat.room, seat.arm) == self.name}
         for seat in mine - self._running.keys():
             self._running[seat] = self._bus.spawn(self._keep(seat))
@@ -85,31 +85,31 @@ class Gateway:
 
     # One seat
 
-    async def _keep(self, seat: Assignment) -> None:
+    async def _keep(self, seat: SeatAssignment) -> None:
         """A process for this seat until cancelled; a dead one is told about and followed by the next."""
         while True:
             started_s = clock.monotonic_s()
-            child = await self._spares.take()
+            process = await self._pool.take()
             try:
-                status = await self._run(child, seat)
+                status = await self._run(process, seat)
             finally:
-                await child.end()
+                await process.end()
             self._tell_loss(seat, status)
             if clock.monotonic_s() - started_s < _CRASH_LOOP_S:
                 await asyncio.sleep(_RESTART_DELAY_S)
 
-    async def _run(self, child: Child, seat: Assignment) -> int:
+    async def _run(self, process: SeatProcess, seat: SeatAssignment) -> int:
         try:
-            await child.assign(seat)
+            await process.assign(seat)
         except Unavailable as error:
             _log.warning("%s %s has no process yet: %s", seat.room, seat.arm, error)
         else:
-            _log.info("%s %s is served by process %d", seat.room, seat.arm, child.pid)
+            _log.info("%s %s is served by process %d", seat.room, seat.arm, process.pid)
         finally:
-            self._spares.prepare()
-        return await child.ended()
+            self._pool.prepare()
+        return await process.ended()
 
-    def _tell_loss(self, seat: Assignment, status: int) -> None:
+    def _tell_loss(self, seat: SeatAssignment, status: int) -> None:
         _log.warning(
             "The process of %s %s ended with status %d; the next one starts", seat.room, seat.arm, status
         )
@@ -124,7 +124,7 @@ class Gateway:
         for task in running:
             task.cancel()
         await asyncio.gather(*running, return_exceptions=True)
-        await self._spares.close()
+        await self._pool.close()
 
     # OpenSeat
 
@@ -132,12 +132,12 @@ class Gateway:
         """Answers once the seat's process is there, whichever gateway runs it."""
         try:
             request = codec.decode(OpenSeat, payload, limit_bytes=_MAX_REQUEST_BYTES)
-            await self._await_seat(Assignment(request.room, request.arm))
+            await self._await_seat(SeatAssignment(request.room, request.arm))
         except MartError as error:
             return codec.encode(OpenSeatReply(error=error_message(error)))
         return codec.encode(OpenSeatReply())
 
-    async def _await_seat(self, seat: Assignment) -> None:
+    async def _await_seat(self, seat: SeatAssignment) -> None:
         try:
             async with asyncio.timeout(OPEN_TIMEOUT_S), self._opened:
                 await self._opened.wait_for(lambda: seat.id in self._open)

@@ -25,23 +25,23 @@ from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import Bus, Closable
 from mart.runtime.decoding_subscriber import DecodingSubscriber
 from mart.runtime.rate_limit import RateLimit
-from mart.teleop_gateway import channel
-from mart.teleop_gateway.announcements import Announcements
-from mart.teleop_gateway.assignment import SERVED, Assignment
-from mart.teleop_gateway.cues import Presses
-from mart.teleop_gateway.driving import Driving, Input
-from mart.teleop_gateway.encoder import Codec
-from mart.teleop_gateway.latency import MotionToPhoton
-from mart.teleop_gateway.outlet import Outlet
-from mart.teleop_gateway.peer import MAX_SDP_CHARACTERS, Peer
-from mart.teleop_gateway.peers import Peers
-from mart.teleop_gateway.quality import QUALITIES
-from mart.teleop_gateway.retarget import Retarget
-from mart.teleop_gateway.scenery import Scenery
+from mart.teleop_gateway.input.cues import CueFilter
+from mart.teleop_gateway.input.driving import Driving, InputDevice
+from mart.teleop_gateway.input.retarget import Retarget
+from mart.teleop_gateway.process.seat_process_protocol import SERVED, SeatAssignment
+from mart.teleop_gateway.seat_events import SeatEvents
 from mart.teleop_gateway.settings import GatewaySettings
-from mart.teleop_gateway.signaling import admit
-from mart.teleop_gateway.still import Still
-from mart.teleop_gateway.view import Picture
+from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.live_view import SeatPicture
+from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
+from mart.teleop_gateway.video.quality import QUALITIES
+from mart.teleop_gateway.video.thumbnail import Thumbnail
+from mart.teleop_gateway.video.video_publisher import VideoPublisher
+from mart.teleop_gateway.video.view_manager import ViewManager
+from mart.teleop_gateway.webrtc import status_channel
+from mart.teleop_gateway.webrtc.authorization import authorize_offer
+from mart.teleop_gateway.webrtc.peer import MAX_SDP_CHARACTERS, Peer
+from mart.teleop_gateway.webrtc.peers import Peers
 
 _log = logging.getLogger(__name__)
 
@@ -49,25 +49,30 @@ STATUS_EVERY_S = 0.05
 MAX_OFFERS_PER_S = 5
 _READY_TIMEOUT_S = 5.0
 _MAX_OFFER_BYTES = MAX_SDP_CHARACTERS + 4096
-_INPUTS = {Role.BROWSER: Input.KEYBOARD, Role.PHONE: Input.PHONE}
+_INPUTS = {Role.BROWSER: InputDevice.KEYBOARD, Role.PHONE: InputDevice.PHONE}
 
 
 class Seat:
     """`video_bus` is a session of its own: pictures must never stand in a command's way."""
 
     def __init__(
-        self, bus: AsyncBus, video_bus: Bus, settings: GatewaySettings, assignment: Assignment, secret: bytes
+        self,
+        bus: AsyncBus,
+        video_bus: Bus,
+        settings: GatewaySettings,
+        assignment: SeatAssignment,
+        secret: bytes,
     ) -> None:
         self.id = assignment.id
         self.room, self.arm = room, arm = assignment.room, assignment.arm
         self._bus, self._settings, self._secret = bus, settings, secret
         self._loop = asyncio.get_running_loop()
         self._commands = bus.publisher(keys.command(room, arm))
-        self._announcements = Announcements(bus, room, arm)
-        self._presses = Presses()
-        self._outlet = Outlet(video_bus, room, arm)
+        self._events = SeatEvents(bus, room, arm)
+        self._cues = CueFilter()
+        self._video = VideoPublisher(video_bus, room, arm)
         look = QUALITIES[settings.quality]
-        self._scenery = Scenery(
+        self._views = ViewManager(
             bus, room, arm, sink=self._on_picture, on_azimuth=self._on_azimuth, quality=look
         )
         self._peers = Peers(bus, self, settings.ice_servers)
@@ -87,10 +92,10 @@ class Seat:
             for opened in self._open():
                 stack.callback(opened.close)
             try:
-                await asyncio.gather(self._tell_periodically(), self._announcements.report(self._latency))
+                await asyncio.gather(self._tell_periodically(), self._events.report(self._latency))
             finally:
                 await self._peers.close()
-                await self._scenery.close()
+                await self._views.close()
                 self._log_latency()
 
     def _open(self) -> list[Closable]:
@@ -101,7 +106,7 @@ class Seat:
         state = bus.bus.subscribe(keys.state(room).key, DecodingSubscriber(State, self._on_state_arrival))
         # Last: whoever sees this token may send an offer.
         alive = bus.bus.announce(keys.alive(ServiceKind.SEAT, self.id))
-        return [*served, status, state, self._commands, self._announcements, self._outlet, alive]
+        return [*served, status, state, self._commands, self._events, self._video, alive]
 
     # Signalling
 
@@ -128,7 +133,9 @@ class Seat:
             raise Unavailable(
                 f"{self.room} has not told about {self.arm} yet; is its sim running?"
             ) from error
-        admit(offer.token, self._secret, room=self.room, arm=self.arm, epoch=driving.seat_epoch, role=role)
+        authorize_offer(
+            offer.token, self._secret, room=self.room, arm=self.arm, epoch=driving.seat_epoch, role=role
+        )
         return await self._peers.answer(role, offer.sdp)
 
     async def _await_driving(self) -> Driving:
@@ -140,13 +147,13 @@ class Seat:
 
     def on_joined(self, peer: Peer) -> None:
         _log.info("%s %s: a %s joined", self.room, self.arm, peer.role)
-        self._scenery.set_codecs(self._peers.codecs())
+        self._views.set_codecs(self._peers.codecs())
         if self._driving is not None and peer.role in _INPUTS:
             self._driving.connect(_INPUTS[peer.role])
 
     def on_left(self, peer: Peer) -> None:
         _log.info("%s %s: a %s left", self.room, self.arm, peer.role)
-        self._scenery.set_codecs(self._peers.codecs())
+        self._views.set_codecs(self._peers.codecs())
         if self._driving is not None and peer.role in _INPUTS:
             self._driving.disconnect(_INPUTS[peer.role])
 
@@ -163,26 +170,30 @@ class Seat:
 
     def on_status(self, peer: Peer, text: str) -> None:
         try:
-            message = channel.parse(text)
+            message = status_channel.parse(text)
         except InvalidInput as error:
             _log.debug("A %s said what nobody understands: %s", peer.role, error)
             return
         match message:
-            case channel.Ping():
-                peer.send_status(channel.pong(message, clock.wall_ns()))
-            case channel.Clock(offset_ns):
+            case status_channel.PingMessage():
+                peer.send_status(status_channel.pong(message, clock.wall_ns()))
+            case status_channel.ClockMessage(offset_ns):
                 self._set_clock(peer, offset_ns)
-            case channel.Seen(tick, t_us) if peer.role is Role.BROWSER and peer.clock_offset_ns is not None:
+            case status_channel.SeenMessage(tick, t_us) if (
+                peer.role is Role.BROWSER and peer.clock_offset_ns is not None
+            ):
                 self._latency.on_seen(tick, int(t_us * 1000) + peer.clock_offset_ns)
-            case channel.Select(chosen) if peer.role in _INPUTS and self._driving is not None:
+            case status_channel.SelectInputMessage(chosen) if (
+                peer.role in _INPUTS and self._driving is not None
+            ):
                 self._driving.select(chosen)
                 self._tell_changes()
-            case channel.GiveCue(cue, press_us) if peer.role in _INPUTS:
-                if self._presses.admit(press_us, clock.monotonic_s()):
-                    self._announcements.cue(cue)
+            case status_channel.CueMessage(cue, press_us) if peer.role in _INPUTS:
+                if self._cues.admit(press_us, clock.monotonic_s()):
+                    self._events.cue(cue)
 
     def on_keyframe_wanted(self, codec: Codec) -> None:
-        self._scenery.request_keyframe(codec)
+        self._views.request_keyframe(codec)
 
     def _set_clock(self, peer: Peer, offset_ns: int) -> None:
         peer.clock_offset_ns = offset_ns
@@ -197,19 +208,19 @@ class Seat:
         for arm in state.arms:
             if arm.arm == self.arm:
                 measured = pose_from_message(arm.tool_in_base)
-                self._scenery.offer(state, received_ns)
+                self._views.offer(state, received_ns)
                 self._loop.call_soon_threadsafe(self._on_state, state, arm, measured)
 
     def _on_state(self, state: State, arm: ArmState, measured_tool_in_base: Pose) -> None:
         was_reset = state.boot != self._state.boot or state.sim_time_s < self._state.sim_time_s
         self._state = state
-        self._announcements.tick = state.tick
+        self._events.tick = state.tick
         self._measured = measured_tool_in_base
         if self._driving is not None:
             self._driving.see(arm, state.sim_time_s)
             if was_reset:
                 self._driving.world_was_reset()
-        self._scenery.on_boot(state.boot)
+        self._views.on_boot(state.boot)
         if self._status.control_hz:
             self._latency.on_state(state, self._status.control_hz)
 
@@ -261,9 +272,9 @@ class Seat:
         if self._driving is None:
             return
         self._told = self._telling(self._driving, now_s)
-        latency, frames_per_s = self._latency.summary(), self._scenery.frames_per_s()
+        latency, frames_per_s = self._latency.summary(), self._views.frames_per_s()
         self._peers.tell(
-            channel.tick(
+            status_channel.tick(
                 self._state, self._status, self._driving, now_s, latency=latency, frames_per_s=frames_per_s
             )
         )
@@ -273,13 +284,13 @@ class Seat:
         waiting = tuple(waiting.arm for waiting in self._status.waiting_for)
         return driving.engaged(now_s), driving.holding, driving.active, self._status.barrier, waiting
 
-    def _on_picture(self, made: Picture | Still) -> None:
+    def _on_picture(self, made: SeatPicture | Thumbnail) -> None:
         """On the view's thread: first to those who wait for it, then onto the bus."""
-        if isinstance(made, Picture):
+        if isinstance(made, SeatPicture):
             self._loop.call_soon_threadsafe(self._pass_on, made)
-        self._outlet.put(made)
+        self._video.put(made)
 
-    def _pass_on(self, picture: Picture) -> None:
+    def _pass_on(self, picture: SeatPicture) -> None:
         self._peers.put(picture.encoded)
         if picture.encoded.codec is Codec.H264:
             self._latency.on_picture(picture.tick, picture.stamps)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from mart.runtime.settings import Settings
-from mart.teleop_gateway.quality import Name
+from mart.teleop_gateway.video.quality import QualityName
 
 
 class GatewaySettings(Settings):
@@ -13,7 +13,7 @@ class GatewaySettings(Settings):
     hand_scale: float = Field(
         1.0, gt=0, le=4, description="Metres of tool motion for each metre of hand motion."
     )
-    quality: Name = Field(
+    quality: QualityName = Field(
         "fast",
         description="fast: 640 x 480 px in 10 ms without a GPU, less where that is late. full, where there is one: "
         "960 x 720 px, 4 samples a pixel, shadows, and detailed meshes where the room offers them.",

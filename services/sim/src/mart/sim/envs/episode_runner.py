@@ -14,7 +14,7 @@ from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import SHARED_VIEWPOINT, Observation, Task
-from mart.sim.renderer import Image, Renderer
+from mart.render import Image, Renderer
 from mart.sim.scene.meshes import Detail
 from mart.sim.world import Diverged, World
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Task
+from mart.render import Image
 from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
@@ -21,7 +22,6 @@ from mart.sim.envs.episode_runner import (
     checked_seed,
     observation_space,
 )
-from mart.sim.renderer import Image
 
 
 class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integer[Any]]]):

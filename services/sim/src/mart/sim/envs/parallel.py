@@ -15,6 +15,7 @@ from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Conflict, InvalidInput
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Task
+from mart.render import Image
 from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
@@ -26,7 +27,6 @@ from mart.sim.envs.episode_runner import (
     checked_seed,
     observation_space,
 )
-from mart.sim.renderer import Image
 
 Infos = dict[str, dict[str, object]]
 

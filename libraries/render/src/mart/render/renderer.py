@@ -1,0 +1,108 @@
+"""Draw one viewpoint of a world from its integration states. Works without a GPU and without a display."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.protocol.errors import InvalidInput
+from mart.render.compiled_model import viewpoint_id
+from mart.render.gl_context import open_context
+
+Image = NDArray[np.uint8]
+
+LARGEST_PX = 4096
+_STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+_MAX_GEOMS = 2000
+
+
+class Renderer:
+    """Draw one viewpoint of one model, at one size at a time.
+
+    Several may live on one thread. Build, use and close each on the same thread: an OpenGL context belongs to one.
+    """
+
+    def __init__(self, model: mujoco.MjModel, viewpoint: str, width_px: int, height_px: int) -> None:
+        """Raise NotFound for an unknown viewpoint, InvalidInput for an impossible size, Unavailable without OpenGL."""
+        self._model = model
+        self._data = mujoco.MjData(model)
+        self._camera = mujoco.MjvCamera()
+        self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
+        self._camera.fixedcamid = viewpoint_id(model, viewpoint)
+        self._options = mujoco.MjvOption()
+        self._scene = mujoco.MjvScene(model, maxgeom=_MAX_GEOMS)
+        # The floor fills every view of every task, so the sky would only be drawn to be covered: 1 ms of 10.
+        self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = 0
+        _check_size(width_px, height_px)
+        self._gl, self._context = open_context(model, width_px, height_px)
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
+        self.resize(width_px, height_px)
+
+    @property
+    def width_px(self) -> int:
+        """The width of the pictures."""
+        return self._viewport.width
+
+    @property
+    def height_px(self) -> int:
+        """The height of the pictures."""
+        return self._viewport.height
+
+    def resize(self, width_px: int, height_px: int) -> None:
+        """Draw pictures of this size from now on; raises InvalidInput for one that cannot be."""
+        _check_size(width_px, height_px)
+        self._gl.make_current()
+        mujoco.mjr_resizeOffscreen(width_px, height_px, self._context)
+        self._viewport = mujoco.MjrRect(0, 0, width_px, height_px)
+        self._upside_down = np.empty((height_px, width_px, 3), np.uint8)
+
+    def draw(self, integration_state: bytes, out: Image | None = None) -> Image:
+        """Return the picture of this state: sRGB, uint8, shape (height, width, 3), top row first.
+
+        `out`, of that shape, is filled and returned where it is given. The state is MuJoCo's mjSTATE_INTEGRATION as
+        little-endian float64. Raises InvalidInput where it is not one of this model.
+        """
+        self._set_state(integration_state)
+        self._gl.make_current()  # another renderer of this thread may have drawn since
+        mujoco.mjv_updateScene(
+            self._model,
+            self._data,
+            self._options,
+            None,
+            self._camera,
+            mujoco.mjtCatBit.mjCAT_ALL,
+            self._scene,
+        )
+        mujoco.mjr_render(self._viewport, self._scene, self._context)
+        mujoco.mjr_readPixels(self._upside_down, None, self._viewport, self._context)
+        if out is None:
+            return self._upside_down[::-1].copy()
+        out[:] = self._upside_down[::-1]
+        return out
+
+    def close(self) -> None:
+        """Give back what the renderer holds of the graphics card; it cannot draw any more."""
+        self._gl.make_current()
+        self._context.free()
+        self._gl.free()
+
+    def _set_state(self, integration_state: bytes) -> None:
+        expected = 8 * mujoco.mj_stateSize(self._model, _STATE)
+        if len(integration_state) != expected:
+            raise InvalidInput(
+                f"A state of {len(integration_state)} bytes was given; this model's has {expected}."
+            )
+        numbers = np.frombuffer(integration_state, "<f8").astype(np.float64)
+        mujoco.mj_setState(self._model, self._data, numbers, _STATE)
+        # No mj_forward: pictures need where things are, not the forces between them.
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_comPos(self._model, self._data)  # what tracking cameras and lights look at
+        mujoco.mj_camlight(self._model, self._data)
+
+
+def _check_size(width_px: int, height_px: int) -> None:
+    if not (1 <= width_px <= LARGEST_PX and 1 <= height_px <= LARGEST_PX):
+        raise InvalidInput(
+            f"A picture of {width_px} x {height_px} px was asked for; each side must be from 1 to {LARGEST_PX} px."
+        )

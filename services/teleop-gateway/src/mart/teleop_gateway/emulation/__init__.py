@@ -1,0 +1,1 @@
+"""Drive a seat as a phone does, without a phone."""

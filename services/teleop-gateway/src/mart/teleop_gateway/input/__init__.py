@@ -1,0 +1,1 @@
+"""Turn frames of phones and browsers into commands for one arm."""

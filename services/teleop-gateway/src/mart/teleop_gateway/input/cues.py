@@ -1,0 +1,25 @@
+"""Words to one's partners: a press is told several times, because messages may be lost, and counts once. Pure."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from mart.runtime.rate_limit import RateLimit
+
+MAX_PER_S = 2
+_REMEMBERED = 8
+
+
+class CueFilter:
+    """Of one seat."""
+
+    def __init__(self) -> None:
+        self._rate = RateLimit(MAX_PER_S)
+        self._known: deque[float] = deque(maxlen=_REMEMBERED)
+
+    def admit(self, press_us: float, now_s: float) -> bool:
+        """Whether this press is new and not one too many; one too many stays refused, however often it is told."""
+        if press_us in self._known:
+            return False
+        self._known.append(press_us)
+        return self._rate.allows(now_s)

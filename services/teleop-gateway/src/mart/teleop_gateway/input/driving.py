@@ -1,0 +1,197 @@
+"""One seat's inputs: who drives, and what the arm is asked to do. Pure: payloads and `now` in, commands out."""
+
+from __future__ import annotations
+
+import enum
+from collections import Counter
+from dataclasses import dataclass, field, replace
+
+from mart.protocol.messages import OPERATOR_HUMAN, ArmState, Command, CommandStamps, pose_message
+from mart.protocol.pose import Pose
+from mart.teleop_gateway.input.frame_validator import FrameValidator, HandSample
+from mart.teleop_gateway.input.grasp import GripperSample, holds
+from mart.teleop_gateway.input.phone_frame import Flag
+from mart.teleop_gateway.input.retarget import ArmTarget, Retarget
+
+LOST_AFTER_S = 0.25
+_REMEMBERED_COMMANDS = 512
+_OLDEST_INPUT_NS = 10_000_000_000  # an older stamp is a wrong clock, not a slow network
+
+
+class InputDevice(enum.StrEnum):
+    KEYBOARD = "keyboard"  # and mouse, from the browser
+    PHONE = "phone"
+
+
+@dataclass
+class _Source:
+    """What is known of one driving peer. clock_offset_ns: gateway clock minus the peer's, once the peer has told it."""
+
+    validator: FrameValidator
+    grips: bool = False  # its gripper counts
+    last: HandSample | None = None
+    clock_offset_ns: int | None = None
+
+
+@dataclass(frozen=True)
+class PhoneState:
+    age_s: float
+    tracking: bool
+
+
+@dataclass
+class Driving:
+    """The driving of one arm by one holder of its seat (one epoch).
+
+    `first_sequence` must be above every command's number of an earlier process for the same epoch: the sim takes only
+    newer ones. gripper_told: what the gripper was asked for in the newest tick, by whoever drove then; None: unknown.
+    holding: the gripper has taken hold of something.
+    """
+
+    arm: str
+    seat_epoch: int
+    first_sequence: int
+    retarget: Retarget
+    active: InputDevice = InputDevice.KEYBOARD
+    gripper_told: float | None = None
+    holding: bool = False
+    _grip: GripperSample | None = None
+    _sources: dict[InputDevice, _Source] = field(default_factory=dict)
+    _rejected: Counter[str] = field(default_factory=Counter)
+    _target: ArmTarget | None = None
+    _sent: int = 0
+    _frame_numbers: dict[int, int] = field(default_factory=dict)
+
+    def connect(self, source: InputDevice) -> None:
+        """A new peer: its numbers begin anew. A phone that comes is meant to be used."""
+        self._keep_counts(source)
+        self._sources[source] = _Source(FrameValidator(self.seat_epoch))
+        if source is InputDevice.PHONE:
+            self.select(InputDevice.PHONE)
+
+    def disconnect(self, source: InputDevice) -> None:
+        """A peer left for good; a phone that leaves gives the arm back to the keyboard."""
+        self._keep_counts(source)
+        self._sources.pop(source, None)
+        if source is InputDevice.PHONE:
+            self.select(InputDevice.KEYBOARD)
+
+    def select(self, source: InputDevice) -> None:
+        if source is not self.active:
+            self.active = source
+            self.retarget.release()
+
+    def set_clock(self, source: InputDevice, offset_ns: int) -> None:
+        if source in self._sources:
+            self._sources[source].clock_offset_ns = offset_ns
+
+    def clock_offset_ns(self, source: InputDevice) -> int | None:
+        known = self._sources.get(source)
+        return known.clock_offset_ns if known else None
+
+    def receive(
+        self,
+        source: InputDevice,
+        payload: bytes,
+        measured_tool_in_base: Pose | None,
+        now_s: float,
+        now_ns: int,
+    ) -> Command | None:
+        """The command that a frame asks for; None for a bad frame, an input that is not in use or an unseen arm.
+
+        now_s: monotonic; now_ns: wall clock, for the stamps.
+        """
+        peer = self._sources.get(source)
+        hand = peer.validator.validate(payload, now_s) if peer else None
+        if peer is None or hand is None:
+            return None
+        peer.grips = peer.grips or _means_its_gripper(hand, peer.last)
+        peer.last = hand
+        if source is not self.active or measured_tool_in_base is None:
+            return None
+        target = self.retarget.follow(hand, measured_tool_in_base)
+        gripper = target.gripper if peer.grips or self.gripper_told is None else self.gripper
+        self._target = replace(target, gripper=gripper)
+        return self._command(hand, self._target, peer.clock_offset_ns, now_ns)
+
+    def see(self, arm: ArmState, sim_time_s: float) -> None:
+        """The arm after the newest tick, whoever drove it."""
+        self.gripper_told = (arm.action[-1] + 1.0) / 2.0 if arm.action else arm.gripper
+        grip = GripperSample(arm.gripper, self.gripper_told, sim_time_s)
+        self.holding = bool(arm.action) and holds(self.holding, self._grip, grip)
+        self._grip = grip
+
+    def world_was_reset(self) -> None:
+        self._target = None
+        self.retarget.forget()
+
+    def lost(self, now_s: float) -> bool:
+        """Whether the input in use has been silent for too long."""
+        peer = self._sources.get(self.active)
+        return peer is None or now_s - peer.validator.last_good_s > LOST_AFTER_S
+
+    def engaged(self, now_s: float) -> bool:
+        return self._target is not None and self._target.engaged and not self.lost(now_s)
+
+    @property
+    def gripper(self) -> float:
+        """What was asked for last, 0 open … 1 closed."""
+        return self._target.gripper if self._target else self.gripper_told or 0.0
+
+    def phone(self, now_s: float) -> PhoneState | None:
+        peer = self._sources.get(InputDevice.PHONE)
+        if peer is None or peer.last is None:
+            return None
+        return PhoneState(now_s - peer.validator.last_good_s, Flag.TRACKING in peer.last.frame.flags)
+
+    def rejected(self) -> Counter[str]:
+        """Frames dropped since this holder came, by reason."""
+        return sum((_counts(peer.validator) for peer in self._sources.values()), Counter(self._rejected))
+
+    def frame_number(self, sequence: int) -> int | None:
+        """The phone frame that became the command of this number; None where it was not this process's."""
+        return self._frame_numbers.get(sequence)
+
+    def _keep_counts(self, source: InputDevice) -> None:
+        if source in self._sources:
+            self._rejected += _counts(self._sources[source].validator)
+
+    def _command(
+        self, hand: HandSample, target: ArmTarget, clock_offset_ns: int | None, now_ns: int
+    ) -> Command:
+        sequence = self.first_sequence + self._sent
+        self._sent += 1
+        self._frame_numbers[sequence] = hand.frame.sequence
+        self._frame_numbers.pop(sequence - _REMEMBERED_COMMANDS, None)
+        return Command(
+            arm=self.arm,
+            seat_epoch=self.seat_epoch,
+            sequence=sequence,
+            target_tool_in_base=pose_message(target.pose_tool_in_base),
+            gripper=target.gripper,
+            engaged=target.engaged,
+            source=OPERATOR_HUMAN,
+            stamps=CommandStamps(
+                input_sent_ns=_input_sent_ns(hand.frame.sent_us, clock_offset_ns, now_ns),
+                gateway_received_ns=now_ns,
+            ),
+            seen_tick=hand.frame.seen_tick,
+            emergency_stop=Flag.EMERGENCY_STOP in hand.frame.flags,
+        )
+
+
+def _means_its_gripper(hand: HandSample, before: HandSample | None) -> bool:
+    """A hand that has just come does not know what its arm holds: until it presses or grips, it must drop nothing."""
+    return hand.clutch or (before is not None and hand.frame.gripper != before.frame.gripper)
+
+
+def _counts(validator: FrameValidator) -> Counter[str]:
+    return Counter({reason.value: number for reason, number in validator.rejected.items()})
+
+
+def _input_sent_ns(sent_us: int, clock_offset_ns: int | None, now_ns: int) -> int:
+    """The peer's sending time on the gateway's clock; 0 where it is unknown or cannot be true."""
+    if clock_offset_ns is None:
+        return 0
+    sent_ns = sent_us * 1000 + clock_offset_ns
+    return sent_ns if now_ns - _OLDEST_INPUT_NS < sent_ns <= now_ns + _OLDEST_INPUT_NS else 0

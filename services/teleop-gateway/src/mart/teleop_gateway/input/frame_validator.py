@@ -1,0 +1,119 @@
+"""What stands between a phone and an arm: drops bad frames, and lets go of the clutch where the hand is in doubt.
+
+Pure: payloads and `now_s` in, admitted frames out. The rules are in docs/protocol.md, "Phone frame".
+"""
+
+from __future__ import annotations
+
+import enum
+import math
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mart.protocol.pose import Pose
+from mart.runtime.rate_limit import RateLimit
+from mart.teleop_gateway.input.phone_frame import Flag, MalformedFrame, PhoneFrame
+
+MAX_FRAMES_PER_S = 120
+MAX_DISTANCE_M = 100.0
+NORM_TOLERANCE = 0.01
+GAP_S = 0.2
+JUMP_M = 0.15
+JUMP_RAD = 0.6
+JUMP_WITHIN_S = 0.1
+
+
+class FrameRejection(enum.StrEnum):
+    """Why a frame was dropped."""
+
+    RATE = "rate"
+    MALFORMED = "malformed"
+    EPOCH = "epoch"
+    SEQUENCE = "sequence"
+    NOT_FINITE = "not_finite"
+    NORM = "norm"
+    GRIPPER = "gripper"
+    POSITION = "position"
+
+
+class _Rejected(Exception):
+    def __init__(self, reason: FrameRejection) -> None:
+        super().__init__(reason)
+        self.reason = reason
+
+
+@dataclass(frozen=True)
+class HandSample:
+    """An admitted frame. `clutch`: it is held and nothing speaks against it."""
+
+    frame: PhoneFrame
+    pose_phone_in_session: Pose
+    clutch: bool
+
+
+class FrameValidator:
+    """Watches the frames of one peer."""
+
+    def __init__(self, seat_epoch: int) -> None:
+        self.rejected: Counter[FrameRejection] = Counter()
+        self._seat_epoch = seat_epoch
+        self._rate = RateLimit(MAX_FRAMES_PER_S)
+        self._last: HandSample | None = None
+        self._last_s = -math.inf
+        self._must_let_go = True  # a clutch held since before this peer came does not count
+
+    @property
+    def last_good_s(self) -> float:
+        """When the last good frame came; minus infinity before the first."""
+        return self._last_s
+
+    def validate(self, payload: bytes, now_s: float) -> HandSample | None:
+        """The hand this payload shows, or None where it was dropped (and counted)."""
+        try:
+            return self._accept(self._read(payload, now_s), now_s)
+        except _Rejected as error:
+            self.rejected[error.reason] += 1
+            return None
+
+    def _read(self, payload: bytes, now_s: float) -> PhoneFrame:
+        if not self._rate.allows(now_s):
+            raise _Rejected(FrameRejection.RATE)
+        try:
+            frame = PhoneFrame.decode(payload)
+        except MalformedFrame as error:
+            raise _Rejected(FrameRejection.MALFORMED) from error
+        for reason, holds in self._rules(frame):
+            if not holds:
+                raise _Rejected(reason)
+        return frame
+
+    def _rules(self, frame: PhoneFrame) -> Iterator[tuple[FrameRejection, bool]]:
+        """What must hold, in order: a later rule may rely on an earlier one."""
+        newest = self._last.frame.sequence if self._last else -1
+        numbers = (*frame.position, *frame.quaternion_wxyz, frame.gripper)
+        yield FrameRejection.EPOCH, frame.seat_epoch == self._seat_epoch
+        yield FrameRejection.SEQUENCE, frame.sequence > newest
+        yield FrameRejection.NOT_FINITE, all(map(math.isfinite, numbers))
+        yield FrameRejection.NORM, abs(math.hypot(*frame.quaternion_wxyz) - 1.0) <= NORM_TOLERANCE
+        yield FrameRejection.GRIPPER, 0.0 <= frame.gripper <= 1.0
+        yield FrameRejection.POSITION, math.hypot(*frame.position) <= MAX_DISTANCE_M
+
+    def _accept(self, frame: PhoneFrame, now_s: float) -> HandSample:
+        pose = Pose(np.array(frame.position), np.array(frame.quaternion_wxyz))
+        pressed, tracking = Flag.CLUTCH in frame.flags, Flag.TRACKING in frame.flags
+        if not tracking or (pressed and (now_s - self._last_s > GAP_S or self._jumped(frame, pose))):
+            self._must_let_go = True
+        elif not pressed:
+            self._must_let_go = False
+        hand = HandSample(frame, pose, clutch=pressed and not self._must_let_go)
+        self._last, self._last_s = hand, now_s
+        return hand
+
+    def _jumped(self, frame: PhoneFrame, pose: Pose) -> bool:
+        if self._last is None or (frame.sent_us - self._last.frame.sent_us) * 1e-6 >= JUMP_WITHIN_S:
+            return False
+        metres, radians = pose.distance_to(self._last.pose_phone_in_session)
+        return metres > JUMP_M or radians > JUMP_RAD

@@ -1,0 +1,37 @@
+"""Whether a gripper has taken hold of something, from what it was told and how far it came. Pure.
+
+No sensor says so: a gripper that is told to close further and stands still has something between its fingers. The
+thinnest thing in the tasks, a handle of 2 cm, leaves a gap of 0.25; closing on nothing, a gripper that is slow enough
+to count as still has a gap of less than 0.02 left.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+_LEAST_GAP = 0.04  # of the whole stroke
+_STILL_PER_S = 0.2  # strokes; it closes at 3.7 a second, and 10 times the gap a second at the end
+
+
+@dataclass(frozen=True)
+class GripperSample:
+    """0 open … 1 closed. measured: how far it is closed; told: what it was asked for."""
+
+    measured: float
+    told: float
+    sim_time_s: float
+
+    @property
+    def gap(self) -> float:
+        """How much further it would close; a gripper that is told half closes all the way, the rest is force."""
+        return min(1.0, 2.0 * self.told) - self.measured
+
+
+def holds(held: bool, before: GripperSample | None, now: GripperSample) -> bool:
+    """Whether something is held now. held: whether it was `before`; None: nothing is known of the time before."""
+    if now.gap < _LEAST_GAP:
+        return False
+    if before is None or now.sim_time_s < before.sim_time_s:
+        return True
+    elapsed_s = now.sim_time_s - before.sim_time_s
+    return held or (elapsed_s > 0.0 and abs(now.measured - before.measured) < _STILL_PER_S * elapsed_s)

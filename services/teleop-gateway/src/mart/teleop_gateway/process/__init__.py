@@ -1,0 +1,1 @@
+"""Start, assign and end the processes of seats."""

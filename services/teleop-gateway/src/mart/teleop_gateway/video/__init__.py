@@ -1,0 +1,1 @@
+"""Turn states of a room into encoded pictures of one seat."""

@@ -1,0 +1,176 @@
+"""The picture of one seat: rendered and encoded once, handed to everyone who watches. A thread of its own.
+
+Newest wins before the encoder: a slow renderer leaves states out. After it nothing may be left out, since every
+picture builds on the one before; see `track`. Pictures that take too long are drawn smaller; see `adaptive_resolution`.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+from fractions import Fraction
+
+import cv2
+import mujoco
+
+from mart.protocol import clock
+from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.messages import State
+from mart.render import Image
+from mart.runtime.rate_limit import RateLimit
+from mart.teleop_gateway.video.adaptive_resolution import AdaptiveResolution
+from mart.teleop_gateway.video.encoder import CLOCK_HZ, Codec, EncodedPicture, Encoder, to_i420
+from mart.teleop_gateway.video.motion_to_photon import PictureStamps
+from mart.teleop_gateway.video.quality import FAST, Quality
+from mart.teleop_gateway.video.render_queue import RenderQueue, RenderQueueClosed, UndrawnState
+from mart.teleop_gateway.video.seat_renderer import SeatRenderer
+from mart.teleop_gateway.video.thumbnail import Thumbnail, ThumbnailMaker
+
+_log = logging.getLogger(__name__)
+
+KEYFRAME_EVERY_S = 2.0
+_REPEAT_AFTER_S = 0.5  # a resting world is sent again: whoever lost the last picture gets it
+_KEYFRAME_WITHIN_S = 0.05
+_RATE_WINDOW = 40
+
+
+@dataclass(frozen=True)
+class SeatPicture:
+    """One encoded picture on its way to the peers and onto the bus. image_ns: when the world was in this state."""
+
+    encoded: EncodedPicture
+    tick: int
+    image_ns: int
+    stamps: PictureStamps
+
+
+Sink = Callable[[SeatPicture | Thumbnail], None]
+
+
+class _RenderPipeline:
+    """What a picture of one size takes: a renderer, encoders, and the picture itself."""
+
+    def __init__(self, renderer: SeatRenderer, quality: Quality, frames_per_s: float) -> None:
+        self._renderer, self._full, self._frames_per_s = renderer, quality, frames_per_s
+        self._prepare(quality)
+
+    def resize(self, size: Fraction) -> None:
+        """A share of the full width. The first picture of another size is a keyframe."""
+        quality = self._full.sized(size)
+        if quality != self._quality:
+            self._renderer.resize(quality)
+            self._prepare(quality)
+
+    def draw(self, state: State) -> None:
+        self._renderer.draw(state.integration_state, state.tick, self.picture_rgb)
+
+    @property
+    def view_rgb(self) -> Image:
+        """The picture without the strip."""
+        return self.picture_rgb[: self._quality.view_height_px]
+
+    def close(self) -> None:
+        self._renderer.close()
+
+    def _prepare(self, quality: Quality) -> None:
+        self._quality = quality
+        self.picture_rgb = quality.blank_picture()
+        self.encoders = {codec: Encoder(codec, self._frames_per_s, quality) for codec in Codec}
+
+
+class LiveView:
+    """Draws `camera` of `model` from `start` to `stop`. The sink is called on its thread: it may only hand over."""
+
+    def __init__(
+        self, model: mujoco.MjModel, camera: str, frames_per_s: float, sink: Sink, quality: Quality = FAST
+    ) -> None:
+        self._model, self._camera, self._sink, self._quality = model, camera, sink, quality
+        self._frames_per_s = frames_per_s
+        self._queue = RenderQueue()
+        self._keyframe_s = dict.fromkeys(Codec, -KEYFRAME_EVERY_S)
+        self._complaints = RateLimit(1)
+        self._times_s: deque[float] = deque(maxlen=_RATE_WINDOW)
+        self._thread = threading.Thread(target=self._run, name=f"view-{camera}", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Returns when the thread has ended."""
+        self._queue.close()
+        self._thread.join()
+
+    def offer(self, state: State, received_ns: int) -> None:
+        self._queue.offer(state, received_ns)
+
+    def set_codecs(self, codecs: AbstractSet[Codec]) -> None:
+        """What the peers need. H.264 is always made: the recorder keeps what the operator saw."""
+        self._queue.set_codecs(codecs)
+
+    def request_keyframe(self, codec: Codec) -> None:
+        self._queue.request_keyframe(codec)
+
+    def frames_per_s(self) -> float:
+        """Of the last pictures; 0 where nothing was drawn for a second."""
+        times_s = tuple(self._times_s)
+        if len(times_s) < 2 or clock.monotonic_s() - times_s[-1] > 1.0:
+            return 0.0
+        return (len(times_s) - 1) / (times_s[-1] - times_s[0])
+
+    def _run(self) -> None:
+        cv2.setNumThreads(1)
+        try:
+            pipeline = _RenderPipeline(
+                SeatRenderer(self._model, self._camera, self._quality), self._quality, self._frames_per_s
+            )
+        except MartError as error:
+            _log.error("%s gets no picture: %s", self._camera, error)  # the sentence says it all
+            return
+        try:
+            self._draw_until_closed(pipeline)
+        except RenderQueueClosed:
+            _log.debug("The view of %s ends", self._camera)
+        finally:
+            pipeline.close()
+
+    def _draw_until_closed(self, pipeline: _RenderPipeline) -> None:
+        resolution, thumbnails = AdaptiveResolution(self._frames_per_s), ThumbnailMaker()
+        drawn: UndrawnState | None = None
+        rendered_ns = 0
+        while True:
+            fresh = self._queue.wait(_REPEAT_AFTER_S, _KEYFRAME_WITHIN_S)
+            begun_s = clock.monotonic_s()
+            if fresh is not None:
+                pipeline.resize(resolution.size)
+                try:
+                    pipeline.draw(fresh.state)
+                except InvalidInput as error:
+                    if self._complaints.allows(begun_s):
+                        _log.warning("A state was not drawn: %s", error)
+                    continue
+                drawn, rendered_ns = fresh, clock.wall_ns()
+                self._times_s.append(clock.monotonic_s())
+            if drawn is not None:
+                self._encode(pipeline, drawn, rendered_ns)
+            if fresh is not None:
+                now_s = clock.monotonic_s()
+                resolution.record(now_s - begun_s, now_s)
+                thumbnail = thumbnails.take(pipeline.view_rgb, fresh.state.stamps.stepped_ns, now_s)
+                if thumbnail is not None:
+                    self._sink(thumbnail)
+
+    def _encode(self, pipeline: _RenderPipeline, drawn: UndrawnState, rendered_ns: int) -> None:
+        now_s = clock.monotonic_s()
+        watched, wanted = self._queue.take_orders()
+        picture_i420 = to_i420(pipeline.picture_rgb)
+        for codec in sorted(watched | {Codec.H264}):
+            keyframe = codec in wanted or now_s - self._keyframe_s[codec] >= KEYFRAME_EVERY_S
+            encoded = pipeline.encoders[codec].encode(picture_i420, int(now_s * CLOCK_HZ), keyframe)
+            if encoded.keyframe:
+                self._keyframe_s[codec] = now_s
+            stamps = PictureStamps(drawn.received_ns, rendered_ns, clock.wall_ns())
+            self._sink(SeatPicture(encoded, drawn.state.tick, drawn.state.stamps.stepped_ns, stamps))

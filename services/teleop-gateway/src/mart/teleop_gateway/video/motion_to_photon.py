@@ -1,0 +1,137 @@
+"""Motion to photon: from the moment a hand's frame was sent to the moment its effect was on the screen.
+
+Every frame counts, also those that a newer one overtook before the tick: a hand moves all the time, and what it did
+right after a tick waits longest. (Used commands alone would leave two thirds of a tick out of the account.) Frames that
+waited while the world stood still on purpose, in a countdown or after an episode, do not count.
+
+Pure. Every stamp is Unix time in nanoseconds on this machine's clock; the peers' own stamps have been mapped by their
+clock offsets. A tick's stamps are collected on the way; a page's report of the displayed tick closes the account.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from mart.protocol.messages import Command, Event, State
+
+STAGES = (
+    "input → gateway",
+    "gateway → sim",
+    "tick wait",
+    "physics",
+    "sim → gateway",
+    "render",
+    "encode",
+    "send → displayed",
+)
+T = TypeVar("T")
+
+_MS_PER_NS = 1e-6
+_LONGEST_NS = 10_000_000_000
+
+
+@dataclass(frozen=True)
+class PictureStamps:
+    """One tick's way through the gateway."""
+
+    state_received_ns: int
+    rendered_ns: int
+    encoded_ns: int
+
+
+@dataclass(frozen=True)
+class LatencySummary:
+    """Of the newest reports; `frames`: pictures reported; `stages`: median milliseconds of each of STAGES, in order."""
+
+    p50_ms: float
+    p95_ms: float
+    frames: int
+    stages: tuple[float, ...]
+
+    def __str__(self) -> str:
+        stages = ", ".join(f"{name} {ms:.1f}" for name, ms in zip(STAGES, self.stages, strict=True))
+        return f"p50 {self.p50_ms:.1f} ms, p95 {self.p95_ms:.1f} ms of {self.frames} pictures ({stages})"
+
+    def event(self, arm: str) -> Event.Latency:
+        named = [Event.Latency.Stage(name=n, p50_ms=ms) for n, ms in zip(STAGES, self.stages, strict=True)]
+        return Event.Latency(
+            arm=arm, p50_ms=self.p50_ms, p95_ms=self.p95_ms, frames=self.frames, stages=named
+        )
+
+
+class MotionToPhoton:
+    """Keeps the last `window` reports of one arm."""
+
+    def __init__(self, arm: str, window: int = 100, ticks: int = 256, commands: int = 256) -> None:
+        self.reports = 0  # in all
+        self._arm = arm
+        self._ticks, self._commands = ticks, commands
+        self._sent: dict[int, tuple[int, int]] = {}  # by sequence: input sent, gateway received
+        self._until_state: dict[int, list[tuple[int, ...]]] = {}  # a row for each command of the tick
+        self._pictures: dict[int, PictureStamps] = {}
+        self._reports: deque[list[tuple[int, ...]]] = deque(maxlen=window)
+
+    def on_command(self, command: Command) -> None:
+        """A frame became a command. One without a stamp (its sender's clock is not mapped yet) has no account."""
+        stamps = command.stamps
+        if stamps.input_sent_ns:
+            sent = (stamps.input_sent_ns, stamps.gateway_received_ns)
+            _keep(self._sent, command.sequence, sent, self._commands)
+
+    def on_state(self, state: State, control_hz: float) -> None:
+        """Keeps the way of the command that this tick used, and of those that it overtook; a held arm has none."""
+        # When the tick before this one could have fired.
+        since_ns = state.stamps.due_ns - round(1e9 / control_hz)
+        for arm in state.arms:
+            if arm.arm == self._arm and arm.fresh and arm.sequence in self._sent:
+                # The overtaken are taken to have reached the sim as fast as the one whose arrival is known.
+                newest_ns = self._sent[arm.sequence][1]
+                transit_ns = arm.arrived_ns - newest_ns
+                rows: list[tuple[int, ...]] = [
+                    (sent, received, received + transit_ns, state.stamps.fired_ns, state.stamps.stepped_ns)
+                    for sent, received in self._take_until(arm.sequence)
+                    if received >= since_ns or received == newest_ns
+                ]
+                _keep(self._until_state, state.tick, rows, self._ticks)
+
+    def on_picture(self, tick: int, stamps: PictureStamps) -> None:
+        """A picture sent a second time closes the account: a report from now on may mean either."""
+        if tick in self._pictures:
+            self._until_state.pop(tick, None)
+        _keep(self._pictures, tick, stamps, self._ticks)
+
+    def on_seen(self, tick: int, displayed_ns: int) -> bool:
+        """A page displayed this tick; False where the account cannot be closed or cannot be true."""
+        until_state, picture = self._until_state.get(tick), self._pictures.get(tick)
+        if until_state is None or picture is None:
+            return False
+        if not picture.encoded_ns <= displayed_ns < until_state[-1][0] + _LONGEST_NS:
+            return False
+        del self._until_state[tick]  # one report for each tick
+        self.reports += 1
+        after = (picture.state_received_ns, picture.rendered_ns, picture.encoded_ns, displayed_ns)
+        self._reports.append([(*row, *after) for row in until_state])
+        return True
+
+    def summary(self) -> LatencySummary | None:
+        """None before the first report."""
+        if not self._reports:
+            return None
+        stamps = np.array([row for rows in self._reports for row in rows], dtype=np.int64)
+        total_ms = (stamps[:, -1] - stamps[:, 0]) * _MS_PER_NS
+        stages_ms = np.median(np.diff(stamps, axis=1), axis=0) * _MS_PER_NS
+        p50_ms, p95_ms = np.percentile(total_ms, (50, 95))
+        return LatencySummary(float(p50_ms), float(p95_ms), len(self._reports), tuple(stages_ms.tolist()))
+
+    def _take_until(self, sequence: int) -> list[tuple[int, int]]:
+        return [self._sent.pop(number) for number in list(self._sent) if number <= sequence]
+
+
+def _keep(kept: dict[int, T], number: int, value: T, at_most: int) -> None:
+    kept[number] = value
+    while len(kept) > at_most:
+        del kept[next(iter(kept))]

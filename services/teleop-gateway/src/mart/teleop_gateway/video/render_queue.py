@@ -1,0 +1,77 @@
+"""What the event loop and the view's thread tell each other; newest state wins."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+
+from mart.protocol import clock
+from mart.protocol.messages import State
+from mart.teleop_gateway.video.encoder import Codec
+
+
+@dataclass(frozen=True)
+class UndrawnState:
+    """A state that has not been drawn. received_ns: when it came to the gateway."""
+
+    state: State
+    received_ns: int
+
+
+class RenderQueue:
+    """Any thread may give; one thread takes."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._newest: UndrawnState | None = None
+        self._keyframes: set[Codec] = set()
+        self._codecs: frozenset[Codec] = frozenset()
+        self._closed = False
+
+    def offer(self, state: State, received_ns: int) -> None:
+        """A newer state; one that nobody has taken yet is left out."""
+        with self._changed:
+            self._newest = UndrawnState(state, received_ns)
+            self._changed.notify()
+
+    def request_keyframe(self, codec: Codec) -> None:
+        with self._changed:
+            self._keyframes.add(codec)
+            self._changed.notify()
+
+    def set_codecs(self, codecs: AbstractSet[Codec]) -> None:
+        """Which codecs somebody watches."""
+        with self._changed:
+            self._codecs = frozenset(codecs)
+
+    def close(self) -> None:
+        with self._changed:
+            self._closed = True
+            self._changed.notify()
+
+    def wait(self, idle_s: float, keyframe_s: float) -> UndrawnState | None:
+        """Waits for a state; None after `idle_s`, or already after `keyframe_s` where a keyframe is wanted.
+
+        Raises Closed when there will be no more.
+        """
+        start_s = clock.monotonic_s()
+        with self._changed:
+            while self._newest is None and not self._closed:
+                patience_s = keyframe_s if self._keyframes else idle_s
+                if not self._changed.wait(max(0.0, start_s + patience_s - clock.monotonic_s())):
+                    return None
+            if self._closed:
+                raise RenderQueueClosed
+            fresh, self._newest = self._newest, None
+            return fresh
+
+    def take_orders(self) -> tuple[frozenset[Codec], frozenset[Codec]]:
+        """(codecs that somebody watches, codecs of which a keyframe is wanted); the wishes are fulfilled then."""
+        with self._changed:
+            wanted, self._keyframes = frozenset(self._keyframes), set()
+            return self._codecs, wanted
+
+
+class RenderQueueClosed(Exception):  # an end, not an error
+    """The handover was closed."""

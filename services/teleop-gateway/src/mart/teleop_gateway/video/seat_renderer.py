@@ -1,0 +1,79 @@
+"""Draw a seat's picture: the view from its camera, and below it the strip with the tick."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from mart.protocol.messages import Model
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import get_task
+from mart.render import Image, Renderer, load_model, viewpoint_id
+from mart.teleop_gateway.input.retarget import azimuth_of_camera_rad
+from mart.teleop_gateway.video import tick_code
+from mart.teleop_gateway.video.quality import FAST, Quality
+
+_SHADOW_MAP_PX = 4096
+
+
+def load_room_model(message: Model, quality: Quality = FAST) -> mujoco.MjModel:
+    """Return the compiled model that a room sent, to be drawn in this quality.
+
+    Raises Corrupt where its digest is wrong or this version of MuJoCo cannot load it.
+    """
+    model = load_model(
+        message.mjb, sha256=message.sha256, mujoco_version=message.mujoco_version, source="the room"
+    )
+    model.vis.quality.offsamples, model.vis.quality.shadowsize = quality.samples, _SHADOW_MAP_PX
+    if quality.shadows:
+        _cast_shadows(model)
+    return model
+
+
+def camera_azimuth_rad(message: Model, model: mujoco.MjModel, arm: str) -> float:
+    """Return where the camera of `arm`'s seat looks, as an angle about the z axis of the arm's base frame."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_camlight(model, data)
+    camera = viewpoint_id(model, arm)
+    camera_in_world = Pose.from_matrix(data.cam_xmat[camera].reshape(3, 3), data.cam_xpos[camera])
+    base_in_world = get_task(message.task, len(message.arms)).arm(arm).pose_base_in_world
+    return azimuth_of_camera_rad(base_in_world.inverse() @ camera_in_world)
+
+
+class SeatRenderer:
+    """Draw one camera with the tick below it. Build, use and close it on one thread."""
+
+    def __init__(self, model: mujoco.MjModel, camera: str, quality: Quality = FAST) -> None:
+        """Raise NotFound for an unknown camera, Unavailable where this machine cannot draw."""
+        self._renderer = Renderer(model, camera, quality.width_px, quality.view_height_px)
+
+    def resize(self, quality: Quality) -> None:
+        """Draw pictures of this quality's size from now on."""
+        self._renderer.resize(quality.width_px, quality.view_height_px)
+
+    def draw(self, integration_state: bytes, tick: int, picture_rgb: Image) -> None:
+        """Fill `picture_rgb`, shape (height_px, width_px, 3) of the quality: the view, and the tick in the strip below.
+
+        Raises InvalidInput where the state is not one of this model.
+        """
+        height_px = self._renderer.height_px
+        self._renderer.draw(integration_state, out=picture_rgb[:height_px])
+        tick_code.write(tick, picture_rgb[height_px:])
+
+    def close(self) -> None:
+        """Give back what the renderer holds of the graphics card."""
+        self._renderer.close()
+
+
+def _cast_shadows(model: mujoco.MjModel) -> None:
+    """Let the first light, the window, cast shadows: two shadows of everything confuse.
+
+    The soft black spots under things stood in for them; the coloured ones under the tools stay, because they show what
+    a tool is above.
+    """
+    model.light_castshadow[:1] = True
+    spots = np.isin(model.geom_bodyid, np.flatnonzero(model.body_mocapid >= 0)) & ~model.geom_rgba[:, :3].any(
+        axis=1
+    )
+    model.geom_rgba[spots, 3] = 0.0

@@ -1,0 +1,37 @@
+"""A small picture of a seat's view every two seconds: what the lobby shows of the room."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+
+from mart.render import Image
+
+EVERY_S = 2.0
+_SIZE_PX = (384, 288)
+_JPEG_QUALITY = 80
+
+
+@dataclass(frozen=True)
+class Thumbnail:
+    """image_ns: when the world was in this state."""
+
+    jpeg: bytes
+    image_ns: int
+
+
+class ThumbnailMaker:
+    """Says when one is due, and makes it."""
+
+    def __init__(self) -> None:
+        self._due_s = 0.0
+
+    def take(self, view_rgb: Image, image_ns: int, now_s: float) -> Thumbnail | None:
+        """Of a view of shape (height, width, 3); None where the last one is not old enough."""
+        if now_s < self._due_s:
+            return None
+        self._due_s = now_s + EVERY_S
+        small = cv2.resize(view_rgb, _SIZE_PX, interpolation=cv2.INTER_AREA)
+        _, jpeg = cv2.imencode(".jpg", small[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])
+        return Thumbnail(jpeg.tobytes(), image_ns)

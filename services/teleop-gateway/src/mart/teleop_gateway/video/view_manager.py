@@ -1,0 +1,117 @@
+"""The room's model, fetched once for each run of its sim, and the view that draws it."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from collections.abc import Set as AbstractSet
+
+from mart.protocol import codec, keys
+from mart.protocol.errors import MartError
+from mart.protocol.keys import DETAILED
+from mart.protocol.messages import Model, State
+from mart.runtime.bus.aio import AsyncBus
+from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.live_view import LiveView, Sink
+from mart.teleop_gateway.video.quality import Quality
+from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, load_room_model
+
+_log = logging.getLogger(__name__)
+
+_QUERY_TIMEOUT_S = 5.0
+_RETRY_S = 0.5
+
+
+class ViewManager:
+    """States go in from any thread; pictures come out at `sink`, on the view's thread.
+
+    `on_azimuth` is called on the event loop with the azimuth of the seat's camera whenever there is a new model.
+    """
+
+    def __init__(
+        self,
+        bus: AsyncBus,
+        room: str,
+        arm: str,
+        *,
+        sink: Sink,
+        on_azimuth: Callable[[float], None],
+        quality: Quality,
+    ) -> None:
+        self._bus, self._room, self._arm = bus, room, arm
+        self._sink, self._on_azimuth, self._quality = sink, on_azimuth, quality
+        self._boot = 0
+        self._sha256 = ""
+        self._codecs: frozenset[Codec] = frozenset()
+        self._view: LiveView | None = None
+        self._fetching: asyncio.Task[None] | None = None
+        self._stopping: asyncio.Future[None] | None = None  # the view before
+
+    def offer(self, state: State, received_ns: int) -> None:
+        view = self._view
+        if view is not None:
+            view.offer(state, received_ns)
+
+    def on_boot(self, boot: int) -> None:
+        """The sim has started anew, perhaps with another model. Call on the event loop."""
+        if boot == self._boot:
+            return
+        self._boot = boot
+        if self._fetching is not None:
+            self._fetching.cancel()
+        self._fetching = self._bus.spawn(self._fetch())
+
+    def set_codecs(self, codecs: AbstractSet[Codec]) -> None:
+        self._codecs = frozenset(codecs)
+        if self._view is not None:
+            self._view.set_codecs(self._codecs)
+
+    def request_keyframe(self, codec: Codec) -> None:
+        if self._view is not None:
+            self._view.request_keyframe(codec)
+
+    def frames_per_s(self) -> float:
+        return self._view.frames_per_s() if self._view is not None else 0.0
+
+    async def close(self) -> None:
+        """No picture comes after it."""
+        if self._fetching is not None:
+            self._fetching.cancel()
+        await self._replace(None)
+        if self._stopping is not None:  # where the fetching was replacing a view just then
+            await self._stopping
+
+    async def _fetch(self) -> None:
+        while True:
+            try:
+                answer = await self._bus.query(keys.model(self._room), self._wanted(), _QUERY_TIMEOUT_S)
+                message = codec.decode(Model, answer)
+                if message.sha256 != self._sha256:
+                    await self._use(message)
+            except MartError as error:
+                _log.warning("No picture of %s yet: %s", self._room, error)
+                await asyncio.sleep(_RETRY_S)
+            else:
+                return
+
+    def _wanted(self) -> bytes:
+        return DETAILED if self._quality.detailed else b""
+
+    async def _use(self, message: Model) -> None:
+        model = await asyncio.to_thread(load_room_model, message, self._quality)
+        azimuth_rad = camera_azimuth_rad(message, model, self._arm)
+        view = LiveView(model, self._arm, message.control_hz, self._sink, self._quality)
+        view.set_codecs(self._codecs)
+        await self._replace(view)
+        self._sha256 = message.sha256
+        self._on_azimuth(azimuth_rad)
+
+    async def _replace(self, view: LiveView | None) -> None:
+        before, self._view = self._view, None
+        if before is not None:
+            self._stopping = asyncio.ensure_future(asyncio.to_thread(before.stop))
+            await asyncio.shield(self._stopping)
+        if view is not None:
+            view.start()
+        self._view = view

@@ -1,0 +1,1 @@
+"""Connect browsers, phones and viewers to one seat."""

@@ -1,0 +1,138 @@
+"""One WebRTC peer of a seat: a browser, a phone or a viewer."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from typing import Protocol
+
+from aiortc import (
+    RTCConfiguration,
+    RTCDataChannel,
+    RTCIceServer,
+    RTCPeerConnection,
+    RTCRtpSender,
+    RTCSessionDescription,
+)
+
+from mart.protocol import clock
+from mart.protocol.errors import InvalidInput
+from mart.protocol.tokens import Role
+from mart.runtime.rate_limit import RateLimit
+from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.webrtc.aiortc_hooks import (
+    offer_playout_delay,
+    on_keyframe_request,
+    sent_codec,
+    show_at_once,
+)
+from mart.teleop_gateway.webrtc.track import EncodedTrack
+
+_log = logging.getLogger(__name__)
+
+MAX_SDP_CHARACTERS = 64 * 1024
+MAX_STATUS_PER_S = 50
+_STALE_BYTES = 4 * 1024  # a channel with this much waiting gets no more telemetry: the next is worth more
+_GONE = ("closed", "failed")
+
+
+class PeerListener(Protocol):
+    """Who is told what a peer does; always on the event loop."""
+
+    def on_pose(self, peer: Peer, payload: bytes) -> None: ...
+
+    def on_status(self, peer: Peer, text: str) -> None: ...
+
+    def on_keyframe_wanted(self, codec: Codec) -> None: ...
+
+    def on_gone(self, peer: Peer) -> None: ...
+
+
+class Peer:
+    """Answer its offer, then let it run; `close` ends it, also when it is already gone."""
+
+    def __init__(self, role: Role, listener: PeerListener, ice_servers: Sequence[str] = ()) -> None:
+        offer_playout_delay()
+        self.role = role
+        self.codec: Codec | None = None
+        self.track: EncodedTrack | None = None
+        self.clock_offset_ns: int | None = None  # gateway clock minus the peer's, once it has told
+        self.heard_s = clock.monotonic_s()
+        self._listener = listener
+        self._status_rate = RateLimit(MAX_STATUS_PER_S)
+        self._status: RTCDataChannel | None = None
+        # An empty list, or aiortc asks a public STUN server and waits for it.
+        self._connection = RTCPeerConnection(RTCConfiguration([RTCIceServer(url) for url in ice_servers]))
+        self._connection.on("datachannel", self._on_channel)
+        self._connection.on("connectionstatechange", self._on_state)
+
+    async def answer(self, offer_sdp: str) -> str:
+        """The answer's SDP; raises InvalidInput where the offer cannot be used. The peer is closed then."""
+        if len(offer_sdp) > MAX_SDP_CHARACTERS:
+            raise InvalidInput(
+                f"An offer of {len(offer_sdp)} characters was given; {MAX_SDP_CHARACTERS} are allowed."
+            )
+        try:
+            await self._negotiate(offer_sdp)
+        except Exception as error:  # a malformed SDP raises whatever the parser trips over
+            await self.close()
+            raise InvalidInput(f"An offer was given that cannot be answered: {error}") from error
+        return self._connection.localDescription.sdp
+
+    def send_status(self, text: str) -> None:
+        """Dropped where the channel is not open, or still busy with older ones."""
+        channel = self._status
+        if channel is not None and channel.readyState == "open" and channel.bufferedAmount < _STALE_BYTES:
+            channel.send(text)
+
+    async def close(self) -> None:
+        if self.track is not None:
+            self.track.stop()
+        await self._connection.close()
+
+    async def _negotiate(self, offer_sdp: str) -> None:
+        sender = self._add_video() if self.role is not Role.PHONE else None
+        await self._connection.setRemoteDescription(RTCSessionDescription(offer_sdp, "offer"))
+        await self._connection.setLocalDescription(await self._connection.createAnswer())
+        if sender is not None:
+            self.codec = Codec(sent_codec(self._connection.getTransceivers()[0]))
+
+    def _add_video(self) -> RTCRtpSender:
+        self.track = EncodedTrack(self._want_keyframe)
+        sender = self._connection.addTrack(self.track)
+        show_at_once(sender)
+        on_keyframe_request(sender, self._want_keyframe)
+        (transceiver,) = self._connection.getTransceivers()
+        codecs = RTCRtpSender.getCapabilities("video").codecs
+        order = {"video/H264": 0, "video/VP8": 1, "video/rtx": 2}
+        transceiver.setCodecPreferences(sorted(codecs, key=lambda codec: order[codec.mimeType]))
+        return sender
+
+    def _want_keyframe(self) -> None:
+        if self.codec is not None:
+            self._listener.on_keyframe_wanted(self.codec)
+
+    def _on_channel(self, channel: RTCDataChannel) -> None:
+        if channel.label == "pose" and self.role is not Role.VIEWER:
+            channel.on("message", self._on_pose)
+        elif channel.label == "status":
+            self._status = channel
+            channel.on("message", self._on_status)
+        else:
+            _log.warning("A %s opened a channel %r that it may not have", self.role, channel.label[:40])
+
+    def _on_pose(self, message: bytes | str) -> None:
+        self.heard_s = clock.monotonic_s()
+        self._listener.on_pose(self, message if isinstance(message, bytes) else message.encode())
+
+    def _on_status(self, message: bytes | str) -> None:
+        self.heard_s = clock.monotonic_s()
+        if self._status_rate.allows(self.heard_s):
+            self._listener.on_status(
+                self, message if isinstance(message, str) else message.decode(errors="replace")
+            )
+
+    def _on_state(self) -> None:
+        _log.debug("%s: %s", self.role, self._connection.connectionState)
+        if self._connection.connectionState in _GONE:
+            self._listener.on_gone(self)

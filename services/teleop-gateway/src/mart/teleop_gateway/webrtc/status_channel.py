@@ -1,0 +1,135 @@
+"""The status channel: JSON, one small object a message. docs/protocol.md, "Status channel"."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import Cue, RoomStatus, State, barrier_word, cue_from_word
+from mart.teleop_gateway.input.driving import Driving, InputDevice
+from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
+
+MAX_CHARACTERS = 1100  # one SCTP packet
+
+
+@dataclass(frozen=True)
+class PingMessage:
+    t_us: float
+
+
+@dataclass(frozen=True)
+class ClockMessage:
+    offset_ns: int
+
+
+@dataclass(frozen=True)
+class SeenMessage:
+    tick: int
+    t_us: float
+
+
+@dataclass(frozen=True)
+class SelectInputMessage:
+    input: InputDevice
+
+
+@dataclass(frozen=True)
+class CueMessage:
+    """press_us: when the key was pressed, on the peer's clock; it names the press, which is told several times."""
+
+    cue: Cue
+    press_us: float
+
+
+def parse(text: str | bytes) -> PingMessage | ClockMessage | SeenMessage | SelectInputMessage | CueMessage:
+    """Raises InvalidInput for anything else."""
+    if len(text) > MAX_CHARACTERS:
+        raise InvalidInput(
+            f"A status message of {len(text)} characters was given; {MAX_CHARACTERS} are allowed."
+        )
+    try:
+        message = json.loads(text)
+        match message:
+            case {"type": "ping", "t_us": t_us}:
+                return PingMessage(_finite(t_us))
+            case {"type": "clock", "offset_ns": offset_ns}:
+                return ClockMessage(int(_finite(offset_ns)))
+            case {"type": "seen", "tick": int(tick), "t_us": t_us}:
+                return SeenMessage(tick, _finite(t_us))
+            case {"type": "input", "input": name}:
+                return SelectInputMessage(InputDevice(name))
+            case {"type": "cue", "cue": str(word), "t_us": t_us}:
+                return CueMessage(cue_from_word(word), _finite(t_us))
+    except (ValueError, OverflowError, RecursionError) as error:
+        raise InvalidInput(f"A status message was given that cannot be read: {error}.") from error
+    raise InvalidInput("A status message was given that is none of ping, clock, seen, input and cue.")
+
+
+def pong(ping: PingMessage, gateway_ns: int) -> str:
+    return _text({"type": "pong", "t_us": ping.t_us, "gateway_ns": gateway_ns})
+
+
+def replaced() -> str:
+    """To a driving peer whose place a newer one of the same role takes: it need not try again by itself."""
+    return _text({"type": "replaced"})
+
+
+def ping(t_us: float) -> str:
+    return _text({"type": "ping", "t_us": t_us})
+
+
+def clock_offset(offset_ns: int) -> str:
+    return _text({"type": "clock", "offset_ns": offset_ns})
+
+
+def tick(
+    state: State,
+    room: RoomStatus,
+    driving: Driving,
+    now_s: float,
+    *,
+    frames_per_s: float,
+    latency: LatencySummary | None,
+) -> str:
+    """What a page shows, at most MAX_CHARACTERS long."""
+    sequence = next((arm.sequence for arm in state.arms if arm.arm == driving.arm), 0)
+    phone = driving.phone(now_s)
+    return _text(
+        {
+            "type": "tick",
+            "tick": state.tick,
+            "sequence": driving.frame_number(sequence) or 0,
+            "rtf": round(state.real_time_factor, 3),
+            "engaged": driving.engaged(now_s),
+            "gripper": round(driving.gripper, 3),
+            "holding": driving.holding,
+            "barrier": barrier_word(room.barrier),
+            "waiting": [{"arm": w.arm, "since_s": round(w.since_s, 2)} for w in room.waiting_for],
+            "input": driving.active.value,
+            "phone": phone and {"age_ms": round(1e3 * phone.age_s), "tracking": phone.tracking},
+            "rejected": dict(driving.rejected()),
+            "fps": round(frames_per_s, 1),
+            "latency": latency and _latency(latency),
+        }
+    )
+
+
+def _latency(summary: LatencySummary) -> dict[str, Any]:
+    return {
+        "p50_ms": round(summary.p50_ms, 1),
+        "p95_ms": round(summary.p95_ms, 1),
+        "stages": {name: round(ms, 1) for name, ms in zip(STAGES, summary.stages, strict=True)},
+    }
+
+
+def _text(message: dict[str, Any]) -> str:
+    return json.dumps(message, separators=(",", ":"), ensure_ascii=False)
+
+
+def _finite(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ValueError(f"{value!r} is no finite number")
+    return value

@@ -1,0 +1,146 @@
+"""The status channel says what docs/protocol.md says, fits one packet, and shrugs at nonsense."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import (
+    BARRIER_PHASE_STALLED,
+    CUE_WAIT,
+    ArmState,
+    RoomStatus,
+    State,
+    Waiting,
+)
+from mart.protocol.tasks import MAX_ARMS
+from mart.teleop_gateway.input.driving import Driving, InputDevice
+from mart.teleop_gateway.input.frame_validator import FrameRejection
+from mart.teleop_gateway.input.retarget import Retarget
+from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
+from mart.teleop_gateway.webrtc import status_channel
+from tests.teleop_gateway.input.strategies import phone_frame
+from tests.teleop_gateway.input.test_driving import HOME
+
+LATENCY = LatencySummary(
+    p50_ms=45.04, p95_ms=70.5, frames=300, stages=tuple(float(i) for i in range(len(STAGES)))
+)
+
+
+def driving() -> Driving:
+    driving = Driving("arm0", 7, 100, Retarget(0.0))
+    driving.connect(InputDevice.PHONE)
+    driving.receive(InputDevice.PHONE, phone_frame(41, gripper=0.25).encode(), HOME, 10.0, 0)
+    return driving
+
+
+def test_a_tick_message_tells_everything_a_page_shows() -> None:
+    state = State(
+        tick=182, real_time_factor=0.9987, arms=[ArmState(arm="arm1"), ArmState(arm="arm0", sequence=100)]
+    )
+    room = RoomStatus(barrier=BARRIER_PHASE_STALLED, waiting_for=[Waiting(arm="arm1", since_s=0.801)])
+    text = status_channel.tick(state, room, driving(), 10.016, frames_per_s=19.98, latency=LATENCY)
+    assert json.loads(text) == {
+        "type": "tick",
+        "tick": 182,
+        "sequence": 41,
+        "rtf": 0.999,
+        "engaged": False,
+        "gripper": 0.25,
+        "holding": False,
+        "barrier": "stalled",
+        "waiting": [{"arm": "arm1", "since_s": 0.8}],
+        "input": "phone",
+        "phone": {"age_ms": 16, "tracking": True},
+        "rejected": {},
+        "fps": 20.0,
+        "latency": {
+            "p50_ms": 45.0,
+            "p95_ms": 70.5,
+            "stages": dict(zip(STAGES, range(len(STAGES)), strict=True)),
+        },
+    }
+
+
+def test_the_longest_tick_message_fits_one_packet() -> None:
+    hand = driving()
+    hand._sources[InputDevice.PHONE].validator.rejected.update(dict.fromkeys(FrameRejection, 2**32))
+    waiting = [Waiting(arm=f"arm{i}", since_s=29.99) for i in range(MAX_ARMS)]
+    state = State(tick=2**32, real_time_factor=0.999, arms=[ArmState(arm="arm0", sequence=100)])
+    slow = LatencySummary(9999.94, 9999.94, 300, (1999.94,) * len(STAGES))
+    room = RoomStatus(barrier=BARRIER_PHASE_STALLED, waiting_for=waiting)
+    text = status_channel.tick(state, room, hand, 1e4, frames_per_s=119.9, latency=slow)
+    assert len(text.encode()) <= status_channel.MAX_CHARACTERS
+
+
+def test_nothing_is_made_up_before_there_is_anything() -> None:
+    said = json.loads(
+        status_channel.tick(
+            State(), RoomStatus(), Driving("arm0", 1, 1, Retarget(0.0)), 0.0, frames_per_s=0, latency=None
+        )
+    )
+    assert said["latency"] is None
+    assert said["phone"] is None
+    assert said["sequence"] == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('{"type":"ping","t_us":12.5}', status_channel.PingMessage(12.5)),
+        (
+            '{"type":"clock","offset_ns":1800000000000000000}',
+            status_channel.ClockMessage(1800000000000000000),
+        ),
+        ('{"type":"seen","tick":41,"t_us":12}', status_channel.SeenMessage(41, 12)),
+        ('{"type":"input","input":"keyboard"}', status_channel.SelectInputMessage(InputDevice.KEYBOARD)),
+        ('{"type":"cue","cue":"wait","t_us":7.5}', status_channel.CueMessage(CUE_WAIT, 7.5)),
+    ],
+)
+def test_what_peers_say_is_understood(text: str, message: object) -> None:
+    assert status_channel.parse(text) == message
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "null",
+        "[]",
+        "{",
+        "[" * 1000,
+        '{"type":"ping"}',
+        '{"type":"ping","t_us":"1"}',
+        '{"type":"ping","t_us":NaN}',
+        '{"type":"ping","t_us":true}',
+        '{"type":"clock","offset_ns":1e999}',
+        '{"type":"clock","offset_ns":1' + "0" * 400 + "}",
+        '{"type":"seen","tick":1.5,"t_us":1}',
+        '{"type":"input","input":"mind"}',
+        '{"type":"cue","cue":"hurry","t_us":1}',
+        '{"type":"cue","cue":["go"],"t_us":1}',
+        '{"type":"cue","cue":"go","t_us":true}',
+        '{"type":"tick"}',
+        '{"type":"ping","t_us":1,"more":"' + "x" * 1100 + '"}',
+    ],
+)
+def test_nonsense_is_refused(text: str) -> None:
+    with pytest.raises(InvalidInput):
+        status_channel.parse(text)
+
+
+@given(st.text(max_size=200) | st.binary(max_size=200))
+def test_noise_is_refused_in_words(noise: str | bytes) -> None:
+    with pytest.raises(InvalidInput):
+        status_channel.parse(noise)
+
+
+def test_a_ping_comes_back_as_it_was_sent() -> None:
+    ping = status_channel.parse(status_channel.ping(123456.75))
+    assert isinstance(ping, status_channel.PingMessage)
+    assert json.loads(status_channel.pong(ping, 42)) == {"type": "pong", "t_us": 123456.75, "gateway_ns": 42}
+    assert status_channel.parse(status_channel.clock_offset(-5)) == status_channel.ClockMessage(-5)
