@@ -56,7 +56,7 @@ test-compose: $(VENV)/.tools ## Build the images and collect an episode through 
 	@$(BIN)/pytest tests/compose
 
 .PHONY: check
-check: $(VENV)/.tools check-proto ## Check style, types, import rules, generated code and the repository's own rules
+check: $(VENV)/.tools check-proto docs ## Check style, types, import rules, generated code, the documentation and the repository's own rules
 	@$(BIN)/ruff check
 	@$(BIN)/ruff format --check
 	@$(BIN)/mypy
@@ -73,6 +73,17 @@ bench: $(addprefix bench-,$(BENCHMARKS)) ## Run every benchmark; results go to b
 
 bench-%: $(VENV)/.tools ## Run one benchmark, for example bench-barrier
 	@$(BIN)/python benchmarks/$(subst -,_,$*).py
+
+.PHONY: docs
+docs: $(VENV)/.tools ## Build the documentation site into build/site; every warning is an error
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
+.PHONY: dist
+dist: $(VENV)/.build ## Build a wheel of every part into dist, and see that each holds what its part does
+	@rm -rf dist $(addsuffix /build,$(PARTS))
+	@$(PIP) wheel --constraint constraints.txt --no-build-isolation --no-deps --wheel-dir dist $(addprefix ./,$(PARTS))
+	@rm -rf $(addsuffix /build,$(PARTS))
+	@$(BIN)/python tools/check_wheels.py dist
 
 .PHONY: proto
 proto: $(VENV)/.tools ## Generate the Python code of the protobuf schemas
@@ -98,7 +109,7 @@ constraints: ## Pin the newest versions of everything anew, from a real installa
 
 .PHONY: clean
 clean: ## Remove everything that was built or recorded by tests; recorded episodes stay
-	@rm -rf $(VENV) test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	@rm -rf $(VENV) build dist test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	@find protocol services platform -name '*.egg-info' -prune -exec rm -rf {} + -o -name '*.so' -delete
 
 .PHONY: help
