@@ -7,6 +7,8 @@ import os
 import pytest
 from hypothesis import settings
 
+from tests.support import processes
+
 # Tests in these folders are of the kind of that name; others are unit tests, unless they say `system` themselves.
 _FOLDERS = ("contract", "system", "browser", "compose")
 _KINDS = ("unit", *_FOLDERS)  # a broken unit explains a broken session, so units run first
@@ -29,6 +31,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         elif item.get_closest_marker("system") is None:
             item.add_marker("unit")
     items.sort(key=_rank)
+
+
+@pytest.hookimpl(tryfirst=True)  # before fixtures are made
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    processes.may_start = item.get_closest_marker("unit") is None
 
 
 def _rank(item: pytest.Item) -> int:

@@ -2,6 +2,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from mart.platform.doctor import examine
 from mart.protocol.settings import Settings
 from tests.support.processes import free_port, running_router, running_service
@@ -14,6 +16,7 @@ def test_without_a_router_it_says_how_to_start_one_and_looks_no_further(tmp_path
     assert "make run" in findings[-1].mend
 
 
+@pytest.mark.system
 def test_each_service_is_named_with_its_mend(tmp_path: Path) -> None:
     with (
         running_router() as endpoint,

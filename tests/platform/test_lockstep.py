@@ -24,6 +24,8 @@ from mart.protocol.messages import (
 )
 from tests.support.processes import running_router
 
+pytestmark = pytest.mark.system
+
 ROOMS = ("room-1", "room-2")
 
 

@@ -20,7 +20,7 @@ from tests.support.processes import free_port
 from tests.trainer.conftest import Recorded
 from tests.trainer.recorded import TASK
 
-pytestmark = pytest.mark.timeout(300)
+pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 _WAIT_S = 120.0
 
 

@@ -210,6 +210,7 @@ train.train(request, Path(sys.argv[1]), threading.Event(), lambda _: None)
 """
 
 
+@pytest.mark.system
 @pytest.mark.parametrize("killed_at", [2, 9])
 def test_killed_in_mid_checkpoint_nothing_torn_is_seen(
     episodes: Recorded, whole: dict[str, Tensor], tmp_path: Path, killed_at: int

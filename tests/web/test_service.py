@@ -20,6 +20,8 @@ from mart.protocol.messages import Event
 from tests.support.processes import Running, free_port, running_router, running_service, started
 from tests.web.room import Room
 
+pytestmark = pytest.mark.system
+
 
 @dataclass(frozen=True)
 class Web:
