@@ -21,6 +21,9 @@ PROTOC = $(BIN)/python -m grpc_tools.protoc --proto_path=$(PROTO_DIR) --python_o
 
 BENCHMARKS := $(subst _,-,$(filter-out report,$(basename $(notdir $(wildcard benchmarks/*.py)))))
 
+# Unit tests share nothing but the machine, so they run on every core; tests of real time have the machine for themselves.
+PYTEST_UNITS = $(BIN)/pytest --numprocesses auto --maxprocesses 8 --dist worksteal
+
 TASK ?=
 COMPOSE = $(shell docker compose version >/dev/null 2>&1 && echo docker compose || echo docker-compose)
 
@@ -48,8 +51,13 @@ down: ## Stop the containers; episodes, secrets and certificates stay in their v
 setup: $(VENV)/.tools ## Make .venv with every part and tool, and install missing system packages
 
 .PHONY: test
-test: $(VENV)/.tools ## Run every test but those that need a container engine
-	@$(BIN)/pytest
+test: $(VENV)/.tools ## Run every test but the repository's own rules and those that need a container engine
+	@$(PYTEST_UNITS) -m unit
+	@$(BIN)/pytest -m "not unit"
+
+.PHONY: test-fast
+test-fast: $(VENV)/.tools ## Run the quick unit tests: at most 90 s on two cores
+	@$(PYTEST_UNITS) -m "unit and not slow"
 
 .PHONY: test-compose
 test-compose: $(VENV)/.tools ## Build the images and collect an episode through the containers; needs an engine

@@ -105,6 +105,7 @@ def test_stacked_seeds_learn_what_they_would_alone(episodes: Recorded, tmp_path:
         torch.testing.assert_close(stacked[name], value, atol=2e-4, rtol=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["d-HBC", "BC", "Flow"])
 def test_two_episodes_are_learned_by_heart(episodes: Recorded, tmp_path: Path, model: str) -> None:
     changes = {

@@ -34,6 +34,7 @@ def arms() -> Iterator[ArmsEnv]:
         yield env
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("task", task_names())
 def test_gymnasiums_checker_is_content(task: str) -> None:
     env = gymnasium.make(gymnasium_id(task), **SMALL)
