@@ -57,6 +57,23 @@ def test_make_verbs_exist() -> None:
     assert offences == [], listed(offences)
 
 
+def test_tests_that_are_named_exist() -> None:
+    named = [
+        (relative(path), word.partition("::"))
+        for path in _DOCUMENTS
+        for line in re.findall(r"^\$ \.venv/bin/pytest (.*)$", path.read_text(), re.MULTILINE)
+        for word in shlex.split(line)
+        if word.startswith("tests/")
+    ]
+    assert named
+    offences = [
+        f"{document}: {file}{separator}{name}"
+        for document, (file, separator, name) in named
+        if not (ROOT / file).exists() or (name and f"def {name}(" not in (ROOT / file).read_text())
+    ]
+    assert offences == [], listed(offences)
+
+
 def test_the_readme_or_the_guides_name_every_verb_of_users() -> None:
     named = {verb for _, command in _NAMED if command.startswith("make ") for verb in _verbs(command)}
     assert {"run", "demo", "setup", "test", "check", "bench", "up", "down", "test-compose"} <= named
