@@ -19,6 +19,7 @@ DOCS = "docs"
 _BORROWED = {
     "CHANGELOG.md": "",
     "CONTRIBUTING.md": "",
+    "services/web/src/mart/web/static/icon.svg": "images",
     "services/web/src/mart/web/static/tasks/*.jpg": "images/tasks",
 }
 _DECISIONS = "decisions/*.md"
