@@ -23,6 +23,9 @@ PROTOC = $(BIN)/python -m grpc_tools.protoc --proto_path=$(PROTO_DIR) --python_o
 
 BENCHMARKS := $(subst _,-,$(filter-out report,$(basename $(notdir $(wildcard benchmarks/*.py)))))
 
+# Unit tests share nothing but the machine, so they run on every core; tests of real time have the machine for themselves.
+PYTEST_UNITS = $(BIN)/pytest --numprocesses auto --maxprocesses 8 --dist worksteal
+
 TASK ?=
 COMPOSE = $(shell docker compose version >/dev/null 2>&1 && echo docker compose || echo docker-compose)
 
@@ -50,15 +53,20 @@ down: ## Stop the containers; episodes, secrets and certificates stay in their v
 setup: $(VENV)/.tools ## Make .venv with every part and tool, and install missing system packages
 
 .PHONY: test
-test: $(VENV)/.tools ## Run every test but those that need a container engine
-	@$(BIN)/pytest
+test: $(VENV)/.tools ## Run every test but the repository's own rules and those that need a container engine
+	@$(PYTEST_UNITS) -m unit
+	@$(BIN)/pytest -m "not unit"
+
+.PHONY: test-fast
+test-fast: $(VENV)/.tools ## Run the quick unit tests: at most 90 s on two cores
+	@$(PYTEST_UNITS) -m "unit and not slow"
 
 .PHONY: test-compose
 test-compose: $(VENV)/.tools ## Build the images and collect an episode through the containers; needs an engine
 	@$(BIN)/pytest tests/compose
 
 .PHONY: check
-check: $(VENV)/.tools check-proto check-pages ## Check style, types, import rules, generated code and the repository's own rules
+check: $(VENV)/.tools check-proto check-pages docs ## Check style, types, import rules, generated code, the documentation and the repository's own rules
 	@$(BIN)/ruff check
 	@$(BIN)/ruff format --check
 	@$(BIN)/mypy
@@ -75,6 +83,17 @@ bench: $(addprefix bench-,$(BENCHMARKS)) ## Run every benchmark; results go to b
 
 bench-%: $(VENV)/.tools ## Run one benchmark, for example bench-barrier
 	@$(BIN)/python benchmarks/$(subst -,_,$*).py
+
+.PHONY: docs
+docs: $(VENV)/.tools ## Build the documentation site into build/site; every warning is an error
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
+.PHONY: dist
+dist: $(VENV)/.build ## Build a wheel of every part into dist, and see that each holds what its part does
+	@rm -rf dist $(addsuffix /build,$(PARTS))
+	@$(PIP) wheel --constraint constraints.txt --no-build-isolation --no-deps --wheel-dir dist $(addprefix ./,$(PARTS))
+	@rm -rf $(addsuffix /build,$(PARTS))
+	@$(BIN)/python tools/check_wheels.py dist
 
 .PHONY: proto
 proto: $(VENV)/.tools ## Generate the Python code of the protobuf schemas
@@ -109,7 +128,7 @@ constraints: ## Pin the newest versions of everything anew, from a real installa
 
 .PHONY: clean
 clean: ## Remove everything that was built or recorded by tests; recorded episodes stay
-	@rm -rf $(VENV) $(NODE) test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	@rm -rf $(VENV) $(NODE) build dist test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	@find protocol libraries services platform -name '*.egg-info' -prune -exec rm -rf {} + -o -name '*.so' -delete
 
 .PHONY: help

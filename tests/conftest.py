@@ -1,4 +1,4 @@
-"""What holds for every test: no MART_ setting from outside, and slow kinds last."""
+"""What holds for every test: one of the kinds, no MART_ setting from outside, and slow kinds last."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ from hypothesis import settings
 
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.ports import free_port
+from tests.support import processes
 
-# A broken unit explains a broken session, so units run first.
-_LAST = ("system", "browser", "compose")
+# Tests in these folders are of the kind of that name; others are unit tests, unless they say `system` themselves.
+_FOLDERS = ("contract", "system", "browser", "compose")
+_KINDS = ("unit", *_FOLDERS)  # a broken unit explains a broken session, so units run first
 
 
 def pytest_configure() -> None:
@@ -23,12 +25,24 @@ def pytest_configure() -> None:
         del os.environ[name]
 
 
+@pytest.hookimpl(tryfirst=True)  # before `-m` chooses
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    def rank(item: pytest.Item) -> int:
+    for item in items:
         folder = item.path.relative_to(config.rootpath / "tests").parts[0]
-        return _LAST.index(folder) + 1 if folder in _LAST else 0
+        if folder in _FOLDERS:
+            item.add_marker(folder)
+        elif item.get_closest_marker("system") is None:
+            item.add_marker("unit")
+    items.sort(key=_rank)
 
-    items.sort(key=rank)
+
+@pytest.hookimpl(tryfirst=True)  # before fixtures are made
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    processes.may_start = item.get_closest_marker("unit") is None
+
+
+def _rank(item: pytest.Item) -> int:
+    return next(rank for rank, kind in enumerate(_KINDS) if item.get_closest_marker(kind) is not None)
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import subprocess
 import tomllib
 from functools import cache
@@ -20,9 +21,20 @@ def tracked_files() -> tuple[Path, ...]:
     return tuple(path for path in paths if path.is_file())
 
 
+def files_named(*suffixes: str) -> tuple[Path, ...]:
+    """Every file of `tracked_files` whose name ends in one of `suffixes`."""
+    return tuple(path for path in tracked_files() if path.suffix in suffixes)
+
+
 def sources() -> tuple[Path, ...]:
     """The parts' Python files."""
-    return tuple(path for path in tracked_files() if path.suffix == ".py" and "src" in path.parts)
+    return tuple(path for path in files_named(".py") if "src" in path.parts)
+
+
+@cache
+def parsed(path: Path) -> ast.Module:
+    """The syntax tree of a Python file, read once for all rules."""
+    return ast.parse(path.read_text())
 
 
 def projects() -> dict[str, dict[str, Any]]:
@@ -32,4 +44,15 @@ def projects() -> dict[str, dict[str, Any]]:
 
 
 def relative(path: Path) -> str:
+    """The path as seen from the repository's top."""
     return str(path.relative_to(ROOT))
+
+
+def place(path: Path, node: ast.AST | None = None) -> str:
+    """`file:line`, as editors and terminals open it; the first line without a node."""
+    return f"{relative(path)}:{getattr(node, 'lineno', 1)}"
+
+
+def listed(offences: list[str]) -> str:
+    """What an assertion says: how many offences there are, and each on a line of its own."""
+    return f"{len(offences)} offences:\n" + "\n".join(offences)

@@ -1,50 +1,140 @@
-"""Rules about code that neither the linter nor import-linter can state."""
+"""Rules about code that neither the linter nor import-linter can state: each lists all that break it, as file:line."""
 
 from __future__ import annotations
 
 import ast
+from collections import defaultdict
 from collections.abc import Iterator
-from pathlib import Path
 
-import pytest
-
-from tests.contract.repository import relative, sources, tracked_files
+from tests.contract.repository import ROOT, files_named, listed, parsed, place, relative, sources
 
 _LONGEST_FILE_LINES = 300
 _LONGEST_FUNCTION_LINES = 60
 _CLOCK_READS = {"now", "utcnow", "today"}
 _CLOCK_FILE = "protocol/src/mart/protocol/clock.py"
+_PICKLING = {"pickle", "dill", "cloudpickle", "joblib", "marshal", "shelve"}
+_SKIPPING = {"skip", "skipif", "importorskip", "xfail"}
 
-_PYTHON = [path for path in tracked_files() if path.suffix == ".py"]
+# What is not mended yet: both lists only ever become shorter, and go when they are empty.
+_STILL_LONG = {"services/web/src/mart/web/static/css/training.css"}
+_STILL_AMBIGUOUS = {
+    "Answers",
+    "Arrival",
+    "Batch",
+    "Camera",
+    "Catalogue",
+    "Closed",
+    "Course",
+    "Crew",
+    "Ended",
+    "Episode",
+    "Finding",
+    "Grip",
+    "Guard",
+    "Hand",
+    "Intent",
+    "Judgement",
+    "Kind",
+    "Link",
+    "Listener",
+    "Options",
+    "Pairing",
+    "Person",
+    "Progress",
+    "RateLimit",
+    "Recorded",
+    "Rejection",
+    "Renderer",
+    "Room",
+    "RoomRecord",
+    "Rooms",
+    "Seen",
+    "Stage",
+    "Still",
+    "Stills",
+    "Summary",
+    "View",
+}
 
 
-def _nodes(path: Path) -> Iterator[ast.AST]:
-    return ast.walk(ast.parse(path.read_text()))
+def test_files_stay_short() -> None:
+    lengths = {
+        path: len(path.read_text().splitlines()) for path in files_named(".py", ".css", ".js", ".html", ".c")
+    }
+    long = {path: lines for path, lines in lengths.items() if lines > _LONGEST_FILE_LINES}
+    offences = [
+        f"{place(path)} has {lines} lines"
+        for path, lines in long.items()
+        if relative(path) not in _STILL_LONG
+    ]
+    assert offences == [], listed(offences)
 
 
-@pytest.mark.parametrize("path", _PYTHON, ids=relative)
-def test_files_and_functions_stay_short(path: Path) -> None:
-    assert len(path.read_text().splitlines()) <= _LONGEST_FILE_LINES
-    functions = (node for node in _nodes(path) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef))
-    lengths = {node.name: (node.end_lineno or node.lineno) - node.lineno + 1 for node in functions}
-    assert {name: lines for name, lines in lengths.items() if lines > _LONGEST_FUNCTION_LINES} == {}
+def test_functions_stay_short() -> None:
+    offences = [
+        f"{place(path, node)} {node.name} has {lines} lines"
+        for path in files_named(".py")
+        for node in ast.walk(parsed(path))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        and (lines := (node.end_lineno or node.lineno) - node.lineno + 1) > _LONGEST_FUNCTION_LINES
+    ]
+    assert offences == [], listed(offences)
 
 
-@pytest.mark.parametrize("path", sources(), ids=relative)
-def test_dates_come_from_the_clock_module(path: Path) -> None:
+def test_a_class_name_means_one_thing() -> None:
+    """Names of the parts' classes, private ones and generated messages excepted."""
+    places: defaultdict[str, list[str]] = defaultdict(list)
+    for path in sources():
+        for node in ast.walk(parsed(path)):
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                places[node.name].append(place(path, node))
+    offences = [
+        f"{name}: {', '.join(found)}"
+        for name, found in sorted(places.items())
+        if len(found) > 1 and name not in _STILL_AMBIGUOUS
+    ]
+    assert offences == [], listed(offences)
+
+
+def test_dates_come_from_the_clock_module() -> None:
     # `time` itself is forbidden by import-linter; datetime is needed to format, so only its clock reads are.
-    reads = [node for node in _nodes(path) if isinstance(node, ast.Attribute) and node.attr in _CLOCK_READS]
-    assert relative(path) == _CLOCK_FILE or [ast.unparse(node) for node in reads] == []
+    offences = [
+        f"{place(path, node)} reads {ast.unparse(node)}"
+        for path in sources()
+        if relative(path) != _CLOCK_FILE
+        for node in ast.walk(parsed(path))
+        if isinstance(node, ast.Attribute) and node.attr in _CLOCK_READS
+    ]
+    assert offences == [], listed(offences)
 
 
-@pytest.mark.parametrize("path", _PYTHON, ids=relative)
-def test_nothing_is_pickled(path: Path) -> None:
-    imported = {alias.name for node in _nodes(path) if isinstance(node, ast.Import) for alias in node.names}
-    imported |= {node.module for node in _nodes(path) if isinstance(node, ast.ImportFrom) and node.module}
-    assert imported & {"pickle", "dill", "cloudpickle", "joblib", "marshal", "shelve"} == set()
+def test_nothing_is_pickled() -> None:
+    offences = [
+        f"{place(path, node)} imports {name}"
+        for path in files_named(".py")
+        for node in ast.walk(parsed(path))
+        for name in _imported(node)
+        if name in _PICKLING
+    ]
+    assert offences == [], listed(offences)
 
 
-@pytest.mark.parametrize("path", [path for path in _PYTHON if "tests" in path.parts], ids=relative)
-def test_no_test_is_skipped(path: Path) -> None:
-    names = {node.attr for node in _nodes(path) if isinstance(node, ast.Attribute)}
-    assert names & {"skip", "skipif", "importorskip", "xfail"} == set()
+def test_no_test_is_skipped() -> None:
+    offences = [
+        f"{place(path, node)} {ast.unparse(node)}"
+        for path in files_named(".py")
+        if path.is_relative_to(ROOT / "tests")
+        for node in ast.walk(parsed(path))
+        if isinstance(node, ast.Attribute) and node.attr in _SKIPPING
+    ]
+    assert offences == [], listed(offences)
+
+
+def _imported(node: ast.AST) -> Iterator[str]:
+    match node:
+        case ast.Import():
+            yield from (alias.name for alias in node.names)
+        case ast.ImportFrom(module=str(module)):
+            yield module
+        case _:
+            pass

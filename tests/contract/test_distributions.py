@@ -6,6 +6,7 @@ import re
 import tomllib
 
 import pytest
+import yaml
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
@@ -38,6 +39,12 @@ def test_the_changelog_tells_the_version_that_every_part_has() -> None:
     assert {folder: project["version"] for folder, project in projects().items()} == dict.fromkeys(
         projects(), newest[1]
     )
+
+
+def test_what_is_cited_is_this_version() -> None:
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert {cited["version"]} == {project["version"] for project in projects().values()}
+    assert {cited["license"]} == {project["license"] for project in projects().values()}
 
 
 @pytest.mark.parametrize("folder", [*projects(), "tools"])

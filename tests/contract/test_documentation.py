@@ -7,15 +7,16 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import click
 import pytest
 
 from mart.runtime.cli import cli
-from tests.contract.repository import ROOT, relative, tracked_files
+from tests.contract.repository import ROOT, files_named, listed, relative
 
-_DOCUMENTS = [path for path in tracked_files() if path.suffix == ".md"]
+_DOCUMENTS = files_named(".md")
 _CONSOLE = re.compile(r"^```console\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _SPAN = re.compile(r"`((?:make|mart) [^`]+)`")
 _PYTHON = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -36,31 +37,46 @@ def _commands(path: Path) -> Iterator[str]:
 
 
 _NAMED = sorted({(relative(path), command) for path in _DOCUMENTS for command in _commands(path)})
-_MART = [pair for pair in _NAMED if pair[1].startswith("mart ")]
-_MAKE = [pair for pair in _NAMED if pair[1].startswith("make ")]
 
 
-@pytest.mark.parametrize(("document", "command"), _MART)
-def test_mart_commands_exist_with_their_options(document: str, command: str) -> None:
-    context, words = click.Context(cli, info_name="mart"), shlex.split(command)[1:]
-    while isinstance(context.command, click.Group) and words and not words[0].startswith("-"):
-        found = context.command.get_command(context, words[0])
-        assert found is not None, f"{document} names `{command}`, which does not exist"
-        context, words = click.Context(found, parent=context, info_name=words[0]), words[1:]
-    context.command.make_parser(context).parse_args(words)  # raises for an unknown option or a missing value
+def test_mart_commands_exist_with_their_options() -> None:
+    offences = [
+        f"{document}: `{command}`: {complaint}"
+        for document, command in _NAMED
+        if command.startswith("mart ") and (complaint := _complaint(command))
+    ]
+    assert offences == [], listed(offences)
 
 
-@pytest.mark.parametrize(("document", "command"), _MAKE)
-def test_make_verbs_exist(document: str, command: str) -> None:
-    verbs = [word for word in shlex.split(command)[1:] if "=" not in word]
-    subprocess.run(["make", "--dry-run", *verbs], cwd=ROOT, capture_output=True, check=True)
+def test_make_verbs_exist() -> None:
+    offences = [
+        f"{document}: `{command}`"
+        for document, command in _NAMED
+        if command.startswith("make ") and not all(map(_is_verb, _verbs(command)))
+    ]
+    assert offences == [], listed(offences)
 
 
-@pytest.mark.parametrize(
-    "verb", ["run", "demo", "setup", "test", "check", "bench", "up", "down", "test-compose"]
-)
-def test_the_readme_or_the_guides_name_every_verb(verb: str) -> None:
-    assert any(verb in command.split() for _, command in _MAKE)
+def test_tests_that_are_named_exist() -> None:
+    named = [
+        (relative(path), word.partition("::"))
+        for path in _DOCUMENTS
+        for line in re.findall(r"^\$ \.venv/bin/pytest (.*)$", path.read_text(), re.MULTILINE)
+        for word in shlex.split(line)
+        if word.startswith("tests/")
+    ]
+    assert named
+    offences = [
+        f"{document}: {file}{separator}{name}"
+        for document, (file, separator, name) in named
+        if not (ROOT / file).exists() or (name and f"def {name}(" not in (ROOT / file).read_text())
+    ]
+    assert offences == [], listed(offences)
+
+
+def test_the_readme_or_the_guides_name_every_verb_of_users() -> None:
+    named = {verb for _, command in _NAMED if command.startswith("make ") for verb in _verbs(command)}
+    assert {"run", "demo", "setup", "test", "check", "bench", "up", "down", "test-compose"} <= named
 
 
 _RUNNABLE = [(path, block) for path in _DOCUMENTS for block in _PYTHON.findall(path.read_text())]
@@ -74,7 +90,39 @@ def test_python_examples_run(path: Path, block: str, tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-W", "error", "-c", block], cwd=tmp_path, check=True)
 
 
-@pytest.mark.parametrize("path", _DOCUMENTS, ids=relative)
-def test_links_lead_somewhere(path: Path) -> None:
-    targets = _LINK.findall(path.read_text())
-    assert [target for target in targets if not (path.parent / target).exists()] == []
+def test_links_lead_somewhere() -> None:
+    offences = [
+        f"{relative(path)}:{number} {target}"
+        for path in _DOCUMENTS
+        for number, line in enumerate(path.read_text().splitlines(), 1)
+        for target in _LINK.findall(line)
+        if not (path.parent / target).exists()
+    ]
+    assert offences == [], listed(offences)
+
+
+def _complaint(command: str) -> str:
+    """What is wrong with a `mart` command line: a command, an option or a missing value; empty where nothing is."""
+    context, words = click.Context(cli, info_name="mart"), shlex.split(command)[1:]
+    while isinstance(context.command, click.Group) and words and not words[0].startswith("-"):
+        found = context.command.get_command(context, words[0])
+        if found is None:
+            return f"there is no {words[0]!r}"
+        context, words = click.Context(found, parent=context, info_name=words[0]), words[1:]
+    try:
+        context.command.make_parser(context).parse_args(words)
+    except click.UsageError as error:
+        return error.format_message()
+    return ""
+
+
+def _verbs(command: str) -> set[str]:
+    return {word for word in shlex.split(command)[1:] if "=" not in word}
+
+
+@cache
+def _is_verb(word: str) -> bool:
+    return (
+        subprocess.run(["make", "--dry-run", word], cwd=ROOT, capture_output=True, check=False).returncode
+        == 0
+    )

@@ -28,6 +28,8 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.ports import free_port
 
+may_start = True  # set for each test by tests/conftest.py
+
 _START_TIMEOUT_S = 60.0
 _STOP_TIMEOUT_S = 30.0
 _MART = Path(sys.executable).with_name("mart")
@@ -112,6 +114,7 @@ def started(
     command: Sequence[str], endpoint: str, data_dir: Path | None, environment: Mapping[str, str] | None = None
 ) -> Iterator[Running]:
     """Starts `mart {command}` without waiting for anything: for commands that end by themselves."""
+    assert may_start, "A unit test starts no processes: mark it with `pytest.mark.system`."
     with tempfile.TemporaryDirectory() as folder:
         log_path = Path(folder) / f"{command[0]}.log"
         with log_path.open("wb") as log:

@@ -37,6 +37,8 @@ from tests.support.mailbox import Mailbox
 from tests.support.processes import Running, running_router, running_service
 from tests.teleop_gateway.browser import Exchange, connected, in_background
 
+pytestmark = pytest.mark.system
+
 ROOM = "room-1"
 
 

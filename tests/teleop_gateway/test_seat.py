@@ -18,6 +18,8 @@ from tests.support.mailbox import Mailbox
 from tests.teleop_gateway.browser import Browser, connected
 from tests.teleop_gateway.room import OnSeat, SeatUnderTest
 
+pytestmark = pytest.mark.system
+
 WAIT_S = 30.0
 
 # Offers

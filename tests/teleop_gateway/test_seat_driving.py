@@ -18,6 +18,8 @@ from tests.support.mailbox import Mailbox
 from tests.teleop_gateway.browser import connected, in_background
 from tests.teleop_gateway.room import OnSeat, SeatUnderTest
 
+pytestmark = pytest.mark.system
+
 
 def test_a_hand_moves_the_arm(on_seat: OnSeat) -> None:
     async def body(seat: SeatUnderTest) -> None:

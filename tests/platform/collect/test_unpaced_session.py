@@ -24,6 +24,8 @@ from mart.runtime.bus import Bus, Request
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from tests.support.processes import running_router
 
+pytestmark = pytest.mark.system
+
 ROOMS = ("room-1", "room-2")
 
 

@@ -2,6 +2,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from mart.platform.inspect.doctor import examine
 from mart.runtime.ports import free_port
 from mart.runtime.settings import Settings
@@ -15,6 +17,7 @@ def test_without_a_router_it_says_how_to_start_one_and_looks_no_further(tmp_path
     assert "make run" in findings[-1].mend
 
 
+@pytest.mark.system
 def test_each_service_is_named_with_its_mend(tmp_path: Path) -> None:
     with (
         running_router() as endpoint,

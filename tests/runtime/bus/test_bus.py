@@ -199,6 +199,7 @@ def test_a_client_that_does_not_wait_says_that_there_is_no_router() -> None:
         ZenohBus.connect(f"tcp/127.0.0.1:{free_port()}", wait_for_router=False)
 
 
+@pytest.mark.system
 def test_a_router_that_says_nothing_is_not_a_system_without_services() -> None:
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     command = ["router", "--listen", endpoint]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import queue
 from concurrent.futures import ThreadPoolExecutor
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -82,6 +83,7 @@ def test_only_the_newest_answers_and_no_large_ones_are_remembered() -> None:
     assert do(numbers[0], b"")
 
 
+@pytest.mark.system
 def test_a_request_whose_answer_is_lost_with_the_router_is_done_once() -> None:
     port, topic = free_port(), keys.seat("room-1")
     endpoint = f"tcp/127.0.0.1:{port}"

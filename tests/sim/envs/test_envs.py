@@ -37,6 +37,7 @@ def arms() -> Iterator[ArmsEnv]:
         yield env
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("task", task_names())
 def test_gymnasiums_checker_is_content(task: str) -> None:
     register_envs()

@@ -16,6 +16,7 @@ def worlds() -> dict[str, World]:
     return {task: World.build(task) for task in (TRAY, WIPING)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("task", "longest_s"), [(TRAY, 7.0), (WIPING, 16.0)])
 def test_experts_succeed(worlds: dict[str, World], task: str, longest_s: float) -> None:
     for seed in range(3):

@@ -58,6 +58,7 @@ def perform(world: World, seed: int, skill: str, late_ticks: int = 0, most_ticks
     return Ended(False, most_ticks, max(closings.values()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("skill", skill_names())
 @pytest.mark.parametrize("late_ticks", [0, 4])
 def test_experts_succeed_even_when_they_see_late(
@@ -70,6 +71,7 @@ def test_three_experts_share_a_world(worlds: dict[int, World]) -> None:
     assert perform(worlds[3], 0, "expert").success
 
 
+@pytest.mark.slow
 def test_better_skill_is_faster(worlds: dict[int, World]) -> None:
     means = [np.mean([perform(worlds[2], seed, skill).ticks for seed in range(3)]) for skill in skill_names()]
     assert means[0] * 1.2 < means[1]
@@ -77,6 +79,7 @@ def test_better_skill_is_faster(worlds: dict[int, World]) -> None:
     assert means[0] < 100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("skill", "least", "most"), [("expert", 16, 16), ("average", 11, 16), ("novice", 4, 13)]
 )

@@ -95,6 +95,7 @@ def test_the_tremor_is_as_wide_as_the_skill_says_at_every_tick_rate(tick_s: floa
     assert float(np.std(targets - START.position)) == pytest.approx(get_skill("novice").tremor_m, rel=0.25)
 
 
+@pytest.mark.slow
 def test_novices_overshoot_and_correct_experts_hardly() -> None:
     def furthest_m(skill: str) -> float:
         found = []

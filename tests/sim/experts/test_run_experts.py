@@ -11,6 +11,7 @@ from mart.sim.experts.run_experts import run_experts
 from mart.sim.world import World
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arms", [3, 4])
 def test_three_and_four_arms_work_side_by_side(arms: int) -> None:
     world = World.build("two_arm_multi_cube_lifting", arms=arms)

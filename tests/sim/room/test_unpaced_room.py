@@ -124,6 +124,7 @@ def test_the_event_tells_what_holds_here(world: World) -> None:
     assert len(states) == 41
 
 
+@pytest.mark.slow
 def test_the_same_number_gives_the_same_episode_whatever_came_before(world: World) -> None:
     one, other = RoomHarness(world, "novice"), RoomHarness(world, "novice")
     one.play(1)

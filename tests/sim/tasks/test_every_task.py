@@ -18,6 +18,7 @@ def watched(request: pytest.FixtureRequest) -> Watched:
     return watch(World.build(request.param), seed=4)
 
 
+@pytest.mark.slow
 def test_it_replays_to_the_same_bits_from_any_state_of_it(watched: Watched) -> None:
     """What has happened so far is part of the state: dirt that was wiped away, a hammer that was handed over."""
     replica = World.build(watched.task)
@@ -31,6 +32,7 @@ def test_it_replays_to_the_same_bits_from_any_state_of_it(watched: Watched) -> N
     assert replica.progress().subtasks == watched.progress.subtasks
 
 
+@pytest.mark.slow
 def test_no_moment_of_a_grasp_is_dear(watched: Watched) -> None:
     """In counts, which are the same on every machine: rows of the constraint problem, iterations of its solver."""
     assert max(watched.constraint_rows) < 200

@@ -49,10 +49,12 @@ def test_the_page_names_each_file_that_it_shows() -> None:
     assert [name for name in _FILES if _PAGE.count(name) < 2 and not name.startswith("tests/")] == []
 
 
+@pytest.mark.system
 def test_its_own_test_passes(followed: Path) -> None:
     pytest_there(followed, *(name for name in _FILES if name.startswith("tests/")))
 
 
+@pytest.mark.system
 def test_what_holds_for_every_task_holds_for_this_one(followed: Path) -> None:
     pytest_there(followed, *_CHECKERS.split(), "-k", "two_arm_press_buttons")
 

@@ -70,6 +70,7 @@ def test_success_is_held_for_one_and_a_half_seconds(world: World) -> None:
     assert world.task.success_hold_ticks * world.control_period_s == pytest.approx(1.5)
 
 
+@pytest.mark.slow
 def test_a_lifted_tray_is_held_for_half_a_minute_by_friction_alone(world: World) -> None:
     run_experts(world, 0)
     targets = {arm: world.tool_pose_in_base(arm) for arm in world.arms}

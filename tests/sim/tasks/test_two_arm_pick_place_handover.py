@@ -122,6 +122,7 @@ def test_what_cannot_be_mended_ends_it(
     assert world.progress().failed == failed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arm", ["arm0", "arm1"])
 def test_a_hammer_is_held_for_half_a_minute_at_either_end_by_friction_alone(world: World, arm: str) -> None:
     up = raised(grip_in_the_air(world, (arm,)), (arm,), 0.05)
@@ -133,6 +134,7 @@ def test_a_hammer_is_held_for_half_a_minute_at_either_end_by_friction_alone(worl
     assert radians < 0.05
 
 
+@pytest.mark.slow
 def test_the_lid_is_held_for_half_a_minute_by_friction_alone(world: World) -> None:
     world.reset(0)
     up = raised(grip(world, {"arm0": pose_of(world, "lid").transform_points(LID_KNOB)}), ("arm0",), 0.1)
@@ -149,6 +151,7 @@ def test_arm_0_reaches_no_bin_and_arm_1_no_container(world: World) -> None:
         assert world.task.workspace.clamp(near).distance_to(near)[0] > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("control_hz", [20.0, 30.0, 60.0])
 def test_experts_hand_it_over_at_every_rate(control_hz: float) -> None:
     assert run_experts(World.build(TASK, control_hz), seed=1, until_s=30.0).success

@@ -109,6 +109,7 @@ def test_what_cannot_be_mended_ends_it(
     assert world.progress().failed == failed
 
 
+@pytest.mark.slow
 @given(
     yaw_rad=st.floats(-math.pi, math.pi),
     lean_rad=st.floats(-0.2, 0.2),
@@ -141,6 +142,7 @@ def test_a_column_that_lies_rises_when_it_is_lifted_by_its_neck(world: World, ya
     assert pose_of(world, "column0").rotation_matrix()[2, 2] > 0.98
 
 
+@pytest.mark.slow
 def test_a_column_is_held_for_half_a_minute_by_friction_alone(world: World) -> None:
     world.reset(3)
     held = grip(world, {"arm0": pose_of(world, "column0").transform_points(NECK)})
@@ -153,6 +155,7 @@ def test_a_column_is_held_for_half_a_minute_by_friction_alone(world: World) -> N
     assert radians < 0.03
 
 
+@pytest.mark.slow
 def test_both_arms_hold_the_tabletop_up_for_half_a_minute(world: World) -> None:
     world.reset(5)
     top = pose_of(world, "tabletop")
@@ -184,6 +187,7 @@ def test_neither_arm_reaches_the_other_s_knob_or_socket(world: World) -> None:
         assert world.task.workspace.clamp(knob).distance_to(knob)[0] > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("control_hz", [20.0, 30.0, 60.0])
 def test_experts_assemble_it_at_every_rate(control_hz: float) -> None:
     assert run_experts(World.build(TASK, control_hz), seed=1, until_s=25.0).success

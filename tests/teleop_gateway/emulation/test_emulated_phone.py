@@ -17,6 +17,8 @@ from mart.teleop_gateway.emulation.network_emulation import LinkProfile
 from tests.teleop_gateway.browser import connected, in_background
 from tests.teleop_gateway.room import OnSeat, SeatUnderTest
 
+pytestmark = pytest.mark.system
+
 
 def phone_of(seat: SeatUnderTest, link: LinkProfile | None = None) -> EmulatedPhone:
     exchange = seat.exchange(Role.PHONE)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -40,6 +41,7 @@ def test_one_too_many_stays_refused_though_its_copies_come_later() -> None:
     assert presses.admit(99.0, 5.0)
 
 
+@pytest.mark.system
 def test_a_seat_says_it_once_and_only_for_who_drives(on_seat: OnSeat) -> None:
     async def body(seat: SeatUnderTest) -> None:
         with Mailbox(seat.bus.bus, keys.event(seat.room.name).key, Event) as events:

@@ -105,6 +105,7 @@ def test_a_keyframe_comes_soon_also_while_the_world_rests(watched: Watched, worl
     assert clock.monotonic_s() - start_s < KEYFRAME_EVERY_S  # when one would have come anyway
 
 
+@pytest.mark.slow
 def test_a_resting_world_is_sent_again_with_a_keyframe_now_and_then(watched: Watched, world: World) -> None:
     watched.view.offer(state(world, 7), 0)
     start_s = clock.monotonic_s()

@@ -67,6 +67,7 @@ def test_each_seat_sees_its_arm_from_its_own_side(
         assert azimuth_rad == pytest.approx(math.atan2(in_base[1], in_base[0]), abs=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quality", QUALITIES.values(), ids=QUALITIES)
 def test_every_quality_draws_without_a_gpu_and_tells_the_tick(
     model_message: Model, world: World, quality: Quality
@@ -80,6 +81,7 @@ def test_every_quality_draws_without_a_gpu_and_tells_the_tick(
     assert picture[: quality.view_height_px].std() > 10
 
 
+@pytest.mark.slow
 def test_full_quality_casts_shadows_and_smooths_edges(model_message: Model, world: World) -> None:
     """At the same size, so that nothing else differs."""
     pictures = []
@@ -94,6 +96,7 @@ def test_full_quality_casts_shadows_and_smooths_edges(model_message: Model, worl
     assert 0.01 < darker.mean() < 0.3
 
 
+@pytest.mark.slow
 def test_detailed_meshes_show_the_same_world(world: World) -> None:
     detailed = World.build(world.task.name, detail="detailed")
     message = Model(mjb=detailed.model_bytes(), sha256=detailed.model_sha256, task=world.task.name)

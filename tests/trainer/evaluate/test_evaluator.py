@@ -158,6 +158,7 @@ def test_a_checkpoint_knows_its_run(run: RunDirectory, tmp_path: Path) -> None:
     assert run_of(tmp_path) is None
 
 
+@pytest.mark.system
 def test_the_command_judges_a_checkpoint_and_starts_its_own_worlds(run: RunDirectory) -> None:
     words = ["--checkpoint", str(run.checkpoint(20, 0)), "--episodes", "2", "--time-limit", "0.5", "--json"]
     found = json.loads(CliRunner().invoke(evaluate, words, catch_exceptions=False).output)["evaluations"]

@@ -21,7 +21,7 @@ from mart.trainer.train.spec import TrainingSpec
 from tests.trainer.conftest import Recorded
 from tests.trainer.recorded import TASK
 
-pytestmark = pytest.mark.timeout(300)
+pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 _WAIT_S = 120.0
 
 

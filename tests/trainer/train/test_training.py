@@ -107,6 +107,7 @@ def test_stacked_seeds_learn_what_they_would_alone(episodes: Recorded, tmp_path:
         torch.testing.assert_close(stacked[name], value, atol=2e-4, rtol=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["d-HBC", "BC", "Flow"])
 def test_two_episodes_are_learned_by_heart(episodes: Recorded, tmp_path: Path, model: str) -> None:
     changes = {
@@ -212,6 +213,7 @@ training.train(spec, Path(sys.argv[1]), threading.Event(), lambda _: None)
 """
 
 
+@pytest.mark.system
 @pytest.mark.parametrize("killed_at", [2, 9])
 def test_killed_in_mid_checkpoint_nothing_torn_is_seen(
     episodes: Recorded, whole: dict[str, Tensor], tmp_path: Path, killed_at: int

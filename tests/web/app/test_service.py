@@ -21,6 +21,8 @@ from mart.runtime.ports import free_port
 from tests.support.processes import Running, running_router, running_service, started
 from tests.web.room import Room
 
+pytestmark = pytest.mark.system
+
 
 @dataclass(frozen=True)
 class Web:

@@ -36,9 +36,8 @@ from tests.support.processes import Running, running_router, running_service, st
 from tests.trainer.conftest import Recorded
 from tests.trainer.recorded import TASK
 
-pytestmark = pytest.mark.timeout(
-    300
-)  # every job begins with importing torch, which takes its time on a busy machine
+# Every job begins with importing torch, which takes its time on a busy machine.
+pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 
 _WAIT_S = 120.0
 _BETWEEN_S = 0.1

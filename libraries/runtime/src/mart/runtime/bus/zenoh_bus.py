@@ -220,6 +220,7 @@ def _open(settings: dict[str, Any], endpoint: str) -> zenoh.Session:
     common = {
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
+        "scouting/delay": 0,  # ms; else a router waits half a second for others, although it looks for none
         "transport/link/tx/lease": _LEASE_MS,
         "transport/link/tx/keep_alive": _SIGNS_OF_LIFE_A_LEASE,
         "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2},
