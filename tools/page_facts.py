@@ -15,17 +15,18 @@ from google.protobuf.descriptor import Descriptor, EnumDescriptor, FieldDescript
 from google.protobuf.message import Message
 from pydantic import BaseModel
 
-from mart.platform.opening import CONTROL_HZ, MAX_EPISODES
+from mart.platform.run.room_manager import MAX_EPISODES
+from mart.protocol.control_rate import OFFERED_CONTROL_HZ
 from mart.protocol.tasks import MAX_ARMS, Arm, get_task
-from mart.trainer.grid import PAPER, Model
-from mart.trainer.presets import PRESETS
+from mart.trainer.models.architecture import PAPER, ModelSpec
+from mart.trainer.train.presets import PRESETS
 from mart.v1.catalogue_pb2 import CatalogueReply
 from mart.v1.command_pb2 import Operator
 from mart.v1.room_pb2 import BarrierPhase, Cue, EpisodePhase, Outcome
 from mart.v1.trainer_pb2 import JobState, Policy, TrainerReply
-from mart.web.routes.episodes import Saying
-from mart.web.routes.rooms import NewRoom
-from mart.web.routes.training import Submission
+from mart.web.api.episodes import LabelRequest
+from mart.web.api.rooms import NewRoom
+from mart.web.api.training import Submission
 
 _WEB = Path(__file__).resolve().parents[1] / "services/web"
 _STATIC = _WEB / "src/mart/web/static"
@@ -64,17 +65,17 @@ def _module() -> Iterator[str]:
 
 def _facts() -> Iterator[tuple[str, str, object]]:
     """What each fact is, its name in JavaScript, and its value."""
-    axes = {axis: get_args(Model.model_fields[axis].annotation) for axis in _AXES}
+    axes = {axis: get_args(ModelSpec.model_fields[axis].annotation) for axis in _AXES}
     yield "The arms that a task may have.", "ARMS", [arm.name for arm in _arms()]
     yield "The shape that stands for each arm.", "ARM_SYMBOLS", {arm.name: arm.symbol for arm in _arms()}
     yield "What partners can say by one press, in the order of the keys.", "CUES", _words(Cue.DESCRIPTOR)
-    yield "Model architectures: who can plan, who can act, who can correct.", "MODEL_AXES", axes
+    yield "ModelSpec architectures: who can plan, who can act, who can correct.", "MODEL_AXES", axes
     yield "The paper's models, in the order of its table.", "PAPER_MODELS", list(PAPER)
     yield "Sizes of a training, the smallest first.", "PRESETS", list(PRESETS)
-    yield "Control rates that a room may have, ticks a second.", "CONTROL_RATES_HZ", list(CONTROL_HZ)
+    yield "Control rates that a room may have, ticks a second.", "CONTROL_RATES_HZ", list(OFFERED_CONTROL_HZ)
     yield "Good episodes that a room may plan at most.", "MAX_PLANNED_EPISODES", MAX_EPISODES
     yield "Characters of a name of a room, at most.", "MAX_NAME_LENGTH", _most(NewRoom, "room")
-    yield "Characters of a note about an episode, at most.", "MAX_NOTE_LENGTH", _most(Saying, "note")
+    yield "Characters of a note about an episode, at most.", "MAX_NOTE_LENGTH", _most(LabelRequest, "note")
     yield "Seeds of a training, at most.", "MAX_SEEDS", _most(Submission, "seeds")
     yield "Rollouts of a checkpoint, at most.", "MAX_ROLLOUTS", _most(Submission, "evaluation_episodes")
 

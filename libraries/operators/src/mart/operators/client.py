@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from mart.operators.claim import ClaimedSeats, claimed_seats
 from mart.operators.commander import SeatCommander
-from mart.operators.driver import SeatAssignment, SeatDriver
+from mart.operators.driver import SeatSelection, SeatDriver
 from mart.operators.episode_follower import EpisodeFollower
 from mart.operators.operator import Operator
 from mart.operators.room_client import RoomClient
@@ -61,9 +61,9 @@ def drive_seats(
         stack.enter_context(announced(Service(ServiceKind.OPERATE, holder_id, bus, stop)))
         client = RoomClient(bus, room)
         seats = stack.enter_context(claimed_seats(client, arms, holder_id, name))
-        assignment = ProgramAssignment(seats, name, _maker(TimeLimitedOperator(operator, time_limit_s), arms))
+        selection = ProgramSeats(seats, name, _maker(TimeLimitedOperator(operator, time_limit_s), arms))
         session = _Session(client, arms[0], holder_id, episodes, fill_with_scripts)
-        drive_claimed(SeatDriver(bus, room, assignment), seats, room, stop, session.follow)
+        drive_claimed(SeatDriver(bus, room, selection), seats, room, stop, session.follow)
         return session.outcomes
 
 
@@ -92,7 +92,7 @@ def drive_claimed(
                 raise Unavailable(f"{room} has said nothing for {ROOM_SILENCE_S:g} s; see `mart rooms`.")
 
 
-class ProgramAssignment(SeatAssignment[str]):
+class ProgramSeats(SeatSelection[str]):
     """Assign the seats that were claimed for one program to it."""
 
     kind = ServiceKind.OPERATE
@@ -103,16 +103,16 @@ class ProgramAssignment(SeatAssignment[str]):
         self._seats, self._name, self._make = seats, name, make
 
     def assigned(self, room: str, status: RoomStatus) -> Mapping[str, Mapping[str, int]]:
-        """Return the seats that are held now; see `SeatAssignment`."""
+        """Return the seats that are held now; see `SeatSelection`."""
         epochs = self._seats.held(status)
         return {self._name: epochs} if epochs else {}
 
     def commanders(self, key: str, status: RoomStatus) -> Sequence[SeatCommander]:
-        """Return the program's commanders; see `SeatAssignment`."""
+        """Return the program's commanders; see `SeatSelection`."""
         return self._make(status)
 
     def name_of(self, key: str) -> str:
-        """Return the program's name; see `SeatAssignment`."""
+        """Return the program's name; see `SeatSelection`."""
         return key
 
 

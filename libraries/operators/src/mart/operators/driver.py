@@ -27,7 +27,7 @@ _log = logging.getLogger(__name__)
 K = TypeVar("K", bound=Hashable)
 
 
-class SeatAssignment(ABC, Generic[K]):
+class SeatSelection(ABC, Generic[K]):
     """Say which seats are driven here, and by what. `K` names what drives together: an arm, a checkpoint, a program."""
 
     kind: ServiceKind  # who speaks when a seat is given up
@@ -67,11 +67,11 @@ class _DrivenSeats:
 
 
 class SeatDriver(Generic[K]):
-    """Drive every seat that an assignment names. What cannot drive is told to the room, and its seats are given up."""
+    """Drive every seat that an selection names. What cannot drive is told to the room, and its seats are given up."""
 
-    def __init__(self, bus: Bus, room: str | None, assignment: SeatAssignment[K]) -> None:
+    def __init__(self, bus: Bus, room: str | None, selection: SeatSelection[K]) -> None:
         """`room`: this one alone; None: every room."""
-        self._bus, self._assignment = bus, assignment
+        self._bus, self._selection = bus, selection
         self._driven: dict[tuple[str, K], _DrivenSeats] = {}
         self._failed: dict[tuple[str, K], Mapping[str, int]] = {}  # with the epochs that were given up
         self._watch = RoomWatch(bus, room)
@@ -99,7 +99,7 @@ class SeatDriver(Generic[K]):
         return statuses
 
     def _follow_seats(self, room: str, status: RoomStatus) -> None:
-        wanted = self._assignment.assigned(room, status)
+        wanted = self._selection.assigned(room, status)
         for place in [place for place in self._driven if place[0] == room and place[1] not in wanted]:
             self._driven.pop(place).close()
         for key, epochs in wanted.items():
@@ -120,10 +120,10 @@ class SeatDriver(Generic[K]):
 
     def _drive(self, place: tuple[str, K], status: RoomStatus) -> _DrivenSeats:
         room, key = place
-        commanders = self._assignment.commanders(key, status)
+        commanders = self._selection.commanders(key, status)
         arms = [arm for commander in commanders for arm in commander.arms]
         return _DrivenSeats(
-            commanders, {arm: self._bus.publisher(self._assignment.topic(room, arm)) for arm in arms}
+            commanders, {arm: self._bus.publisher(self._selection.topic(room, arm)) for arm in arms}
         )
 
     def _show(self, room: str, state: State) -> None:
@@ -154,9 +154,9 @@ class SeatDriver(Generic[K]):
 
     def _give_up(self, place: tuple[str, K], epochs: Mapping[str, int], error: MartError) -> None:
         room, key = place
-        text = f"{self._assignment.name_of(key)} left its seat: {error}"
+        text = f"{self._selection.name_of(key)} left its seat: {error}"
         notice = Event.Notice(level="error", text=text)
-        setattr(notice, "from", self._assignment.kind)  # a keyword in Python
+        setattr(notice, "from", self._selection.kind)  # a keyword in Python
         _log.error("%s: %s", room, text)
         with contextlib.closing(self._bus.publisher(keys.event(room))) as publisher:
             publisher.put(codec.encode(Event(wall_ns=clock.wall_ns(), room=room, notice=notice)))

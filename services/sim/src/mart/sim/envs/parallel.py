@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 from gymnasium.utils import seeding
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pettingzoo import ParallelEnv
 
 from mart.protocol.batch_state import ACTION_SIZE
@@ -87,7 +87,7 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
         return self._seen(result), self._infos(result)
 
     def step(
-        self, actions: Mapping[str, NDArray[np.float32]]
+        self, actions: Mapping[str, ArrayLike]
     ) -> tuple[dict[str, Observations], dict[str, float], dict[str, bool], dict[str, bool], Infos]:
         """Advance one control period. Raises InvalidInput where an arm has no action: the world waits for every arm."""
         result = self._runner.step(self._together(actions))
@@ -115,7 +115,7 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
         """Let the renderer go."""
         self._runner.close()
 
-    def _together(self, actions: Mapping[str, NDArray[np.float32]]) -> NDArray[np.float64]:
+    def _together(self, actions: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
         if set(actions) != set(self.possible_agents):
             raise InvalidInput(
                 f"Actions for {', '.join(sorted(actions)) or 'nobody'} were given; every arm needs one: "

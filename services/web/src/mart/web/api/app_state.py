@@ -12,7 +12,7 @@ from mart.web.access.user_sessions import UserSessions
 from mart.web.clients.catalogue_client import CatalogueClient
 from mart.web.clients.gateway_client import GatewayClient
 from mart.web.clients.platform_client import PlatformClient
-from mart.web.clients.room_client import RoomClient
+from mart.web.clients.room_client import RoomRequester
 from mart.web.clients.trainer_client import TrainerClient
 from mart.web.lobby.lobby import Lobby
 
@@ -46,9 +46,9 @@ class AppState:
     offers: RequestLimit = field(default_factory=_offers)
 
     @property
-    def rooms(self) -> RoomClient:
+    def rooms(self) -> RoomRequester:
         """The client through which seats are taken and episodes begun and ended."""
-        return RoomClient(self.bus, self.lobby)
+        return RoomRequester(self.bus, self.lobby)
 
     @property
     def platform(self) -> PlatformClient:

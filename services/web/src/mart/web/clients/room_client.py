@@ -20,7 +20,7 @@ from mart.web.lobby.lobby import Lobby
 _TIMEOUT_S = 5.0
 
 
-class RoomClient:
+class RoomRequester:
     """Requests to the sims of rooms.
 
     Each raises NotFound where the room or the arm does not exist, Unavailable where its sim does not answer, and what

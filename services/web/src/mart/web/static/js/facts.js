@@ -9,7 +9,7 @@ export const ARM_SYMBOLS = /** @type {const} */ ({ arm0: "circle", arm1: "square
 /** What partners can say by one press, in the order of the keys. */
 export const CUES = /** @type {const} */ (["have_it", "go", "wait", "slower", "thanks"]);
 
-/** Model architectures: who can plan, who can act, who can correct. */
+/** ModelSpec architectures: who can plan, who can act, who can correct. */
 export const MODEL_AXES = /** @type {const} */ ({
   planner: ["none", "joint", "per-arm"],
   actor: ["joint", "per-arm"],
