@@ -78,6 +78,6 @@ def step(world: World, experts: dict[str, Expert]) -> None:
         target, gripper = Pose(np.array([0.45, 0.0, 0.3]), here.quaternion_wxyz), 0.0
         if arm in experts:
             intent = experts[arm].act(world.observations_for(arm), world.sim_time_s)
-            target, gripper = intent.target_tool_in_base, intent.gripper
+            target, gripper = intent.pose_tool_in_base, intent.gripper
         actions.append(world.action_for(arm, target, gripper))
     world.step(actions)

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mart.operators import ToolTarget
 from mart.protocol.errors import NotFound
 from mart.protocol.pose import Pose
-from mart.sim.experts import Expert, ExpertIntent, get_skill, skill_names
+from mart.sim.experts import Expert, get_skill, skill_names
 from mart.sim.world import World
 
 TASK = "two_arm_multi_cube_lifting"
@@ -46,7 +47,7 @@ def perform(world: World, seed: int, skill: str, late_ticks: int = 0, most_ticks
         for arm, expert in experts.items():
             intent = expert.act(seen[0][0][arm], seen[0][1])
             if intent.engaged:
-                targets[arm] = intent.target_tool_in_base
+                targets[arm] = intent.pose_tool_in_base
             closings[arm] += intent.gripper == 1.0 and not closed[arm]
             closed[arm] = intent.gripper == 1.0
             actions.append(world.action_for(arm, targets[arm], intent.gripper))
@@ -105,7 +106,7 @@ def test_shown_the_same_moment_again_an_expert_wants_the_same_again(worlds: dict
     wanted = [expert.act(seen, 3.0 + 0.05 * tick) for tick in range(30)][-1]
     for _ in range(20):
         again = expert.act(seen, 3.0 + 0.05 * 29)
-        metres, radians = again.target_tool_in_base.distance_to(wanted.target_tool_in_base)
+        metres, radians = again.pose_tool_in_base.distance_to(wanted.pose_tool_in_base)
         assert (metres, radians, again.gripper) == pytest.approx((0, 0, wanted.gripper), abs=1e-6)
 
 
@@ -121,7 +122,7 @@ def test_a_dropped_cube_is_picked_up_again(worlds: dict[int, World]) -> None:
         actions = []
         for arm, expert in experts.items():
             intent = expert.act(world.observations_for(arm), world.sim_time_s)
-            targets[arm] = intent.target_tool_in_base
+            targets[arm] = intent.pose_tool_in_base
             actions.append(world.action_for(arm, targets[arm], intent.gripper))
         world.step(actions)
         if world.progress().success_ticks == 5 and not knocked:
@@ -150,11 +151,11 @@ def test_while_the_clutch_is_let_go_nothing_is_asked_to_move(
     world.reset(seed)
     restless = replace(get_skill(skill), pause_probability=1.0, pause_s=0.5)
     expert = Expert(world.task, "arm1", restless, np.random.default_rng(seed))
-    seen, rested = world.observations_for("arm1"), list[ExpertIntent]()
+    seen, rested = world.observations_for("arm1"), list[ToolTarget]()
     for tick in range(60):
         intent = expert.act(seen, tick_s * tick)
         if rested and not intent.engaged:
-            assert intent.target_tool_in_base is rested[-1].target_tool_in_base
+            assert intent.pose_tool_in_base is rested[-1].pose_tool_in_base
         rested = [] if intent.engaged else [intent]
 
 

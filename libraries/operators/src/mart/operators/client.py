@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from mart.operators.claim import ClaimedSeats, claimed_seats
 from mart.operators.commander import SeatCommander
-from mart.operators.driver import SeatSelection, SeatDriver
+from mart.operators.driver import SeatDriver, SeatSelection
 from mart.operators.episode_follower import EpisodeFollower
 from mart.operators.operator import Operator
 from mart.operators.room_client import RoomClient

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from mart.sim.experts.expert import Expert, ExpertIntent
+from mart.sim.experts.expert import Expert
+from mart.sim.experts.scripted_operator import ScriptedOperator
 from mart.sim.experts.skill import Skill, get_skill, skill_names
 
-__all__ = ["Expert", "ExpertIntent", "Skill", "get_skill", "skill_names"]
+__all__ = ["Expert", "ScriptedOperator", "Skill", "get_skill", "skill_names"]

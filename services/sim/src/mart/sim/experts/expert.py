@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.operators.operator import ToolTarget
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Task
 from mart.sim.experts.hand_motion import HandMotion
@@ -18,15 +18,6 @@ from mart.sim.experts.skill import Skill
 
 _SAME_WAYPOINT_M = 0.05  # a waypoint that jumps further than this is a new movement
 _SLIP_S = 0.4  # how long a hand that slipped stays open
-
-
-@dataclass(frozen=True)
-class ExpertIntent:
-    """Say what the operator wants now. While not `engaged` the clutch is let go, and the arm should hold."""
-
-    target_tool_in_base: Pose
-    gripper: float
-    engaged: bool
 
 
 class Expert:
@@ -42,27 +33,27 @@ class Expert:
         self._hand = HandMotion(self._human)
         self._plan: ExpertPlan | None = None
         self._waypoint: Waypoint | None = None
-        self._intent: ExpertIntent | None = None
+        self._intent: ToolTarget | None = None
         self._seen_s = 0.0
         self._rest_until_s = 0.0
         self._slip_until_s = 0.0
 
-    def act(self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float) -> ExpertIntent:
+    def act(self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float) -> ToolTarget:
         """Return what the operator wants; observations: what the task declares for this arm."""
         if self._intent is None or sim_time_s > self._seen_s:
             self._intent = self._want(self._look(observations, sim_time_s))
             self._seen_s = sim_time_s
         return self._intent
 
-    def _want(self, obs: OperatorObservation) -> ExpertIntent:
+    def _want(self, obs: OperatorObservation) -> ToolTarget:
         now_s, measured = obs.sim_time_s, obs.pose_tool_in_base
         elapsed_s = now_s - self._seen_s if self._intent is not None else 0.0
         waypoint = self._waypoint = self._next_waypoint(obs)
         gripper = self._grip(waypoint, now_s, elapsed_s)
         if now_s < self._rest_until_s:
-            return ExpertIntent(self._hand.rest(measured), gripper, engaged=False)
+            return ToolTarget(self._hand.rest(measured), gripper, engaged=False)
         target = self._hand.move(waypoint.pose_tool_in_base, measured, waypoint.pace, elapsed_s)
-        return ExpertIntent(target, gripper, engaged=True)
+        return ToolTarget(target, gripper, engaged=True)
 
     def _look(
         self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float

@@ -25,7 +25,7 @@ def run_experts(world: World, seed: int, skill: str = "expert", until_s: float |
         for arm, expert in experts.items():
             intent = expert.act(world.observations_for(arm), world.sim_time_s)
             if intent.engaged:
-                targets[arm] = intent.target_tool_in_base
+                targets[arm] = intent.pose_tool_in_base
             actions.append(world.action_for(arm, targets[arm], intent.gripper))
         world.step(actions)
         progress = world.progress()

@@ -12,12 +12,13 @@ import logging
 import threading
 from collections import Counter
 
+from mart.operators.commander import SeatCommander
+from mart.operators.driver import REPEAT_S
 from mart.protocol import clock, codec
 from mart.protocol.messages import OPERATOR_SCRIPT, SeatRequest, raise_error
 from mart.protocol.tasks import Task
 from mart.runtime.throttled_log import ThrottledLog
-from mart.sim.experts import Skill
-from mart.sim.operate import REPEAT_S, ScriptedOperator
+from mart.sim.experts import ScriptedOperator, Skill
 from mart.sim.room.bus_publisher import OrderedPublisher
 from mart.sim.room.room import REPEAT_S as STATUS_S
 from mart.sim.room.room import Room
@@ -46,7 +47,7 @@ class UnpacedRoom:
 
     def __init__(self, room: Room, publisher: OrderedPublisher, time: SimulatedTime) -> None:
         self._room, self._publisher, self._time = room, publisher, time
-        self._operators: dict[str, ScriptedOperator] = {}
+        self._commanders: list[SeatCommander] = []
         self._act_s = time.now_s()
 
     def seat_scripts(self, task: Task, skill: Skill, seed: int) -> None:
@@ -55,7 +56,10 @@ class UnpacedRoom:
             assign = SeatRequest.Assign(arm=arm, operator=OPERATOR_SCRIPT)
             reply = self._room.answer_seat(SeatRequest(assign=assign), self._time.now_s())
             raise_error(reply.error)
-            self._operators[arm] = ScriptedOperator(task, arm, reply.seat.epoch, skill, seed)
+            operator = ScriptedOperator(task, arm, skill, seed)
+            commander = SeatCommander(operator, task, (arm,), OPERATOR_SCRIPT)
+            commander.seat({arm: reply.seat.epoch})
+            self._commanders.append(commander)
 
     def run(self, work_queue: WorkQueue, garbled: Counter[str], stop: threading.Event) -> None:
         """Run until `stop` is set. Requests are answered between episodes: whoever asks twice gets two."""
@@ -76,15 +80,14 @@ class UnpacedRoom:
     def _act(self) -> bool:
         """Let everybody say what to do where there is news, else repeat now and then; return whether they spoke."""
         now_s = self._time.now_s()
-        news = [operator.see(self._publisher.newest) for operator in self._operators.values()]
+        news = [commander.observe(self._publisher.newest) for commander in self._commanders]
         if not any(news) and now_s < self._act_s:
             return False
         self._act_s = now_s + REPEAT_S
-        for arm, operator in self._operators.items():
+        for commander in self._commanders:
             wall_ns = clock.wall_ns()
-            command = operator.command(wall_ns)
-            assert command is not None  # it has seen the world's first state
-            payload = codec.encode(command)
-            self._publisher.command(arm, payload)
-            self._room.hear(payload, arm, now_s, wall_ns)
+            for command in commander.commands(wall_ns):
+                payload = codec.encode(command)
+                self._publisher.command(command.arm, payload)
+                self._room.hear(payload, command.arm, now_s, wall_ns)
         return True
