@@ -60,7 +60,7 @@ def perform(world: World, seed: int, number: int = 1, source: Source = by_script
         for arm, expert in experts.items():
             intent = expert.act(world.observations_for(arm), world.sim_time_s)
             if intent.engaged:
-                targets[arm] = intent.target_tool_in_base
+                targets[arm] = intent.pose_tool_in_base
             actions.append(world.action_for(arm, targets[arm], intent.gripper))
         world.step(actions)
         states.append(_state(world, number, len(states), np.array(actions), source))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mart.trainer.models.policies.load import load_policy
-from mart.trainer.operate.operator import parts_of
+from mart.trainer.serve.policy_operator import parts_of
 from mart.trainer.train.run_directory import RunDirectory
 from mart.trainer.train.spec import TrainingSpec
 from mart.trainer.train.training import train

@@ -10,17 +10,17 @@ import click
 from mart.runtime.cli import json_option, print_result
 
 if TYPE_CHECKING:
-    from mart.trainer.operate.crews import Load
+    from mart.trainer.serve.policy_seats import LoadPolicy
 
 
 @click.command()
 @click.option("--room", help="Only this room.  [default: every room]")
 def policies(room: str | None) -> None:
     """Drive every seat that was given to a promoted policy, each from what its arm's operator sees."""
-    from mart.trainer.operate.service import serve_policies
-    from mart.trainer.operate.settings import PoliciesSettings
+    from mart.trainer.serve.service import serve_policies
+    from mart.trainer.serve.settings import PoliciesSettings
 
-    def loader() -> Load:
+    def loader() -> LoadPolicy:
         from mart.trainer.models.policies.load import load_policy
 
         return load_policy
@@ -42,8 +42,8 @@ def policies(room: str | None) -> None:
 def operate(*, checkpoint: Path, room: str, arms: tuple[str, ...], name: str, as_json: bool) -> None:
     """Take seats for a policy and drive them until Ctrl-C, beside people who may take over and hand back."""
     from mart.trainer.models.policies.load import load_policy
-    from mart.trainer.operate.service import operate as drive
-    from mart.trainer.operate.settings import OperateSettings
+    from mart.trainer.serve.service import operate as drive
+    from mart.trainer.serve.settings import OperateSettings
 
     def seated(called: str, taken: tuple[str, ...]) -> None:
         text = f"{called} drives {', '.join(taken)} in {room}. Ctrl-C leaves."

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from mart.operators.driver import SeatDriver
 from mart.protocol import codec, keys
 from mart.protocol.errors import NotFound
 from mart.protocol.messages import (
@@ -19,33 +20,26 @@ from mart.protocol.messages import (
     Event,
     Observation,
     Operator,
-    Seat,
     State,
     pose_message,
 )
 from mart.protocol.pose import Pose
 from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
-from mart.sim.room.seats import SeatTable
-from mart.trainer.operate.crews import Crews
-from mart.trainer.operate.service import OwnSeats
+from mart.trainer.serve.policy_seats import PromotedPolicies
 from tests.support.mailbox import Mailbox
-from tests.trainer.operate.toys import Wanderer
+from tests.trainer.serve.toys import Wanderer
 from tests.web.room import Room
 
 ARMS = ("arm0", "arm1")
 
 
-def promoted(seat: Seat) -> Path | None:
-    return Path("policies") / seat.policy if seat.policy else None
-
-
 class Stand:
-    """A room without a world, the crews, and what they say."""
+    """A room without a world, the driver, and what they say."""
 
     def __init__(self, bus: MemoryBus, policies: dict[str, Wanderer]) -> None:
         self.bus, self.policies = bus, policies
         self.room = Room(bus)
-        self.crews = Crews(bus, None, promoted, self.load)
+        self.driver = SeatDriver(bus, None, PromotedPolicies(Path("policies"), self.load))
         self.commands = Mailbox(bus, keys.commands("room-1"), Command)
         self.events = Mailbox(bus, keys.event("room-1").key, Event)
         self.loaded: list[str] = []
@@ -71,11 +65,11 @@ class Stand:
         state = State(boot=1, tick=self.tick, sim_time_s=self.tick / 20, observations=seen, arms=arms)
         before = len(self.commands)
         self.bus.publisher(keys.state("room-1")).put(codec.encode(state))
-        self.crews.work()
+        self.driver.work()
         return [(command.arm, command.seat_epoch) for command in self.commands.all()[before:]]
 
     def close(self) -> None:
-        self.crews.close()
+        self.driver.close()
         self.room.close()
 
 
@@ -147,31 +141,6 @@ def test_garbage_disturbs_nobody(stand: Stand) -> None:
     stand.assign("arm1", "alone")
     for topic in (keys.state("room-1"), keys.status("room-1")):
         stand.bus.publisher(topic).put(b"\xff" * 40)
-        stand.crews.work()
+        stand.driver.work()
     stand.room.publish()
     assert stand.show() == [("arm1", 2)]
-
-
-def test_ones_own_seat_may_come_back_from_a_person_and_from_nobody_else() -> None:
-    seats = SeatTable(["arm0", "arm1"])
-
-    def message(arm: str) -> Seat:
-        seat = seats[arm]
-        relieved = seat.relieved.called if seat.relieved else ""
-        return Seat(arm=arm, epoch=seat.epoch, holder_id=seat.holder_id, name=seat.name, relieved=relieved)
-
-    for arm in ARMS:
-        seats.claim(arm, "me", "own", OPERATOR_POLICY)
-    own = OwnSeats(Path("checkpoint"), "me", [message(arm) for arm in ARMS])
-    assert own(message("arm0")) == Path("checkpoint")
-    seats.claim("arm0", "ana", "Ana", OPERATOR_HUMAN)
-    assert own(message("arm0")) is None
-    seats.hand_back("arm0", "ana")
-    assert own(message("arm0")) == Path("checkpoint")
-    seats.assign("arm0", OPERATOR_HOLD)
-    assert own(message("arm0")) is None
-    own.require_any("room-1")
-    seats.assign("arm1", OPERATOR_HOLD)
-    own(message("arm1"))
-    with pytest.raises(Exception, match="given away or left"):
-        own.require_any("room-1")

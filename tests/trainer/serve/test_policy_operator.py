@@ -9,6 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mart.operators import target_from_action
+from mart.operators.commander import SeatCommander
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import (
@@ -21,9 +23,10 @@ from mart.protocol.messages import (
     State,
 )
 from mart.sim.world import World
-from mart.trainer.operate.operator import PolicyOperator, parts_of, target_of
+from mart.trainer.models.policies.policy import Policy
+from mart.trainer.serve.policy_operator import PolicyOperator, parts_of
 from tests.sim.room.room_harness import ARMS, PERIOD_S, RoomHarness
-from tests.trainer.operate.toys import TASK, Wanderer, one_action
+from tests.trainer.serve.toys import TASK, Wanderer, one_action
 
 
 @pytest.fixture(scope="module")
@@ -36,12 +39,16 @@ def stage(world: World) -> RoomHarness:
     return RoomHarness(world)
 
 
+def commander_of(stage: RoomHarness, policy: Policy) -> SeatCommander:
+    return SeatCommander(PolicyOperator(policy), stage.world.task, policy.arms, OPERATOR_POLICY, policy.needs)
+
+
 class Seated:
     """A policy at the arms that are its own in a stage."""
 
     def __init__(self, stage: RoomHarness, policy: Wanderer) -> None:
         self.stage, self.policy = stage, policy
-        self.operators = [PolicyOperator(part, stage.world.task) for part in parts_of(policy)]
+        self.operators = [commander_of(stage, part) for part in parts_of(policy)]
 
     def assign(self, arm: str, operator: Operator = OPERATOR_POLICY, policy: str = "wanderer") -> None:
         request = SeatRequest(assign=SeatRequest.Assign(arm=arm, operator=operator, policy=policy))
@@ -72,7 +79,7 @@ class Seated:
         epochs = {s.arm: s.epoch for s in self.stage.status().seats if s.operator == OPERATOR_POLICY}
         for operator in self.operators:
             operator.seat(epochs)
-            operator.see(self.stage.newest)
+            operator.observe(self.stage.newest)
             for command in operator.commands(0):
                 self.stage.room.hear(codec.encode(command), command.arm, self.stage.now_s, 0)
 
@@ -86,7 +93,7 @@ def applied(state: State, arm: str) -> list[float]:
 def test_an_action_comes_out_of_the_sim_as_it_went_in(world: World, seed: int) -> None:
     world.reset(seed)
     action = one_action(np.random.default_rng(seed))
-    target, gripper = target_of(world.tool_pose_in_base("arm1"), action, world.task.limits)
+    target, gripper = target_from_action(world.tool_pose_in_base("arm1"), action, world.task.limits)
     np.testing.assert_allclose(world.action_for("arm1", target, gripper), action, atol=1e-9)
 
 
@@ -140,7 +147,7 @@ def test_what_is_handed_back_begins_anew_and_what_goes_on_does_not(stage: RoomHa
         state.tick += 1
         for operator in (*per_arm.operators, *joint.operators):
             operator.seat(epochs)
-            operator.see(state)
+            operator.observe(state)
     assert [len(per_arm.policy.parts[arm].seeds) for arm in ARMS] == [1, 2]
     assert len(joint.policy.seeds) == 1
 
@@ -157,11 +164,11 @@ def test_a_reset_begins_the_policy_anew_with_the_episodes_number(stage: RoomHarn
 
 
 def test_the_same_state_again_is_no_news_and_repeats_have_new_numbers(stage: RoomHarness) -> None:
-    operator = PolicyOperator(Wanderer(("arm0",)), stage.world.task)
+    operator = commander_of(stage, Wanderer(("arm0",)))
     operator.seat({"arm0": 3})
     assert operator.commands(0) == []
-    assert operator.see(stage.newest)
-    assert not operator.see(stage.newest)
+    assert operator.observe(stage.newest)
+    assert not operator.observe(stage.newest)
     (first,), (second,) = operator.commands(7), operator.commands(8)
     assert (first.arm, first.seat_epoch, first.source, first.stamps.sent_ns) == (
         "arm0",
@@ -175,9 +182,9 @@ def test_the_same_state_again_is_no_news_and_repeats_have_new_numbers(stage: Roo
 
 def test_without_a_seat_it_neither_acts_nor_speaks(stage: RoomHarness) -> None:
     policy = Wanderer(("arm0",))
-    operator = PolicyOperator(policy, stage.world.task)
+    operator = commander_of(stage, policy)
     operator.seat({"arm1": 3})
-    assert not operator.see(stage.newest)
+    assert not operator.observe(stage.newest)
     assert operator.commands(0) == []
     assert policy.given == []
 
@@ -186,15 +193,15 @@ def test_without_a_seat_it_neither_acts_nor_speaks(stage: RoomHarness) -> None:
 def test_an_action_that_is_no_number_is_never_sent(stage: RoomHarness, bad: float) -> None:
     policy = Wanderer(("arm0",))
     policy.spoilt = bad
-    operator = PolicyOperator(policy, stage.world.task)
+    operator = commander_of(stage, policy)
     operator.seat({"arm0": 1})
-    with pytest.raises(Corrupt, match="finite"):
-        operator.see(stage.newest)
+    with pytest.raises(Corrupt):
+        operator.observe(stage.newest)
 
 
 @pytest.mark.parametrize("spoil", ["observation", "short", "arm"])
 def test_a_state_that_does_not_show_enough_is_refused(stage: RoomHarness, spoil: str) -> None:
-    operator = PolicyOperator(Wanderer(("arm0",)), stage.world.task)
+    operator = commander_of(stage, Wanderer(("arm0",)))
     operator.seat({"arm0": 1})
     state = State.FromString(stage.newest.SerializeToString())
     if spoil == "observation":
@@ -205,4 +212,4 @@ def test_a_state_that_does_not_show_enough_is_refused(stage: RoomHarness, spoil:
     else:
         del state.arms[:]
     with pytest.raises(Corrupt):
-        operator.see(state)
+        operator.observe(state)

@@ -1,0 +1,73 @@
+"""Say which seats policies drive: all that name a promoted one, or those that were claimed for one of one's own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mart.operators.commander import SeatCommander
+from mart.operators.driver import SeatSelection
+from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
+from mart.protocol.tasks import Task, get_task
+from mart.protocol.vocabulary import ServiceKind
+from mart.trainer.serve.policy_operator import PolicyOperator, parts_of
+
+if TYPE_CHECKING:
+    from mart.trainer.models.policies.policy import Policy
+
+LoadPolicy = Callable[[Path], "Policy"]
+
+
+class PromotedPolicies(SeatSelection[str]):
+    """Select every seat that names a promoted policy, a folder below `policies_dir`."""
+
+    kind = ServiceKind.POLICIES
+
+    def __init__(self, policies_dir: Path, load: LoadPolicy) -> None:
+        self._policies_dir, self._load = policies_dir, load
+
+    def assigned(self, room: str, status: RoomStatus) -> Mapping[str, Mapping[str, int]]:
+        """Return the seats to drive, by the name of their policy; see `SeatSelection`."""
+        seats: dict[str, dict[str, int]] = {}
+        for seat in status.seats:
+            if seat.operator == OPERATOR_POLICY and seat.policy:
+                seats.setdefault(seat.policy, {})[seat.arm] = seat.epoch
+        return seats
+
+    def commanders(self, key: str, status: RoomStatus) -> Sequence[SeatCommander]:
+        """Return the policy's; see `SeatSelection`. Raises where it cannot be loaded or does not fit the room."""
+        return policy_commanders(self._load(self._policies_dir / key), status)
+
+    def name_of(self, key: str) -> str:
+        """Return what people call it; see `SeatSelection`."""
+        return f"The policy {key}"
+
+
+def policy_commanders(policy: Policy, status: RoomStatus) -> Sequence[SeatCommander]:
+    """Return what a policy drives with in a room of this status: one commander for each of its independent parts.
+
+    Raises InvalidInput where the policy was not made for such a room.
+    """
+    task = get_task(status.task, len(status.seats))
+    require_fit(policy, task, status.control_hz)
+    return [
+        SeatCommander(PolicyOperator(part), task, part.arms, OPERATOR_POLICY, part.needs)
+        for part in parts_of(policy)
+    ]
+
+
+def require_fit(policy: Policy, task: Task, control_hz: float) -> None:
+    """Raise InvalidInput where the policy was not made for such a room."""
+    if policy.task != task.name:
+        raise InvalidInput(f"It was trained for {policy.task} and the room's task is {task.name}.")
+    if abs(policy.control_hz - control_hz) > 1e-6:
+        raise InvalidInput(
+            f"It was trained at {policy.control_hz:g} ticks a second and the room runs at {control_hz:g}."
+        )
+    unknown = sorted(set(policy.needs) - {observation.name for observation in task.observations})
+    if unknown:
+        raise InvalidInput(
+            f"It needs {', '.join(unknown)}, which nobody sees in a room of {len(task.arms)} arms."
+        )
