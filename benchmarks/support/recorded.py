@@ -46,7 +46,7 @@ def record(world: World, seed: int) -> Recording:
         for index, (arm, expert) in enumerate(zip(world.arms, experts, strict=True)):
             intent = expert.act(world.observations_for(arm), world.sim_time_s)
             if intent.engaged:
-                targets[index] = intent.target_tool_in_base
+                targets[index] = intent.pose_tool_in_base
             act.append(world.action_for(arm, targets[index], intent.gripper))
         actions.append(np.clip(act, -1.0, 1.0))
         world.step(actions[-1])
