@@ -137,7 +137,7 @@ function seatRow(room, arm, attempt) {
     { class: "seat", dataset: { arm } },
     badge(arm),
     element("span", { class: "who" }, name, who, machine.node),
-    element("span", { class: "deeds" }, ...Object.values(actions)),
+    element("span", { class: "buttons" }, ...Object.values(actions)),
   );
 
   /** @param {SeatNews} news */

@@ -36,7 +36,7 @@ async function lookAgain() {
   try {
     const { choices } = await api.trainingChoices();
     setShown(byId("absent"), choices === null);
-    setShown(byId("bench"), choices !== null);
+    setShown(byId("training"), choices !== null);
     if (choices) show(choices, await load());
   } catch (error) {
     say(api.messageOf(error));

@@ -67,7 +67,7 @@ export class PolicyList {
       { class: "policy" },
       element("span", { class: "rate figures", "aria-label": `Success ${rate}` }, rate),
       element("span", {}, element("strong", {}, name), element("span", { class: "soft block" }, factsText(policy))),
-      element("span", { class: "deeds" }, ...this.#seating(policy, places), this.#withdrawing(name)),
+      element("span", { class: "buttons" }, ...this.#seating(policy, places), this.#withdrawing(name)),
     );
   }
 

@@ -83,7 +83,7 @@ export class RunView {
     const buttons = [quietButton(this.#log === null ? "Log" : "Hide log", () => this.#toggleLog(id))];
     if (RUNNING.includes(state)) buttons.push(quietButton("Cancel", () => onAct(id, "cancel")));
     if (["failed", "cancelled"].includes(state)) buttons.push(quietButton("Try again", () => onAct(id, "retry")));
-    return element("span", { class: "deeds" }, ...buttons);
+    return element("span", { class: "buttons" }, ...buttons);
   }
 
   /**
