@@ -19,8 +19,8 @@ from mart.runtime.throttled_log import ThrottledLog
 from mart.sim.experts import Skill
 from mart.sim.operate import REPEAT_S, ScriptedOperator
 from mart.sim.room.bus_publisher import OrderedPublisher
-from mart.sim.room.room import REPEAT_S as STATUS_S
 from mart.sim.room.room import Room
+from mart.sim.room.room_publisher import REPEAT_S as STATUS_S
 from mart.sim.room.work_queue import WorkQueue
 
 _log = logging.getLogger(__name__)
