@@ -26,7 +26,8 @@ from mart.protocol.messages import (
     SeatRequest,
 )
 from mart.sim.room.command_validation import CommandRejection
-from mart.sim.room.room import REPEAT_S, Room
+from mart.sim.room.room import Room
+from mart.sim.room.room_publisher import REPEAT_S
 from mart.sim.room.saved_room import SavedRoom
 from mart.sim.world import World, divergence
 from mart.sim.world.divergence import DivergenceArchive

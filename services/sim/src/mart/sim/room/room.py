@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from typing import Protocol
 
 from mart.protocol import clock
 from mart.protocol.errors import MartError
@@ -36,28 +35,11 @@ from mart.sim.room.episode_state_machine import (
     ResetWorld,
     Terms,
 )
+from mart.sim.room.room_publisher import REPEAT_S, RoomPublisher
 from mart.sim.room.saved_room import SavedRoom
 from mart.sim.room.seats import SeatHolder, SeatTable
 from mart.sim.room.ticker import Ticker
 from mart.sim.world import Diverged, World
-
-REPEAT_S = 0.2  # status always; the newest state while no tick fires, for those who came late
-
-
-class RoomPublisher(Protocol):
-    """Publish what a room says. None of these may block."""
-
-    def state(self, state: State) -> None:
-        """Publish the state after a tick or a reset."""
-
-    def repeat_state(self) -> None:
-        """Publish the newest state once more, the very same bytes."""
-
-    def status(self, status: RoomStatus) -> None:
-        """Publish how the room stands."""
-
-    def event(self, event: Event) -> None:
-        """Publish what has just happened."""
 
 
 class Room:
