@@ -29,7 +29,7 @@ def find_device(name: str) -> torch.device:
 
 
 def product_dtype(device: torch.device, precision: str = "auto") -> torch.dtype:
-    """Return the type of matrix products. precision: float32, bfloat16, or auto: bfloat16 where there is hardware for it."""
+    """Return the type of matrix products. precision: float32, bfloat16, or auto: what is fastest."""
     if precision != "auto":
         return {"float32": torch.float32, "bfloat16": torch.bfloat16}[precision]
     if device.type == "cuda":
