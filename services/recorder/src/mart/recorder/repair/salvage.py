@@ -61,10 +61,10 @@ class Salvage:
         while True:
             try:
                 record = next(found)
-                if isinstance(record, Footer):
-                    return None
                 if not _holds_together(file, at, record):
                     return at
+                if isinstance(record, Footer):  # the end, unless it is a spoilt byte that reads like one
+                    return None if file.size - file.tell() <= MAGIC_SIZE else at
             except StopIteration:
                 return None
             except SYMPTOMS:
