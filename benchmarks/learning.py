@@ -102,9 +102,9 @@ def theirs_judged(name: str, file: Path, client: RolloutClient) -> tuple[str, Ra
 
 
 def judged(policies: Sequence[Policy], client: RolloutClient) -> Rate:
-    courses = roll_out(policies, client, world_seeds(Purpose.SCORE, 0, WORLDS), policy_seed=0)
-    played = [course.result.outcome == "success" for of_policy in courses for course in of_policy]
-    return Rate(sum(played), len(played))
+    rollouts = roll_out(policies, client, world_seeds(Purpose.SCORE, 0, WORLDS), policy_seed=0)
+    succeeded = [rollout.result.succeeded for of_policy in rollouts for rollout in of_policy]
+    return Rate(sum(succeeded), len(succeeded))
 
 
 def lead(ours: Rate, theirs: Rate) -> float:

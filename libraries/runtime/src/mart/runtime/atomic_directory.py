@@ -10,18 +10,21 @@ from pathlib import Path
 _HALF = ".half"
 
 
-def write_directory_atomically(path: Path, fill: Mapping[str, bytes]) -> None:
-    """A directory with these files, at once and on the disk when this returns. One that is there stays as it is."""
+def write_directory_atomically(path: Path, files: Mapping[str, bytes]) -> None:
+    """Make the folder `path` with these files (name below it → content), all on the disk when this returns.
+
+    A folder that is there already stays as it is.
+    """
     half = path.with_name(path.name + _HALF)
     shutil.rmtree(half, ignore_errors=True)
-    for name, content in fill.items():
+    for name, content in files.items():
         file = half / name
         file.parent.mkdir(parents=True, exist_ok=True)
         with file.open("wb") as opened:
             opened.write(content)
             opened.flush()
             os.fsync(opened.fileno())
-    for folder in {half, *((half / name).parent for name in fill)}:
+    for folder in {half, *((half / name).parent for name in files)}:
         _sync(folder)
     if path.exists():
         shutil.rmtree(half)

@@ -40,11 +40,11 @@ def start_child(
     )
 
 
-def stop_child(process: subprocess.Popen[bytes]) -> None:
-    """Ask a child to end, kill it where it does not, and wait for it."""
+def stop_child(process: subprocess.Popen[bytes], timeout_s: float = _STOP_TIMEOUT_S) -> None:
+    """Ask a child to end, kill it where it does not within `timeout_s`, and wait for it."""
     process.terminate()
     try:
-        process.wait(_STOP_TIMEOUT_S)
+        process.wait(timeout_s)
     except subprocess.TimeoutExpired:
         process.kill()
         process.wait()

@@ -32,7 +32,10 @@ def sha256_of(path: Path) -> str:
 def read_cached(
     file: EpisodeFile, layout: ObservationLayout, sha256: str, folder: Path | None
 ) -> EpisodeArrays:
-    """Read an episode, from the cache where it is there. Raises what `read_episode` raises. `folder`: of the cache; None reads the file itself."""
+    """Read an episode, from the cache where it is there.
+
+    Raises what `read_episode` raises. `folder`: of the cache; None reads the file itself.
+    """
     if folder is None:
         return read_episode(file, layout)
     entry = folder / f"{sha256}-{layout.sha256[:16]}-{_VERSION}.safetensors"

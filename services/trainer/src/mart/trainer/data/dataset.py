@@ -69,7 +69,7 @@ class Dataset:
 
     @property
     def starts(self) -> NDArray[np.int64]:
-        """The rows that have an action: where a window may start."""
+        """Rows that have an action, int64[windows]: where a window may start."""
         return np.flatnonzero(np.arange(len(self.ends)) < self.ends)
 
 
@@ -113,7 +113,7 @@ def load_dataset(
 
 
 def join(digest: DataDigest, layout: ObservationLayout, episodes: Iterable[EpisodeArrays]) -> Dataset:
-    """The episodes as one; each gets a row without action at its end."""
+    """Join episodes into one data set; each gets a row without action at its end."""
     listed = list(episodes)
     lengths = np.array([len(episode.observations) for episode in listed])
     return Dataset(

@@ -41,6 +41,7 @@ class ObservationLayout:
 
     @classmethod
     def of(cls, task: Task) -> ObservationLayout:
+        """Return the layout of a task's observations, all arms together."""
         fields = (
             ObservationField(name=o.name, shape=o.shape, unit=o.unit, arms=o.arms) for o in task.observations
         )
@@ -48,7 +49,10 @@ class ObservationLayout:
 
     @classmethod
     def of_arms(cls, task: str, arms: int) -> ObservationLayout:
-        """Raises NotFound for an unknown task and InvalidInput for a number of arms that it cannot have."""
+        """Return the layout of a task with so many arms.
+
+        Raises NotFound for an unknown task and InvalidInput for a number of arms that it cannot have.
+        """
         return cls.of(get_task(task, arms))
 
     @property
@@ -59,27 +63,30 @@ class ObservationLayout:
 
     @property
     def width(self) -> int:
+        """How many columns there are."""
         return sum(_size(field) for field in self.fields)
 
     @property
     def names(self) -> tuple[str, ...]:
+        """Names of the observations, in the order of their columns."""
         return tuple(field.name for field in self.fields)
 
     def columns_of(self, arm: str) -> NDArray[np.int64]:
-        """The columns that this arm's operator sees, rising."""
+        """Return the columns that this arm's operator sees, int64, rising."""
         if arm not in self.arms:
             raise NotFound.named("arm", arm, self.arms)
         return self._columns([arm in field.arms for field in self.fields])
 
     def names_of(self, arm: str) -> tuple[str, ...]:
+        """Return the names of the observations that this arm's operator sees."""
         return tuple(field.name for field in self.fields if arm in field.arms)
 
     def groups(self) -> NDArray[np.int64]:
-        """For each column the index of the observation that it is a part of."""
+        """Return for each column, int64[width], the index of the observation that it is a part of."""
         return np.repeat(np.arange(len(self.fields)), [_size(field) for field in self.fields])
 
     def vector(self, observations: Mapping[str, NDArray[np.float64]]) -> NDArray[np.float32]:
-        """Named arrays, each [rows, *shape], as one [rows, width]; quaternions get a canonical sign.
+        """Join named arrays, each [rows, *shape], to float32[rows, width]; quaternions get a canonical sign.
 
         Raises InvalidInput where one is missing, of another shape, or not finite.
         """
@@ -113,7 +120,7 @@ def _part(field: ObservationField, observations: Mapping[str, NDArray[np.float64
 
 
 def canonical(quaternions_wxyz: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[rows, 4]: of the two that are the same rotation, the one whose first component that is not zero is positive."""
+    """Return for each quaternion [rows, 4] the one of q and -q whose first component that is not zero is positive."""
     clear = np.abs(quaternions_wxyz) > _NO_ROTATION
     first = np.take_along_axis(quaternions_wxyz, clear.argmax(axis=1)[:, None], axis=1)
     return quaternions_wxyz * np.where(first < 0, -1.0, 1.0)

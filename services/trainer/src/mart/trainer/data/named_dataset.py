@@ -31,7 +31,10 @@ class LeftOut(BaseModel):
 
 
 class NamedData(BaseModel):
-    """`sha256`: of what the data set held when it was asked for; episodes: how many."""
+    """What a named data set was when a training asked for it.
+
+    sha256: of what it held when it was asked for; episodes: how many.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -42,7 +45,10 @@ class NamedData(BaseModel):
 
 
 def find_dataset(folder: Path, name: str) -> tuple[DataSetName, tuple[Path, ...]]:
-    """The files of a data set in a folder of episodes, there or not. Raises NotFound, naming those that there are."""
+    """Return a data set of a folder of episodes and its files, there or not.
+
+    Raises NotFound, naming those that there are.
+    """
     root = folder.resolve()
     found = datasets.find(labels.read_folded(root), name)
     return DataSetName(name=name, sha256=found.sha256), tuple(root / path for path in found.episodes)
@@ -55,7 +61,7 @@ def account(
     chosen: Iterable[LabelledEpisode],
     selection: Selection,
 ) -> NamedData:
-    """Says for each of `paths` that is not among the chosen why it is left out, also into the log."""
+    """Say for each of `paths` that is not among the chosen why it is left out, also into the log."""
     taken, known = {one.file_path for one in chosen}, {one.file_path: one for one in found}
     resolved = sorted({path.resolve() for path in paths})
     left_out = tuple(

@@ -22,10 +22,11 @@ class Normaliser(nn.Module):
         self.register_buffer("deviation", torch.ones(width))
 
     def fit(self, dataset: Dataset) -> None:
+        """Take mean and deviation from all rows of the data."""
         obs = torch.from_numpy(dataset.observations).double()
         self.mean.copy_(obs.mean(0))
         self.deviation.copy_(obs.std(0, correction=0).clamp(min=_LEAST_DEVIATION))
 
     def forward(self, obs: Tensor) -> Tensor:
-        """[..., D] → [..., D]."""
+        """Normalise observations: [..., D] → [..., D]."""
         return ((obs - self.mean) / self.deviation).clamp(-_FARTHEST, _FARTHEST)

@@ -11,7 +11,7 @@ from mart.trainer.evaluate.world_seeds import Purpose
 
 @dataclass(frozen=True)
 class EvalConfig:
-    """How much is played.
+    """How many episodes an evaluation takes, and in which worlds.
 
     episodes: of each checkpoint. score_episodes: of the best one; 0: it is not scored. world_seed: decides the worlds.
     time_limit_s: of an episode; the length of the task's trials unless told. kept: failing episodes of a score that
@@ -25,11 +25,12 @@ class EvalConfig:
     kept: int = 4
 
     def number(self, purpose: Purpose) -> int:
+        """Return how many episodes an evaluation for this purpose takes."""
         return self.episodes if purpose is Purpose.SELECTION else self.score_episodes
 
 
 class EvaluationSpec(BaseModel):
-    """How checkpoints are judged; as evaluate.judge.Rules. replicas: running ones; none: one is started."""
+    """How the checkpoints of a job are evaluated, as its file says it. replicas: running ones; none: one is started."""
 
     model_config = ConfigDict(frozen=True)
 

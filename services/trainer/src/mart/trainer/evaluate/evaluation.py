@@ -17,7 +17,7 @@ from mart.trainer.evaluate.statistics import Rate
 from mart.trainer.evaluate.world_seeds import Purpose
 
 MAX_ROLLOUTS = 16
-NOT_HELD = "success"  # where an episode failed that had done every subtask
+NOT_HELD = EpisodeOutcome.SUCCESS.value  # where an episode failed that had done every subtask
 
 
 class RolloutOutcome(StrEnum):
@@ -64,31 +64,31 @@ class Evaluation(BaseModel):
     @property
     def rate(self) -> Rate:
         """How many of the episodes succeeded."""
-        return Rate(sum(played.succeeded for played in self.played), len(self.played))
+        return Rate(sum(result.succeeded for result in self.played), len(self.played))
 
     @property
     def mean_success_time_s(self) -> float | None:
         """Mean simulated time of the successful episodes; None without one."""
-        times = [played.time_s for played in self.played if played.succeeded]
+        times = [result.time_s for result in self.played if result.succeeded]
         return sum(times) / len(times) if times else None
 
     @property
     def done(self) -> dict[str, int]:
         """Subtask → in how many episodes it was done, in the catalogue's order."""
-        return {name: sum(name in played.done for played in self.played) for name in self._subtasks}
+        return {name: sum(name in result.done for result in self.played) for name in self._subtasks}
 
     @property
     def failures(self) -> dict[str, int]:
-        """The first subtask that was missing → in how many episodes; `success` where all were done but not held."""
-        counted = Counter(self._missing(played) for played in self.played if not played.succeeded)
+        """First subtask that was missing → in how many episodes; `success` where all were done but not held."""
+        counted = Counter(self._missing(result) for result in self.played if not result.succeeded)
         return {name: counted[name] for name in (*self._subtasks, NOT_HELD) if counted[name]}
 
     @property
     def _subtasks(self) -> tuple[str, ...]:
         return tuple(subtask.name for subtask in get_task(self.task).subtasks)
 
-    def _missing(self, played: EpisodeResult) -> str:
-        return next((name for name in self._subtasks if name not in played.done), NOT_HELD)
+    def _missing(self, result: EpisodeResult) -> str:
+        return next((name for name in self._subtasks if name not in result.done), NOT_HELD)
 
 
 def append_evaluations(path: Path, evaluations: Iterable[Evaluation]) -> None:

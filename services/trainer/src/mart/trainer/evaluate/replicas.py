@@ -29,7 +29,7 @@ _NAME = "replica-1"
 
 @contextlib.contextmanager
 def worlds(replicas: Sequence[str]) -> Iterator[RolloutClient]:
-    """On these replicas of the bus; with none named, on one that is started for it.
+    """Give a client for worlds on these replicas of the bus; with none named, on one that is started for it.
 
     Raises Unavailable where a replica does not answer, or none is named and the sim is not installed here.
     """
@@ -69,7 +69,7 @@ def _private() -> Iterator[tuple[Bus, Sequence[str]]]:
 
 @contextlib.contextmanager
 def _connected(endpoint: str, replica: subprocess.Popen[bytes], log: Path) -> Iterator[Bus]:
-    """When the replica's token is there."""
+    """Give the bus as soon as the replica's token is there."""
     up = threading.Event()
     deadline_s = clock.monotonic_s() + _START_TIMEOUT_S
     with ZenohBus.connect(endpoint) as bus:

@@ -45,9 +45,11 @@ def roll_out(
 
     All policies are of one task and rate and drive all of its arms. An episode ends with success, with an irrecoverable
     failure, or after `time_limit_s`, the length of the task's trials unless told.
-    Raises InvalidInput where the policies do not fit together.
+    Raises InvalidInput where the policies do not fit together, or without seeds.
     """
-    task = _common_task(policies)
+    if not len(seeds):
+        raise InvalidInput("No seeds were given; give one for each world.")
+    task = common_task(policies)
     together = _WORLDS_AT_ONCE // min(len(seeds), SEEDS_AT_ONCE)
     groups = [policies[first : first + together] for first in range(0, len(policies), together)]
     limit_s = task.trial_limit_s if time_limit_s is None else time_limit_s
@@ -98,7 +100,7 @@ class _PolicyBatch:
         return self._success | self._failed
 
     def _act(self, observations: Mapping[str, Array]) -> Array:
-        """float64[worlds, arms, 7]; zeros where a policy has nothing left to play."""
+        """Return what is done next, float64[worlds, arms, 7]; zeros where a policy has nothing left to play."""
         actions = np.zeros((len(self._ticks), len(self._task.arms), ACTION_SIZE))
         for policy, own in zip(self._policies, self._slices, strict=True):
             if not self._ended[own].all():
@@ -106,7 +108,7 @@ class _PolicyBatch:
         return actions
 
     def _look(self, worlds: BatchState) -> None:
-        """Worlds that have ended stand still, so looking again changes nothing."""
+        """Note how the worlds stand. Those that have ended stand still, so looking again changes nothing."""
         self._done |= worlds.subtasks
         self._success |= worlds.success
         self._failed |= worlds.failed & ~worlds.success
@@ -138,7 +140,8 @@ class _PolicyBatch:
         return RolloutOutcome.FAILURE if self._failed[world] else RolloutOutcome.TIME
 
 
-def _common_task(policies: Sequence[Policy]) -> Task:
+def common_task(policies: Sequence[Policy]) -> Task:
+    """Return the task that all policies are for. Raises InvalidInput where they do not fit together."""
     kinds = {(policy.task, policy.control_hz) for policy in policies}
     if len(kinds) != 1:
         given = ", ".join(f"{task} at {control_hz:g} Hz" for task, control_hz in sorted(kinds))

@@ -18,6 +18,7 @@ class Rate:
 
     @property
     def value(self) -> float:
+        """The share of hits, 0 … 1; 0 of none."""
         return self.hits / self.trials if self.trials else 0.0
 
     @property
@@ -46,6 +47,6 @@ class Spread:
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
-        """Of at least one value."""
+        """Return the spread of at least one value."""
         mean = math.fsum(values) / len(values)
         return cls(mean, math.sqrt(math.fsum((value - mean) ** 2 for value in values) / len(values)))

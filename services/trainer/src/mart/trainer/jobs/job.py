@@ -41,7 +41,7 @@ class ExitCode(IntEnum):
 
 
 class JobSpec(BaseModel):
-    """Say what one job trains and how its checkpoints are evaluated; in files under the names `request` and `judging`."""
+    """What one job trains, and how its checkpoints are evaluated; `request` and `judging` in files."""
 
     model_config = ConfigDict(frozen=True, validate_by_name=True, serialize_by_alias=True)
 

@@ -37,7 +37,10 @@ class JobQueue:
             self._put(job.ended(code=ExitCode.LOST, why="the trainer was stopped meanwhile", now_ns=0))
 
     def submit(self, specs: Sequence[JobSpec], executor: str, now_ns: int) -> list[Job]:
-        """Accept one sweep, a job for each spec, and return its jobs. Raises NotFound for an unknown executor and Conflict where too many are waiting already."""
+        """Accept one sweep, a job for each spec, and return its jobs.
+
+        Raises NotFound for an unknown executor and Conflict where too many are waiting already.
+        """
         if executor not in self._executors:
             raise NotFound.named("executor", executor, self._executors)
         waiting = len(self._table.in_state(JobState.QUEUED))

@@ -51,6 +51,7 @@ class JobTable:
             raise
 
     def close(self) -> None:
+        """Let go of the file."""
         self._connection.close()
 
     def put(self, jobs: Sequence[Job]) -> None:
@@ -66,6 +67,7 @@ class JobTable:
         return found[0]
 
     def newest(self, limit: int, sweep: int | None = None) -> list[Job]:
+        """Return up to `limit` jobs, the newest first; only those of one sweep where it is named."""
         if sweep is None:
             return self._select("ORDER BY number DESC LIMIT ?", limit)
         return self._select("WHERE sweep = ? ORDER BY number DESC LIMIT ?", sweep, limit)

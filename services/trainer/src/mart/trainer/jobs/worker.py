@@ -53,6 +53,7 @@ def _alone(run: Path) -> Iterator[None]:
 
 
 def main() -> int:
+    """Run the job whose folder is the first argument, and return its exit code."""
     run = Path(sys.argv[1])
     configure_logging("INFO", "job")
     with stop_requested() as stop, _alone(run):

@@ -24,7 +24,7 @@ Head = Literal["l2", "gmm"]
 
 
 class ModelSpec(BaseModel):
-    """One point of the grid.
+    """One model of the family: a point of the grid.
 
     network: what the actor is; `rnn` an LSTM over ten steps, `mlp` without memory, `flow` a chunk of actions at once.
     head: what an rnn or mlp ends in; `l2` the mean action (the paper's objective), `gmm` a mixture of Gaussians.
@@ -51,14 +51,17 @@ class ModelSpec(BaseModel):
 
     @property
     def point(self) -> str:
-        """Like `joint/per-arm/none`, followed by `/mlp`, `/gmm` or both where they are not the usual."""
+        """The point, like `joint/per-arm/none`, followed by `/mlp`, `/gmm` or both where they are not the usual."""
         extra = (self.network, "rnn"), (self.head, "l2")
         parts = [self.planner, self.actor, self.residual, *(word for word, usual in extra if word != usual)]
         return "/".join(parts)
 
     @classmethod
     def parse(cls, text: str) -> ModelSpec:
-        """A name in any case, or a point. Raises NotFound, naming what there is, and InvalidInput."""
+        """Return the model of a name in any case, or of a point.
+
+        Raises NotFound, naming what there is, and InvalidInput.
+        """
         named = {name.lower(): model for model, name in _NAMES.items()}
         if text.lower() in named:
             return named[text.lower()]
@@ -103,4 +106,5 @@ _NAMES: dict[ModelSpec, str] = {model: name for name, model in (PAPER | BASELINE
 
 
 def model_names() -> tuple[str, ...]:
+    """Return the names of the models that have one, the paper's seven first."""
     return tuple(_NAMES.values())

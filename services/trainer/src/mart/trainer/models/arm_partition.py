@@ -15,7 +15,7 @@ from mart.trainer.models.architecture import Span
 
 
 class ArmPartition(nn.Module):
-    """One unit sees all columns, or one unit an arm sees that arm's."""
+    """How arms are parted among a model's units: one for all of them, or one an arm that sees its columns."""
 
     def __init__(self, layout: ObservationLayout, span: Span) -> None:
         super().__init__()
@@ -35,28 +35,29 @@ class ArmPartition(nn.Module):
 
     @property
     def action_size(self) -> int:
+        """How many numbers a unit's action has."""
         return self.arms * ACTION_SIZE
 
     def stacked(self, seeds: int) -> Tensor:
-        """bool[M, width], which columns are real."""
+        """Return bool[M, width]: which columns are real."""
         return self.real.repeat(seeds, 1)
 
     def of(self, obs: Tensor) -> Tensor:
-        """[S, ..., D] → [M, ..., width]."""
+        """Return what each model sees of joint observations: [S, ..., D] → [M, ..., width]."""
         if self.units == 1:
             return obs
         taken = obs[..., self.index] * (self.index >= 0)
         return taken.movedim(-2, 1).flatten(0, 1)
 
     def split(self, actions: Tensor) -> Tensor:
-        """What each model should do: [S, ..., arms, 7] → [M, ..., action_size]."""
+        """Part joint actions among models: [S, ..., arms, 7] → [M, ..., action_size]."""
         return self.per_unit(actions.flatten(-2)).contiguous()
 
     def per_unit(self, values: Tensor) -> Tensor:
-        """Values by arm, side by side: [S, ..., arms * k] → [M, ..., k of each of the unit's arms]."""
+        """Part values by arm among models: [S, ..., arms * k] → [M, ..., k of each of the unit's arms]."""
         return values.unflatten(-1, (self.units, -1)).movedim(-2, 1).flatten(0, 1)
 
     def merge(self, actions: Tensor) -> Tensor:
-        """The inverse of `split`: [M, ..., action_size] → [S, ..., arms, 7]."""
+        """Join the models' actions, the inverse of `split`: [M, ..., action_size] → [S, ..., arms, 7]."""
         joined = actions.unflatten(0, (-1, self.units)).movedim(1, -2)
         return joined.flatten(-2).unflatten(-1, (-1, ACTION_SIZE))

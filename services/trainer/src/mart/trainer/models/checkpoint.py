@@ -45,7 +45,10 @@ class CheckpointRecord(BaseModel):
 
 
 def read_record(path: Path) -> CheckpointRecord:
-    """Read the record of a checkpoint. Raises NotFound where there is no checkpoint and Corrupt where it is of another format or damaged."""
+    """Read the record of a checkpoint.
+
+    Raises NotFound where there is no checkpoint and Corrupt where it is of another format or damaged.
+    """
     file = path / RECORD
     if not file.is_file():
         raise NotFound(f"There is no checkpoint {path}; name a directory that holds {RECORD}.")
@@ -61,7 +64,10 @@ def read_record(path: Path) -> CheckpointRecord:
 
 
 def read_weights(path: Path) -> dict[str, torch.Tensor]:
-    """Read the weights of a checkpoint by name, on the CPU. Raises NotFound where they are missing and Corrupt where the file is damaged."""
+    """Read the weights of a checkpoint by name, on the CPU.
+
+    Raises NotFound where they are missing and Corrupt where the file is damaged.
+    """
     from safetensors.torch import load_file
 
     file = path / WEIGHTS

@@ -12,7 +12,10 @@ _ALLOWED = re.compile(r"cpu|cuda(:\d{1,3})?|auto")
 
 
 def find_device(name: str) -> torch.device:
-    """`cpu`, `cuda`, `cuda:N`, or `auto`: a GPU where there is one. Raises InvalidInput and Unavailable."""
+    """Return the device of a name: `cpu`, `cuda`, `cuda:N`, or `auto`, a GPU where there is one.
+
+    Raises InvalidInput and Unavailable.
+    """
     if not _ALLOWED.fullmatch(name):
         raise InvalidInput(f"The device {name!r} was given; use cpu, cuda, cuda:N or auto.")
     if name == "auto":
@@ -26,7 +29,7 @@ def find_device(name: str) -> torch.device:
 
 
 def product_dtype(device: torch.device, precision: str = "auto") -> torch.dtype:
-    """`float32`, `bfloat16`, or `auto`: bfloat16 where the processor has instructions to multiply it."""
+    """Return the type of matrix products. precision: float32, bfloat16, or auto: what is fastest."""
     if precision != "auto":
         return {"float32": torch.float32, "bfloat16": torch.bfloat16}[precision]
     if device.type == "cuda":

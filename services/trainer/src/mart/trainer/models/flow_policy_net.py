@@ -19,6 +19,8 @@ HISTORY = 2  # observations that a chunk follows from
 
 
 class FlowPolicyNet(nn.Module):
+    """A flow of action chunks, of all arms at once or of each by itself."""
+
     def __init__(
         self, model: ModelSpec, layout: ObservationLayout, sizes: Hyperparameters, seeds: Sequence[int]
     ) -> None:
@@ -34,6 +36,7 @@ class FlowPolicyNet(nn.Module):
         )
 
     def base_losses(self, batch: WindowBatch, rng: Rng) -> Losses:
+        """Return the losses of one batch."""
         partition, windows = self.partition, batch.obs.shape[2]
         actions = partition.split(batch.actions).movedim(1, 2)
         t = rng.uniform(partition.units, windows)
@@ -44,10 +47,10 @@ class FlowPolicyNet(nn.Module):
         return Losses({"actor": each.flatten(1).mean(1)}, {})
 
     def chunk(self, obs: Tensor, rng: Rng) -> Tensor:
-        """obs: [S, 2, B, D], older first → [S, chunk, B, arms, 7]."""
+        """Draw a chunk of actions. obs: [S, 2, B, D], older first → [S, chunk, B, arms, 7]."""
         drawn = rng.normal(self.partition.units, obs.shape[2], self.flow.chunk * self.flow.size)
         return self.partition.merge(self.flow.sample(self._condition(obs), drawn).movedim(2, 1))
 
     def _condition(self, obs: Tensor) -> Tensor:
-        """[S, 2, B, D] → [M, B, 2 * width]."""
+        """Lay two observations side by side: [S, 2, B, D] → [M, B, 2 * width]."""
         return self.partition.of(obs).movedim(1, 2).flatten(2)

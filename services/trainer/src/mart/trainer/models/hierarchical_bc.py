@@ -52,7 +52,7 @@ class HierarchicalBC(nn.Module):
         self.residual = self._residual(seeds)
 
     def base_losses(self, batch: WindowBatch, rng: Rng) -> Losses:
-        """Of planner and actor."""
+        """Return the losses of planner and actor."""
         losses, looks = {}, {}
         goal = None
         if self.planner is not None and self.planner_partition is not None:
@@ -72,7 +72,7 @@ class HierarchicalBC(nn.Module):
         return Losses(losses, {name: value.detach() for name, value in looks.items()})
 
     def residual_losses(self, batch: WindowBatch, rng: Rng) -> Losses:
-        """Of the residual; base and planner are frozen, and the base acts on reconstructed subgoals."""
+        """Return the losses of the residual; the base is frozen and acts on reconstructed subgoals."""
         assert self.residual is not None
         assert self.residual_partition is not None
         with torch.no_grad():
@@ -91,10 +91,11 @@ class HierarchicalBC(nn.Module):
         return Losses({"residual": _mean(each, weights)}, looks)
 
     def start(self, batch: int) -> Memory:
+        """Return what the actor remembers before the first tick of a window."""
         return self.actor.body.start(batch)
 
     def plan(self, obs: Tensor, rng: Rng) -> Tensor | None:
-        """A subgoal as the actor takes it. obs: [S, B, D] → [M, B, G]; None without a planner."""
+        """Draw a subgoal, as the actor takes it. obs: [S, B, D] → [M, B, G]; None without a planner."""
         if self.planner is None or self.planner_partition is None:
             return None
         partition, batch = self.planner_partition, obs.shape[1]
@@ -103,7 +104,7 @@ class HierarchicalBC(nn.Module):
         return self._routed(self.planner.sample(partition.of(obs), choice, drawn))
 
     def act(self, obs: Tensor, goal: Tensor | None, memory: Memory, rng: Rng) -> tuple[Tensor, Memory]:
-        """One tick. obs: [S, B, D] → [S, B, arms, 7], and what the actor remembers."""
+        """Act for one tick. obs: [S, B, D] → [S, B, arms, 7] in [-1, 1], and what the actor remembers."""
         inputs = self._inputs(obs[:, None], goal)[:, 0]
         actions, memory = self.actor.step(inputs, memory, *self._draws(obs.shape[1], rng))
         merged = self.partition.merge(actions)
@@ -113,13 +114,13 @@ class HierarchicalBC(nn.Module):
         return merged.clamp(-1, 1), memory
 
     def _sequence(self, batch: WindowBatch, rng: Rng) -> Tensor:
-        """What the base does over a window, on the way that was demonstrated: [S, T, B, arms, 7]."""
+        """Return what the base does over a window, on the way that was demonstrated: [S, T, B, arms, 7]."""
         ticks, size = batch.obs.shape[1:3]
         inputs = self._inputs(batch.obs, self._posterior_subgoal(batch, rng))
         return self.partition.merge(self.actor.sequence(inputs, *self._draws(ticks * size, rng)))
 
     def _posterior_subgoal(self, batch: WindowBatch, rng: Rng) -> Tensor | None:
-        """The demonstrated subgoal in the planner's words, as the actor takes it: [M, B, G]."""
+        """Return the demonstrated subgoal, encoded and decoded by the planner, as the actor takes it: [M, B, G]."""
         if self.planner is None or self.planner_partition is None:
             return None
         partition, obs = self.planner_partition, batch.obs[:, 0]
@@ -132,12 +133,12 @@ class HierarchicalBC(nn.Module):
         )
 
     def _inputs(self, obs: Tensor, goal: Tensor | None) -> Tensor:
-        """What the actor is given: [S, T, B, D] and [M, B, G] → [M, T, B, I]."""
+        """Return what the actor is given: [S, T, B, D] and [M, B, G] → [M, T, B, I]."""
         own = self.partition.of(obs)
         return own if goal is None else torch.cat((own, goal[:, None].expand(-1, own.shape[1], -1, -1)), -1)
 
     def _routed(self, goal: Tensor) -> Tensor:
-        """From the planner's view to the actor's: [planners, B, width] → [actors, B, G].
+        """Bring subgoals from the planner's units to the actor's: [planners, B, width] → [actors, B, G].
 
         To one actor from many planners they all go, side by side: where arms see the same thing, what is planned for
         it may differ, and the actor is given every opinion. From one planner each of many actors gets its arm's part.
@@ -150,7 +151,7 @@ class HierarchicalBC(nn.Module):
         return goal.unflatten(0, (-1, self.planner_partition.units)).movedim(1, -2).flatten(-2)
 
     def _goal_mask(self) -> Tensor:
-        """bool[units, G]: which columns of the actor's subgoal are real."""
+        """Return bool[units, G]: which columns of the actor's subgoal are real."""
         if self.planner_partition is None:
             return torch.zeros(self.partition.units, 0, dtype=torch.bool)
         return (
@@ -200,7 +201,7 @@ class HierarchicalBC(nn.Module):
 
 
 def _equal_by_name(layout: ObservationLayout, partition: ArmPartition) -> Tensor:
-    """float32[units, width]: weights of columns so that each named observation counts the same; sum 1."""
+    """Return float32[units, width]: weights of columns so that each named observation counts the same; sum 1."""
     groups = torch.from_numpy(layout.groups())
     index = partition.index
     group = torch.where(index >= 0, groups[index], len(layout.fields))
@@ -210,10 +211,10 @@ def _equal_by_name(layout: ObservationLayout, partition: ArmPartition) -> Tensor
 
 
 def _mean_weights(partition: ArmPartition, weights: Tensor) -> Tensor:
-    """Of each model, over the arms that it drives: [S, ..., arms] → [M, ...]."""
+    """Average the weights of each model over the arms that it drives: [S, ..., arms] → [M, ...]."""
     return partition.per_unit(weights).mean(-1)
 
 
 def _mean(each: Tensor, weights: Tensor | None) -> Tensor:
-    """[M, ...] → [M]."""
+    """Average over all but the models, weighted: [M, ...] → [M]."""
     return (each if weights is None else each * weights).flatten(1).mean(1)

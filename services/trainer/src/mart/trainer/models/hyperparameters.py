@@ -12,7 +12,7 @@ class Hyperparameters(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
-    # The course
+    # Updates
     updates: int = Field(200_000, ge=1)
     residual_updates: int = Field(20_000, ge=1)  # after the base's, which is frozen then
     checkpoints: int = Field(20, ge=1)  # evenly spaced over all updates

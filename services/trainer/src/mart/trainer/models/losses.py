@@ -10,12 +10,12 @@ from torch import Tensor
 
 @dataclass(frozen=True)
 class Losses:
-    """Of an update. `terms`: by name, each [M], to be minimised; `diagnostics`: by name, numbers to look at."""
+    """Losses of one update. `terms`: by name, each [M], to be minimised; `diagnostics`: by name, numbers to look at."""
 
     terms: dict[str, Tensor]
     diagnostics: dict[str, Tensor]
 
     @property
     def total(self) -> Tensor:
-        """Models never meet, so the gradient of the sum is that of each."""
+        """Sum of all terms. Models never meet, so the gradient of the sum is that of each."""
         return torch.stack([loss.sum() for loss in self.terms.values()]).sum()

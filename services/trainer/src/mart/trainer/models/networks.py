@@ -27,7 +27,7 @@ class Networks(nn.Module):
         seeds: Sequence[int],
         dtype: torch.dtype = torch.float32,
     ) -> None:
-        """`dtype`: of an LSTM's matrix products while training."""
+        """dtype: of an LSTM's matrix products while training."""
         super().__init__()
         self.normaliser = Normaliser(layout.width)
         self.model: HierarchicalBC | FlowPolicyNet = (
@@ -38,6 +38,7 @@ class Networks(nn.Module):
 
 
 def window_spec(model: ModelSpec, sizes: Hyperparameters) -> WindowSpec:
+    """Return which ticks of a window a model learns from."""
     return (
         WindowSpec.chunk(sizes.flow_chunk) if model.network == "flow" else WindowSpec.sequence(sizes.window)
     )

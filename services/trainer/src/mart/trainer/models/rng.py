@@ -19,26 +19,26 @@ from mart.trainer.models.layers.stack import Generators
 
 
 class Rng(Protocol):
-    """What a network may draw. M = S * units models, S of them known to the noise."""
+    """What a network may draw. M = S * units models, S seeds known to the source."""
 
     def uniform(self, units: int, batch: int) -> Tensor:
-        """float32[M, batch] in [0, 1)."""
+        """Draw float32[M, batch], uniform in [0, 1)."""
         ...
 
     def normal(self, units: int, batch: int, size: int) -> Tensor:
-        """float32[M, batch, size]."""
+        """Draw float32[M, batch, size], standard normal."""
         ...
 
 
 class UpdateRng:
-    """Of one update: each seed draws for its own models."""
+    """Random numbers of one update: each seed draws for its own models."""
 
     def __init__(self, seeds: Sequence[int], update: int, device: torch.device) -> None:
         self._generators = [Generator(Philox(key=seed, counter=[0, 0, 0, update])) for seed in seeds]
         self._device = device
 
     def integers(self, below: int, count: int) -> Tensor:
-        """int64[S, count] in [0, below)."""
+        """Draw int64[S, count], uniform in [0, below)."""
         return self._stack([one.integers(below, size=count) for one in self._generators])
 
     def uniform(self, units: int, batch: int) -> Tensor:
@@ -54,7 +54,7 @@ class UpdateRng:
 
 
 class WorldRng:
-    """Of one episode in each of `worlds` worlds, which are the batch; one seed (S = 1)."""
+    """Random numbers of one episode in each of `worlds` worlds, which are the batch; one seed (S = 1)."""
 
     def __init__(self, seed: int, worlds: int, device: torch.device) -> None:
         self._generators = [Generator(Philox(key=seed | world << 64)) for world in range(worlds)]
@@ -72,7 +72,7 @@ class WorldRng:
 
 
 def weight_generators(seeds: Sequence[int], units: int, part: str) -> Generators:
-    """One for each model, of its seed, its unit and the part of the hierarchy alone."""
+    """Return a generator for each model, seeded by its seed, its unit and the part of the hierarchy alone."""
     label = int.from_bytes(part.encode(), "little")
     states = [
         np.random.SeedSequence([seed, unit, label]).generate_state(1)[0]

@@ -30,7 +30,10 @@ class Attempt:
 
 @dataclass(frozen=True)
 class CoordinationStage:
-    """entered, passed: how many episodes began and completed it, all stages before included."""
+    """Neighbouring subtasks of one kind.
+
+    entered, passed: how many episodes began and completed it, all stages before included.
+    """
 
     subtasks: tuple[str, ...]
     coordinated: bool
@@ -40,6 +43,8 @@ class CoordinationStage:
 
 @dataclass(frozen=True)
 class Coordination:
+    """How the attempts at one task passed its stages."""
+
     task: str
     stages: tuple[CoordinationStage, ...]
     episodes: int
@@ -54,6 +59,7 @@ class Coordination:
 
 
 def coordination(task: Task, attempts: Sequence[Attempt]) -> Coordination:
+    """Count how many attempts entered and passed each stage of a task."""
     kinds = groupby(task.subtasks, lambda subtask: subtask.coordinated)
     planned = [(coordinated, tuple(subtask.name for subtask in group)) for coordinated, group in kinds]
     stages: list[CoordinationStage] = []

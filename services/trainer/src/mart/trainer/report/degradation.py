@@ -14,7 +14,7 @@ _KINDS = ("uncoordinated", "coordinated")
 
 
 def row(task: Task, attempts: Sequence[Attempt]) -> dict[str, Any]:
-    """One task as plain data, rates in per cent."""
+    """Return one task as plain data, rates in per cent."""
     found = coordination(task, attempts)
     kinds = {kind: found.degradation(coordinated=kind == "coordinated") for kind in _KINDS}
     return {
@@ -39,6 +39,7 @@ def row(task: Task, attempts: Sequence[Attempt]) -> dict[str, Any]:
 
 
 def text(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return Table I in lines, ours beside the paper's."""
     lines = ["Marginal success-rate degradation, % of all episodes (95 % interval)"]
     for row in rows:
         lines += ["", f"{row['title']}: {row['episodes']} episodes, {_words(row['success'])} succeeded"]

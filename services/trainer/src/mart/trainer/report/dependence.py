@@ -45,13 +45,16 @@ class ObservedEpisode:
 
     @property
     def bins(self) -> NDArray[np.int64]:
-        """[T]: in which part of the episode each tick is."""
+        """int64[T]: in which part of the episode each tick is."""
         return np.arange(len(self.actions)) * BINS // len(self.actions)
 
 
 @dataclass(frozen=True)
 class Dependence:
-    """Of one arm, by part of the episode: the score, and where it lies with 95 % confidence (bootstrap of episodes)."""
+    """How much one arm depends on the others, by part of the episode.
+
+    score: see above. low, high: where it lies with 95 % confidence (bootstrap of episodes).
+    """
 
     score: Array
     low: Array
@@ -62,7 +65,7 @@ class Dependence:
 def dependence(
     episodes: Sequence[ObservedEpisode], own: NDArray[np.int64], arm: int, seed: int = 0
 ) -> Dependence:
-    """Of one arm. own: the columns of the observations that its operator sees.
+    """Measure how much one arm depends on the others. own: the columns of the observations that its operator sees.
 
     Raises InvalidInput where there are fewer than MIN_EPISODES episodes.
     """
@@ -83,7 +86,7 @@ def dependence(
 
 
 def _partners(episodes: Sequence[ObservedEpisode], random: np.random.Generator) -> list[ObservedEpisode]:
-    """For each episode another one of the same fold."""
+    """Return for each episode another one of the same fold."""
     partner = np.arange(len(episodes))
     for fold in range(_FOLDS):
         members = partner[partner % _FOLDS == fold]
@@ -95,7 +98,7 @@ def _partners(episodes: Sequence[ObservedEpisode], random: np.random.Generator) 
 def _stack(
     episodes: Sequence[ObservedEpisode], partners: Sequence[ObservedEpisode], own: NDArray[np.int64]
 ) -> Array:
-    """[ticks, width + 2]: own columns, the partner's at the same share of its length, and the time."""
+    """Return [ticks, width + 2]: own columns, the partner's at the same share of its length, and the time."""
     parts = []
     for episode, partner in zip(episodes, partners, strict=True):
         ticks = len(episode.actions)
@@ -123,7 +126,7 @@ class _Features:
 
 
 def _held_out(features: Array, actions: Array, index: NDArray[np.int64]) -> Array:
-    """[ticks]: squared error of each tick, predicted without the episodes of its fold."""
+    """Return [ticks]: squared error of each tick, predicted without the episodes of its fold."""
     errors = np.empty(len(actions))
     for fold in range(_FOLDS):
         test = index % _FOLDS == fold
@@ -135,14 +138,14 @@ def _held_out(features: Array, actions: Array, index: NDArray[np.int64]) -> Arra
 
 
 def _sums(errors: Array, index: NDArray[np.int64], bins: NDArray[np.int64], episodes: int) -> Array:
-    """[episodes, bins]"""
+    """Return errors summed by episode and part of it: [episodes, bins]."""
     sums = np.zeros((episodes, BINS))
     np.add.at(sums, (index, bins), errors)
     return sums
 
 
 def _scores(sums: Array, random: np.random.Generator) -> Dependence:
-    """sums: [2, episodes, bins], with and without the partners."""
+    """Return the scores. sums: [2, episodes, bins], with and without the partners."""
 
     def score(chosen: NDArray[np.int64]) -> Array:
         known, unknown = sums[:, chosen].sum(axis=1)

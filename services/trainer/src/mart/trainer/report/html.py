@@ -17,6 +17,7 @@ _NOT_HELD = "all done, not held"
 
 
 def results_page(results: Results) -> str:
+    """Return a page of tables and figures of what runs achieve."""
     models = sorted({model for task in results.tasks for model in results.models(task)}, key=_rank)
     cells = [cell for task in results.tasks for cell in results.cells[task].values()]
     numbers = sorted({len(cell.rates.seeds) for cell in cells})
@@ -34,6 +35,7 @@ def results_page(results: Results) -> str:
 
 
 def dependence_page(couplings: Sequence[Coupling], model: str) -> str:
+    """Return a page that draws how much arms depend on each other over an episode."""
     limits = plots.limits_percent(couplings)
     return _page(
         "dependence.html",
@@ -54,6 +56,7 @@ def dependence_page(couplings: Sequence[Coupling], model: str) -> str:
 
 
 def save(path: Path, page: str) -> None:
+    """Write a page to a file; a missing folder is made."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(page, encoding="utf-8")
 

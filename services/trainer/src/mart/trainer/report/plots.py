@@ -29,7 +29,7 @@ _LINES = (
 
 
 def success(results: Results, task: str) -> str:
-    """Ours in fresh worlds with its interval, ours by the paper's protocol, and the paper's; a row a model."""
+    """Draw ours in fresh worlds with its interval, ours by the paper's protocol, and the paper's; a row a model."""
     models = results.models(task)
     with _figure(5.4, 0.9 + 0.36 * len(models)) as (figure, axes):
         for row, model in enumerate(models):
@@ -48,7 +48,7 @@ def success(results: Results, task: str) -> str:
 
 
 def learning(results: Results, task: str) -> str:
-    """Success of checkpoints over training, a line a model."""
+    """Draw the success of checkpoints over training, a line a model."""
     with _figure(5.4, 3.2) as (figure, axes):
         for (color, dash), model in zip(_LINES, results.models(task), strict=False):
             curve = results.cells[task][model].learning_curve
@@ -64,7 +64,10 @@ def learning(results: Results, task: str) -> str:
 
 
 def dependences(coupling: Coupling, limits_percent: tuple[float, float]) -> str:
-    """What an arm needs to know of the others over an episode; below, what a model uses. Equal limits compare tasks."""
+    """Draw what an arm needs to know of the others over an episode; below, what a model uses.
+
+    Equal limits compare tasks.
+    """
     used = coupling.reliance
     with _panels(7.2, (3.0, 2.0) if used else (3.2,)) as (figure, panels):
         need = panels[0]
@@ -90,7 +93,7 @@ def dependences(coupling: Coupling, limits_percent: tuple[float, float]) -> str:
 
 
 def limits_percent(couplings: Sequence[Coupling]) -> tuple[float, float]:
-    """That hold what all of these tasks need."""
+    """Return the limits that hold what all of these tasks need."""
     values = [value for c in couplings for own in c.found.values() for value in (*own.low, *own.high)]
     return 100 * min(-0.1, *values) - 2, 100 * max(0.3, *values) + 2
 
@@ -100,7 +103,7 @@ def _line(arm: Arm) -> dict[str, Any]:
 
 
 def _event(axes: Axes, name: str, at: float, *, solid: bool) -> None:
-    """An upright line with its name on top."""
+    """Draw an upright line with its name on top."""
     axes.axvline(at, color=_QUIET, linewidth=0.8, linestyle="-" if solid else (0, (1, 3)))
     axes.annotate(
         name,
@@ -115,7 +118,7 @@ def _event(axes: Axes, name: str, at: float, *, solid: bool) -> None:
 
 
 def _bar(axes: Axes, row: float, value: float, reach: tuple[float, float], *, filled: bool) -> None:
-    """A dot and how far it may be off, below and above: filled for ours, hollow for the paper's."""
+    """Draw a dot and how far it may be off, below and above: filled for ours, hollow for the paper's."""
     color = _ACCENT if filled else _QUIET
     axes.plot([value - reach[0], value + reach[1]], [row, row], color=color, linewidth=1.2)
     axes.plot(value, row, "o", color=color, markerfacecolor=color if filled else "white", markersize=6)
@@ -137,7 +140,7 @@ def _figure(width_in: float, height_in: float) -> Iterator[tuple[Figure, Axes]]:
 
 @contextmanager
 def _panels(width_in: float, heights_in: Sequence[float]) -> Iterator[tuple[Figure, list[Axes]]]:
-    """One above the other, with the same x."""
+    """Give panels, one above the other, with the same x."""
     with mpl.rc_context(fname=_STYLE):
         figure = Figure(figsize=(width_in, sum(heights_in)), layout="constrained")
         panels = figure.subplots(
@@ -147,7 +150,7 @@ def _panels(width_in: float, heights_in: Sequence[float]) -> Iterator[tuple[Figu
 
 
 def _svg(figure: Figure, label: str) -> str:
-    """For use inside a page, with a name for those who do not see it."""
+    """Return the figure for use inside a page, with a name for those who do not see it."""
     stream = io.StringIO()
     figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     text = stream.getvalue()

@@ -33,7 +33,7 @@ class Cell:
 
     @property
     def failures(self) -> dict[str, float]:
-        """The subtask that was missing first → share of the fresh episodes, where there are any."""
+        """Subtask that was missing first → share of the fresh episodes, where there are any."""
         scored = [found for found in self.evaluations if found.purpose is Purpose.SCORE]
         counted = sum((Counter(found.failures) for found in scored), Counter[str]())
         episodes = sum(len(found.played) for found in scored)
@@ -42,7 +42,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Results:
-    """`cells`: by task, then by model. `reported`: the paper's, in per cent."""
+    """What runs achieve. cells: by task, then by model. reported: the paper's, in per cent."""
 
     title: str
     cells: Mapping[str, Mapping[str, Cell]]
@@ -50,22 +50,24 @@ class Results:
 
     @property
     def tasks(self) -> list[str]:
+        """Names of the tasks, the paper's in its order, then the others."""
         known = list(paper.TITLES)
         return sorted(self.cells, key=lambda task: known.index(task) if task in known else len(known))
 
     def models(self, task: str) -> list[str]:
-        """The paper's in its order, then the others."""
+        """Return the models of a task, the paper's in its order, then the others."""
         known = list(paper.EXPERIENCED)
         return sorted(
             self.cells[task], key=lambda model: (known.index(model) if model in known else len(known), model)
         )
 
     def paper(self, model: str, task: str) -> Spread | None:
+        """Return what the paper reports of a model on a task, in per cent; None where it does not."""
         return self.reported.get(model, {}).get(task)
 
 
 def read_results(folder: Path, title: str, reported: paper.Results) -> Results:
-    """From every run below a folder; runs of the same model on the same task count as more seeds of it.
+    """Read every run below a folder; runs of the same model on the same task count as more seeds of it.
 
     Raises NotFound where no run was judged.
     """
@@ -85,7 +87,7 @@ def read_results(folder: Path, title: str, reported: paper.Results) -> Results:
 
 
 def _by_newest_rules(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
-    """Those that were made as the newest of their purpose was: others cannot be compared with them."""
+    """Return those that were made as the newest of their purpose was: others cannot be compared with them."""
 
     def rules(evaluation: Evaluation) -> tuple[int, int, float]:
         return evaluation.world_seed, len(evaluation.played), evaluation.time_limit_s
@@ -98,7 +100,7 @@ _SEEDS_OF_A_RUN = 2**31  # seed 0 of two runs are two seeds
 
 
 def in_words(results: Results) -> str:
-    """A block a task, a row a model."""
+    """Return the results in lines, a block a task and a row a model."""
     lines = [
         results.title,
         "Success in %: best checkpoint of each seed (mean ± deviation) | in fresh worlds | the paper",
@@ -117,7 +119,7 @@ def in_words(results: Results) -> str:
 
 
 def as_rows(results: Results) -> list[dict[str, object]]:
-    """Plain data, rates as shares."""
+    """Return the results as plain data, rates as shares."""
     rows: list[dict[str, object]] = []
     for task in results.tasks:
         for model in results.models(task):

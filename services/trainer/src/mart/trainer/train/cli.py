@@ -18,8 +18,8 @@ from mart.trainer.train.presets import PRESETS
 from mart.trainer.train.spec import TrainingSpec
 
 if TYPE_CHECKING:
+    from mart.trainer.train.progress import TrainingProgress
     from mart.trainer.train.run_directory import RunDirectory
-    from mart.trainer.train.training import TrainingProgress
 
 _paths = click.Path(path_type=Path, exists=True)
 
@@ -48,11 +48,19 @@ _paths = click.Path(path_type=Path, exists=True)
 @click.option("--resume", type=_paths, help="Go on with this run; nothing else is asked then.")
 @click.option("--base", type=_paths, help="A run, or one of its checkpoints, that a residual corrects.")
 @click.option(
-    "--outcome", type=click.Choice([*EpisodeOutcome, "any"]), multiple=True, help="[default: success]"
+    "--outcome",
+    type=click.Choice([*map(str, EpisodeOutcome), "any"]),
+    multiple=True,
+    help="[default: success]",
 )
-@click.option("--verdict", type=click.Choice([*Verdict, "any"]), multiple=True, help="[default: verified]")
 @click.option(
-    "--operator", type=click.Choice(list(OperatorKind)), multiple=True, help="Only episodes driven by these."
+    "--verdict", type=click.Choice([*map(str, Verdict), "any"]), multiple=True, help="[default: verified]"
+)
+@click.option(
+    "--operator",
+    type=click.Choice([*map(str, OperatorKind)]),
+    multiple=True,
+    help="Only episodes driven by these.",
 )
 @click.option("--name", multiple=True, help="Only episodes driven by these people, skills or policies.")
 @click.option("--first", type=click.IntRange(1), help="Only the oldest so many of them.")

@@ -17,7 +17,7 @@ class EMA:
 
     @torch.no_grad()
     def update(self, number: int) -> None:
-        """Move towards the weights after update `number` (from 1): while it is young it forgets its beginning faster."""
+        """Move towards the weights after update `number`, from 1; while young it forgets its beginning faster."""
         decay = min(self._decay, number / (number + 10))
         for value, weight in zip(self.values.values(), self._weights, strict=True):
             value.lerp_(weight, 1 - decay)

@@ -20,7 +20,7 @@ from mart.trainer.train.run_directory import RunDirectory
 class MetricsWriter:
     """Write means over the updates since the last line.
 
-    A line: updates, updates_in_all, updates_per_s, stage, at_ns, loss, loss/NAME of its parts, and the other diagnostics.
+    A line: updates, updates_in_all, updates_per_s, stage, at_ns, loss, loss/NAME of its parts, other diagnostics.
     """
 
     def __init__(self, run: RunDirectory, seeds: tuple[int, ...], updates: int, updates_in_all: int) -> None:

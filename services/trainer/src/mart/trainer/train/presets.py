@@ -45,7 +45,7 @@ PRESETS: dict[str, Hyperparameters] = {
 
 
 def preset(name: str) -> Hyperparameters:
-    """Raises NotFound for an unknown name."""
+    """Return the hyperparameters of a preset. Raises NotFound for an unknown name."""
     if name not in PRESETS:
         raise NotFound.named("preset", name, PRESETS)
     return PRESETS[name]

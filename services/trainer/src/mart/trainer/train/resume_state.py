@@ -17,7 +17,7 @@ _STATE = "state.safetensors"
 
 
 def write_state(run: RunDirectory, updates: int, state: Mapping[str, Tensor]) -> None:
-    """What `read_state` reads; what was kept before goes."""
+    """Keep what a continuation after so many updates needs; what was kept before goes."""
     whole = {name: value.cpu().contiguous() for name, value in state.items()}
     write_directory_atomically(run.resume / str(updates), {_STATE: save(whole)})
     for older in run.resume.iterdir():
@@ -26,7 +26,7 @@ def write_state(run: RunDirectory, updates: int, state: Mapping[str, Tensor]) ->
 
 
 def read_state(run: RunDirectory) -> tuple[int, dict[str, Tensor]] | None:
-    """The newest, and after how many updates it was kept; None where a run has not come so far."""
+    """Return the newest state, and after how many updates it was kept; None where a run has not come so far."""
     kept = sorted((path for path in run.resume.glob("*") if path.name.isdigit()), key=lambda p: int(p.name))
     if not kept:
         return None

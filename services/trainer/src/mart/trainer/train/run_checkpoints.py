@@ -37,7 +37,7 @@ def write_checkpoint(
     sizes: Hyperparameters,
     model: ModelSpec,
 ) -> None:
-    """One checkpoint a seed. They come to be together or not at all."""
+    """Write one checkpoint a seed; they come to be together or not at all."""
     files = {}
     for index, seed in enumerate(seeds):
         record = CheckpointRecord(
@@ -62,7 +62,7 @@ def write_checkpoint(
 def read_base(
     folder: Path, seeds: Sequence[int], model: ModelSpec, layout: ObservationLayout
 ) -> dict[str, Tensor]:
-    """Planners, actors and normalisation of another run's seeds, as weights of this one.
+    """Return planners, actors and normalisation of another run's seeds, as weights of this one.
 
     folder: a run, whose newest checkpoint is taken, or one of its checkpoints (`…/checkpoints/4000`).
     Raises InvalidInput where that run's model is not the base of this one, or lacks a seed.

@@ -28,7 +28,10 @@ class RunDirectory:
 
     @property
     def spec(self) -> TrainingSpec:
-        """What the run was asked to do. Raises NotFound where this is no run and Corrupt where what it was asked cannot be read."""
+        """What the run was asked to do.
+
+        Raises NotFound where this is no run and Corrupt where what it was asked cannot be read.
+        """
         file = self.path / SPEC_FILE
         if not file.is_file():
             raise NotFound(f"There is no run {self.path}; name a directory that holds {SPEC_FILE}.")
@@ -39,26 +42,32 @@ class RunDirectory:
 
     @property
     def data(self) -> Path:
+        """What was learned from."""
         return self.path / "data.json"
 
     @property
     def metrics(self) -> Path:
+        """The curves, as lines of JSON."""
         return self.path / "metrics.jsonl"
 
     @property
     def tensorboard(self) -> Path:
+        """The curves, for TensorBoard."""
         return self.path / "tensorboard"
 
     @property
     def evaluations(self) -> Path:
+        """What evaluations said, as lines of JSON."""
         return self.path / "evaluations.jsonl"
 
     @property
     def checkpoints(self) -> Path:
+        """The folder of all checkpoints."""
         return self.path / "checkpoints"
 
     @property
     def resume(self) -> Path:
+        """The folder of what a continuation needs."""
         return self.path / "resume"
 
     def checkpointed(self) -> tuple[int, ...]:

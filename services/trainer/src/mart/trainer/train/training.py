@@ -9,9 +9,8 @@ import fcntl
 import json
 import math
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +27,7 @@ from mart.trainer.data.windows import Windows
 from mart.trainer.models.devices import find_device, product_dtype
 from mart.trainer.models.networks import Networks, window_spec
 from mart.trainer.train.metrics import MetricsWriter
+from mart.trainer.train.progress import TrainingProgress
 from mart.trainer.train.resume_state import read_state, write_state
 from mart.trainer.train.run_checkpoints import read_base, write_checkpoint
 from mart.trainer.train.run_directory import SPEC_FILE, RunDirectory
@@ -36,17 +36,6 @@ from mart.trainer.train.training_loop import TrainingLoop, training_phases
 
 _POINTS = 400  # of a curve
 _KEPT_EVERY_S = 120.0  # what a kill may cost
-
-
-@dataclass(frozen=True)
-class TrainingProgress:
-    """How far a training has come. losses: by name, means over seeds since the last report."""
-
-    updates: int
-    updates_in_all: int
-    phase: str
-    updates_per_s: float
-    losses: Mapping[str, float]
 
 
 def train(
@@ -124,7 +113,7 @@ def _training_loop(spec: TrainingSpec, dataset: Dataset, device: torch.device) -
 
 
 def _weights(dataset: Dataset, spec: TrainingSpec) -> Tensor | None:
-    """Return float32[rows, arms], how much a tick counts by who drove the arm in the tick; 1 on average over the ticks."""
+    """Return float32[rows, arms]: how much a tick counts by who drove the arm in it; 1 on average."""
     if not spec.weights:
         return None
     of_source = torch.ones(int(dataset.sources.max()) + 1)
@@ -188,7 +177,10 @@ def _claimed(run: RunDirectory, spec: TrainingSpec) -> Iterator[None]:
 
 
 def _note(run: RunDirectory, spec: TrainingSpec, dataset: Dataset) -> None:
-    """Write down what is trained from what, once it is clear that it can be. Raises Conflict where a run had other data."""
+    """Write down what is trained from what, once it is clear that it can be.
+
+    Raises Conflict where a run had other data.
+    """
     if not (run.path / SPEC_FILE).exists():
         _write_json(run.data, dataset.digest.model_dump_json())
         _write_json(run.path / SPEC_FILE, spec.model_dump_json())

@@ -34,7 +34,10 @@ class Phase:
 
 
 def training_phases(networks: Networks, sizes: Hyperparameters, *, has_base: bool) -> list[Phase]:
-    """Return the phases of a training. has_base: planner and actor are there already, and only a residual is to be learned."""
+    """Return the phases of a training.
+
+    has_base: planner and actor are there already, and only a residual is to be learned.
+    """
     model, weights = networks.model, dict(networks.named_parameters())
     residual = {name: weight for name, weight in weights.items() if name.startswith("model.residual.")}
     base = {name: weight for name, weight in weights.items() if name not in residual}
@@ -71,6 +74,7 @@ class TrainingLoop:
 
     @property
     def is_over(self) -> bool:
+        """Whether all updates were made."""
         return self.updates >= self.updates_in_all
 
     @property
@@ -149,7 +153,7 @@ class TrainingLoop:
         self._ema = None if self._sizes.ema is None else EMA(weights, self._sizes.ema)
 
     def _leave(self, phase: Phase) -> None:
-        """The averages become the weights: what comes after builds on what acts."""
+        """Make the averages the weights: what comes after builds on what acts."""
         if self._ema is not None:
             with torch.no_grad():
                 for name, weight in phase.weights.items():

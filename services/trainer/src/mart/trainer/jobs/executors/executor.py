@@ -10,7 +10,7 @@ from typing import Protocol
 
 @dataclass(frozen=True)
 class JobEnded:
-    """code: see job.End. why: in words, where it was not done."""
+    """A job's process has ended. code: see ExitCode. why: in words, where it was not done."""
 
     job: int
     code: int
@@ -21,6 +21,8 @@ OnEnded = Callable[[JobEnded], None]  # from any thread, once for each start
 
 
 class Executor(Protocol):
+    """A place where jobs run."""
+
     @property
     def slots(self) -> int:
         """How many jobs it takes at a time now; 0 while it cannot be reached."""
@@ -32,13 +34,13 @@ class Executor(Protocol):
         ...
 
     def start(self, job: int, run: Path) -> None:
-        """Runs `mart.trainer.jobs.worker` on the folder `run`."""
+        """Run `mart.trainer.jobs.worker` on the folder `run`."""
         ...
 
     def stop(self, job: int) -> None:
-        """Asks a job to end soon; it is told of as any other end."""
+        """Ask a job to end soon; that is told of as any other end."""
         ...
 
     def close(self) -> None:
-        """Ends everything that runs."""
+        """End everything that runs."""
         ...

@@ -16,7 +16,7 @@ _STOP_TIMEOUT_S = 30.0
 
 
 class LocalExecutor:
-    """Its methods are called from one thread that lives as long as the trainer: see mart.runtime.child_process."""
+    """Run jobs as processes of this machine, called from one thread that lives as long as the trainer."""
 
     def __init__(self, slots: int, ended: OnEnded) -> None:
         self.slots = slots

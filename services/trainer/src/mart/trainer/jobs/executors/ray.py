@@ -31,7 +31,9 @@ _CONNECT_S = 30.0  # a driver that began while the head was on its way never get
 
 
 class RayExecutor:
-    """`address`: of the head, like 10.0.0.5:6379. `log`: what the driver prints. Its methods are one thread's.
+    """Run jobs on a Ray cluster. For one thread.
+
+    address: of the head, like 10.0.0.5:6379. log: what the driver prints.
 
     Raises InvalidInput for an address of another form.
     """

@@ -29,7 +29,7 @@ _POLL_S = 0.5
 
 @ray.remote(num_cpus=1, max_retries=0, scheduling_strategy="SPREAD")
 def _work(run: str) -> int:
-    """On a node. Killing this task kills the job's process with it."""
+    """Run a job on a node. Killing this task kills the job's process with it."""
     with (Path(run) / LOG).open("ab") as log:
         process = start_child((sys.executable, "-m", "mart.trainer.jobs.worker", run), log, {})
     return process.wait()
@@ -38,16 +38,16 @@ def _work(run: str) -> int:
 class _Tasks:
     """Tasks that are not over."""
 
-    def __init__(self, wire: TextIO) -> None:
-        self._wire = wire
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
         self._jobs: dict[ray.ObjectRef[int], int] = {}
 
-    def obey(self, order: dict[str, Any]) -> None:
-        if "start" in order:
-            self._jobs[_work.remote(order["run"])] = order["start"]
+    def handle(self, request: dict[str, Any]) -> None:
+        if "start" in request:
+            self._jobs[_work.remote(request["run"])] = request["start"]
         else:
             for task, job in self._jobs.items():
-                if job == order["stop"]:
+                if job == request["stop"]:
                     ray.cancel(task, force=True)
 
     def tell_ended(self) -> None:
@@ -55,7 +55,7 @@ class _Tasks:
             ray.wait(list(self._jobs), num_returns=len(self._jobs), timeout=0) if self._jobs else ([], [])
         )
         for task in ended:
-            _tell(self._wire, ended=self._jobs.pop(task), code=_code(task))
+            _tell(self._stream, ended=self._jobs.pop(task), code=_code(task))
 
 
 def _code(task: ray.ObjectRef[int]) -> int:
@@ -75,34 +75,34 @@ def _cluster_resources() -> dict[str, float]:
 
 def _take_stdout() -> TextIO:
     """Standard output for our lines alone; what Ray prints there (at times a node's death) goes to standard error."""
-    wire = os.fdopen(os.dup(sys.stdout.fileno()), "w", buffering=1)
+    stream = os.fdopen(os.dup(sys.stdout.fileno()), "w", buffering=1)
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    return wire
+    return stream
 
 
-def _tell(wire: TextIO, **fields: int) -> None:
-    wire.write(json.dumps(fields) + "\n")
+def _tell(stream: TextIO, **fields: int) -> None:
+    stream.write(json.dumps(fields) + "\n")
 
 
-def _read_orders(orders: queue.SimpleQueue[dict[str, Any] | None]) -> None:
+def _read_requests(requests: queue.SimpleQueue[dict[str, Any] | None]) -> None:
     for line in sys.stdin:
-        orders.put(json.loads(line))
-    orders.put(None)
+        requests.put(json.loads(line))
+    requests.put(None)
 
 
 def main() -> None:
-    wire = _take_stdout()
+    stream = _take_stdout()
     ray.init(address=sys.argv[1], log_to_driver=False, logging_level=logging.ERROR, namespace="mart")
-    _tell(wire, slots=max(1, int(_cluster_resources().get("CPU", 1))))
-    orders: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
-    threading.Thread(target=_read_orders, args=(orders,), daemon=True).start()
-    tasks = _Tasks(wire)
+    _tell(stream, slots=max(1, int(_cluster_resources().get("CPU", 1))))
+    requests: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
+    threading.Thread(target=_read_requests, args=(requests,), daemon=True).start()
+    tasks = _Tasks(stream)
     while True:
         try:
-            order = orders.get(timeout=_POLL_S)
-            if order is None:
+            request = requests.get(timeout=_POLL_S)
+            if request is None:
                 return
-            tasks.obey(order)
+            tasks.handle(request)
         except queue.Empty:
             tasks.tell_ended()
 

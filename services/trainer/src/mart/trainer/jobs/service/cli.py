@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 _trainer = click.option("--trainer", default="trainer-1", show_default=True, help="Which trainer service.")
 _job = click.argument("job")
 _LOOK_EVERY_S = 1.0
+_ASK_TIMEOUT_S = 30.0
 
 
 def _listed(text: str) -> list[str]:
@@ -197,19 +198,18 @@ def promote(job: str, name: str, checkpoint: str, trainer: str, as_json: bool) -
 
 
 def _ask(trainer: str, request: TrainerRequest) -> TrainerReply:
-    """Raises what the trainer answers, and Unavailable where none does."""
-    from mart.protocol import codec, keys
+    """Ask the trainer. Raises what it answers, and Unavailable where none does."""
+    from mart.protocol import keys
     from mart.protocol.errors import Unavailable
-    from mart.protocol.messages import TrainerReply, raise_error
+    from mart.protocol.messages import TrainerReply
+    from mart.runtime.ask import ask
     from mart.runtime.bus.zenoh_bus import ZenohBus
     from mart.runtime.settings import Settings
 
     with ZenohBus.connect(Settings().router, wait_for_router=False) as bus:
         if not bus.alive(keys.alive(ServiceKind.TRAINER, trainer)):
             raise Unavailable(f"No trainer {trainer!r} is up; start it with `mart trainer --name {trainer}`.")
-        reply = codec.decode(TrainerReply, bus.query(keys.training(trainer), codec.encode(request), 30.0))
-    raise_error(reply.error)
-    return reply
+        return ask(bus, keys.training(trainer), request, TrainerReply, _ASK_TIMEOUT_S)
 
 
 def _print_jobs(reply: TrainerReply, *, as_json: bool) -> None:

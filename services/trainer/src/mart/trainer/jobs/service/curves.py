@@ -16,7 +16,7 @@ _NO_CURVES = {"updates", "at_ns"}
 
 
 def read_curves(path: Path, since_updates: int = 0) -> list[Curve]:
-    """Return every number of the file over updates, after `since_updates`; of many points evenly many, and always the last."""
+    """Return every number of the file over updates, after `since_updates`; of many points some, and always the last."""
     points: dict[str, list[tuple[int, float]]] = {}
     for _, row in read_json_lines(path):
         if row is not None and _is_point(row) and row["updates"] > since_updates:

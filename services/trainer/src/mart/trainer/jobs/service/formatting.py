@@ -14,10 +14,12 @@ _HEAD = ("job", "sweep", "state", "model", "task", "data set", "seeds", "updates
 
 
 def as_json(message: Message) -> dict[str, Any]:
+    """Return a message as plain data, empty fields included."""
     return MessageToDict(message, preserving_proto_field_name=True, always_print_fields_with_no_presence=True)
 
 
 def table(jobs: Iterable[Job]) -> str:
+    """Return jobs as a table, a row each."""
     rows = [_HEAD, *(_row(job) for job in jobs)]
     if len(rows) == 1:
         return "There are no jobs. `mart jobs submit` makes some."
@@ -28,6 +30,7 @@ def table(jobs: Iterable[Job]) -> str:
 
 
 def details(found: TrainerReply.Details) -> str:
+    """Return what is known of one job, in lines."""
     job = found.job
     lines = [table([job])]
     if job.detail:
@@ -46,6 +49,7 @@ def learned(found: Learned) -> str:
 
 
 def policy(found: Policy) -> str:
+    """Return a policy in one line."""
     return f"{found.name}: {found.model} for {found.task}, seed {found.seed}, {found.updates} updates"
 
 

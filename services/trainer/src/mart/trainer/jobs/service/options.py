@@ -12,6 +12,7 @@ from mart.episodes import datasets, labels
 from mart.protocol.messages import DataSet, Order, TrainerReply
 from mart.protocol.recording import SUFFIX
 from mart.protocol.tasks import task_names
+from mart.protocol.vocabulary import EpisodeOutcome
 from mart.trainer.jobs.service.settings import TrainerSettings
 from mart.trainer.jobs.service.sweep import DEFAULT_DATA, DEFAULT_PRESET, SCORE_EPISODES, task_in
 from mart.trainer.models.architecture import BASELINES, PAPER, ModelSpec
@@ -47,7 +48,7 @@ def training_options(settings: TrainerSettings, executors: Iterable[str]) -> Tra
 
 
 def data_sets(data_dir: Path) -> list[DataSet]:
-    """Return the folders with episodes, each followed by its named data sets: `episodes` first, days of one recording together."""
+    """Return the folders with episodes, each followed by its named data sets; `episodes` first, days together."""
     held: dict[Path, set[str]] = defaultdict(set)
     roots = [root for root in data_dir.glob("*") if root.is_dir() and root.name not in _NO_DATA]
     for path in (path for root in roots for path in root.rglob(f"*{SUFFIX}")):  # a root may be a link
@@ -66,7 +67,7 @@ def _of_folder(name: str, folder: Path, files: set[str]) -> Iterator[DataSet]:
         unfit = [
             path
             for path in dataset.episodes
-            if path not in files or said[path].dropped or said[path].outcome == "discarded"
+            if path not in files or said[path].dropped or said[path].outcome == EpisodeOutcome.DISCARDED
         ]
         yield DataSet(
             path=name,

@@ -29,7 +29,10 @@ class Origin:
 
 
 def promote(policies_dir: Path, name: str, checkpoint: Path, origin: Origin, now_ns: int) -> Policy:
-    """Copy a checkpoint to a named policy and return it. Raises InvalidInput for the name, Conflict where it is taken, and what reading a checkpoint raises."""
+    """Copy a checkpoint to a named policy and return it.
+
+    Raises InvalidInput for the name, Conflict where it is taken, and what reading a checkpoint raises.
+    """
     if not _NAME.fullmatch(name):
         raise InvalidInput(
             f"The policy name {name!r} was given; use 1 to 64 lower-case letters, digits, '-' or '_', starting "

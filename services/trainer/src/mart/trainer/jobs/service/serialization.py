@@ -60,10 +60,12 @@ def learned_message(run: RunDirectory) -> Learned | None:
 
 
 def sweep_id(number: int) -> str:
+    """Return the name of a sweep, such as `sweep-0007`."""
     return f"sweep-{number:04}"
 
 
 def evaluation_message(evaluation: Evaluation) -> EvaluationMessage:
+    """Return an evaluation with its rate, interval, failures and kept rollouts."""
     low, high = evaluation.rate.interval
     return EvaluationMessage(
         seed=evaluation.seed,

@@ -67,7 +67,10 @@ def _answer(handlers: TrainerHandlers, payload: bytes) -> TrainerReply:
 
 @contextlib.contextmanager
 def _claimed(settings: TrainerSettings) -> Iterator[None]:
-    """One trainer at a time, or each would start the other's jobs. The lock dies with its process."""
+    """Let one trainer at a time see to the jobs, or each would start the other's jobs.
+
+    The lock dies with its process.
+    """
     settings.data_dir.mkdir(parents=True, exist_ok=True)
     with settings.jobs_path.with_suffix(".lock").open("ab") as lock:
         try:

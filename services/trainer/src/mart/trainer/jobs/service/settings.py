@@ -10,6 +10,8 @@ from mart.runtime.settings import Settings
 
 
 class TrainerSettings(Settings):
+    """Settings of `mart trainer`."""
+
     trainer: str = Field("trainer-1", description="Id of the trainer service.")
     slots: int = Field(1, ge=1, le=256, description="Jobs at a time on this machine.")
     ray: str = Field("", description="Address of the head of a Ray cluster, like 10.0.0.5:6379.")
@@ -18,6 +20,7 @@ class TrainerSettings(Settings):
 
     @property
     def jobs_path(self) -> Path:
+        """Where the job table is."""
         return self.data_dir / "jobs.sqlite"
 
     @property
@@ -27,4 +30,5 @@ class TrainerSettings(Settings):
 
     @property
     def replica_names(self) -> tuple[str, ...]:
+        """Names of the replicas that jobs evaluate on; empty: each job starts one."""
         return tuple(name for name in self.replicas.split(",") if name)

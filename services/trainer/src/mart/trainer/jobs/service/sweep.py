@@ -79,7 +79,10 @@ def _job_spec(
 
 
 def _dataset(folder: Path, name: str, task: str) -> tuple[DataSetName, tuple[Path, ...]]:
-    """Return a named data set and its files as they are now. Raises NotFound, and InvalidInput where it is of another task, by the names of its files."""
+    """Return a named data set and its files as they are now.
+
+    Raises NotFound, and InvalidInput where it is of another task, by the names of its files.
+    """
     found, files = find_dataset(folder, name)
     other = {task_in(path.name) for path in files} - {"", get_task(task).name}
     if other:
@@ -96,7 +99,10 @@ def task_in(name: str) -> str:
 
 
 def _files(folder: Path, task: str) -> tuple[Path, ...]:
-    """Return the task's files in a folder, by the names that episode files have. Raises NotFound where there is none."""
+    """Return the task's files in a folder, by the names that episode files have.
+
+    Raises NotFound where there is none.
+    """
     name = get_task(task).name
     folder = folder.resolve()
     files = tuple(sorted(folder.rglob(f"*-{name}*{SUFFIX}"))) if folder.is_dir() else ()

@@ -16,14 +16,17 @@ _AT_ONCE = 2
 
 
 class Videos:
-    """For one thread: see mart.runtime.child_process. `log`: what the renderers print."""
+    """Render kept rollouts and hand the videos out in pieces. For one thread: see mart.runtime.child_process.
+
+    log: what the renderers print.
+    """
 
     def __init__(self, log: Path) -> None:
         self._log = log
         self._renderers: dict[Path, subprocess.Popen[bytes]] = {}
 
     def piece(self, rollout: Path, offset: int) -> TrainerReply.Video:
-        """Of the video beside an episode file; not ready while it is rendered.
+        """Return a piece of the video beside an episode file; not ready while it is rendered.
 
         Raises NotFound without that file, Corrupt where it cannot be rendered, Unavailable where nothing renders here.
         """
@@ -45,7 +48,7 @@ class Videos:
             stop_child(renderer)
 
     def _render(self, rollout: Path, video: Path) -> None:
-        """Under way when this returns, unless enough are under way already: whoever waits asks again."""
+        """Start rendering, unless enough are being rendered already: whoever waits asks again."""
         renderer = self._renderers.get(rollout)
         if renderer is not None and renderer.poll() is not None:
             del self._renderers[rollout]

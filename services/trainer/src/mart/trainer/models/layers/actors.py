@@ -23,12 +23,12 @@ class Actor(nn.Module):
         self.body, self.head = body, head
 
     def loss(self, inputs: Tensor, actions: Tensor) -> Tensor:
-        """inputs: [M, T, B, I], actions: [M, T, B, A] → [M, T, B]."""
+        """Return the loss of each action. inputs: [M, T, B, I], actions: [M, T, B, A] → [M, T, B]."""
         flat = self.head.loss(self.body(inputs).flatten(1, 2), actions.flatten(1, 2))
         return flat.unflatten(1, inputs.shape[1:3])
 
     def sequence(self, inputs: Tensor, choice: Tensor, noise: Tensor) -> Tensor:
-        """What it would do in T ticks after each other: [M, T, B, I] → [M, T, B, A].
+        """Return what it would do in T ticks after each other: [M, T, B, I] → [M, T, B, A].
 
         choice: [M, T * B] uniform, noise: [M, T * B, A] normal.
         """
@@ -36,7 +36,7 @@ class Actor(nn.Module):
         return flat.unflatten(1, inputs.shape[1:3])
 
     def step(self, inputs: Tensor, memory: Memory, choice: Tensor, noise: Tensor) -> tuple[Tensor, Memory]:
-        """One tick: [M, B, I] → [M, B, A], and what it remembers."""
+        """Act for one tick: [M, B, I] → [M, B, A], and what it remembers."""
         features, memory = self.body.step(inputs, memory)
         return self.head.act(features, choice, noise), memory
 
@@ -53,7 +53,7 @@ class Recurrent(nn.Module):
         self.features = full(len(inputs), width)
 
     def forward(self, inputs: Tensor) -> Tensor:
-        """[M, T, B, I] → [M, T, B, F], from an empty memory."""
+        """Return features, from an empty memory: [M, T, B, I] → [M, T, B, F]."""
         return self.lstm(inputs)
 
     def start(self, batch: int) -> Memory:

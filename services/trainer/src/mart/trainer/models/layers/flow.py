@@ -24,6 +24,8 @@ _FASTEST = 100.0  # the highest frequency that t is told in
 
 
 class Flow(nn.Module):
+    """Flows from noise to a chunk of actions, conditioned on observations."""
+
     def __init__(
         self,
         obs: Tensor,
@@ -43,11 +45,11 @@ class Flow(nn.Module):
         self.net = MLP(inputs, hidden, actions, generators)
 
     def forward(self, x: Tensor, t: Tensor, obs: Tensor) -> Tensor:
-        """The chunk that x is on the way to: [M, B, chunk * size], as x is. t: [M, B, 1], obs: [M, B, C]."""
+        """Return the chunk that x is on the way to: [M, B, chunk * size], as x is. t: [M, B, 1], obs: [M, B, C]."""
         return self.net(torch.cat((obs, x, _waves(t)), -1)).float()
 
     def loss(self, obs: Tensor, actions: Tensor, t: Tensor, noise: Tensor) -> Tensor:
-        """Squared error for each tick of the chunk: [M, B, chunk].
+        """Return the squared error for each tick of the chunk: [M, B, chunk].
 
         actions: [M, B, chunk * size]. t: [M, B] uniform. noise: like actions, standard normal.
         """
@@ -56,7 +58,7 @@ class Flow(nn.Module):
         return (error * error).unflatten(-1, (self.chunk, self.size)).mean(-1)
 
     def sample(self, obs: Tensor, noise: Tensor) -> Tensor:
-        """A chunk, by Euler's method: [M, B, chunk, size] within [-1, 1]."""
+        """Draw a chunk by Euler's method: [M, B, chunk, size] within [-1, 1]."""
         x = noise
         for step in range(self.steps):
             t = torch.full_like(x[..., :1], step / self.steps)
@@ -65,7 +67,7 @@ class Flow(nn.Module):
 
 
 def _waves(t: Tensor) -> Tensor:
-    """t: [M, B, 1] → [M, B, 32]: sines and cosines of it, slow to fast."""
+    """Return sines and cosines of t, slow to fast: [M, B, 1] → [M, B, 32]."""
     half = _TIME_FEATURES // 2
     speeds = torch.exp(torch.linspace(0, math.log(_FASTEST), half, device=t.device))
     return torch.cat((torch.sin(t * speeds), torch.cos(t * speeds)), -1)

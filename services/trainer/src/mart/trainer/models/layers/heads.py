@@ -21,15 +21,15 @@ class MeanHead(nn.Module):
         self.out = Linear(features, full(len(features), size), generators)
 
     def forward(self, features: Tensor) -> Tensor:
-        """[M, B, F] → [M, B, A]."""
+        """Return the mean action: [M, B, F] → [M, B, A]."""
         return torch.tanh(self.out(features).float())
 
     def loss(self, features: Tensor, action: Tensor) -> Tensor:
-        """Squared error, averaged over the action's numbers: [M, B]."""
+        """Return the squared error, averaged over the action's numbers: [M, B]."""
         return ((self(features) - action) ** 2).mean(-1)
 
     def act(self, features: Tensor, choice: Tensor, noise: Tensor) -> Tensor:
-        """[M, B, A]; nothing is drawn."""
+        """Return the mean action, [M, B, A]; nothing is drawn."""
         del choice, noise
         return self(features)
 
@@ -43,17 +43,21 @@ class MixtureHead(nn.Module):
         self.out = Linear(features, full(len(features), modes * (1 + 2 * size)), generators)
 
     def forward(self, features: Tensor) -> Mixture:
+        """Return the mixture of each: features [M, B, F]."""
         parameters = self.out(features).float()
         logits, rest = parameters[..., : self.modes], parameters[..., self.modes :]
         means, spreads = rest.unflatten(-1, (self.modes, 2 * self.size)).chunk(2, dim=-1)
         return Mixture(logits, torch.tanh(means), softplus(spreads) + _LEAST_DEVIATION)
 
     def loss(self, features: Tensor, action: Tensor) -> Tensor:
-        """Negative log likelihood: [M, B]."""
+        """Return the negative log likelihood: [M, B]."""
         return -self(features).log_prob(action)
 
     def act(self, features: Tensor, choice: Tensor, noise: Tensor) -> Tensor:
-        """Near the mean of a mode that is drawn: [M, B, A]. choice: [M, B] uniform, noise: [M, B, A] normal."""
+        """Draw an action near the mean of a mode that is drawn: [M, B, A].
+
+        choice: [M, B] uniform, noise: [M, B, A] normal.
+        """
         mixture = self(features)
         still = Mixture(mixture.logits, mixture.means, torch.full_like(mixture.deviations, _LEAST_DEVIATION))
         return still.sample(choice, noise)

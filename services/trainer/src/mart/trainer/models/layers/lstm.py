@@ -25,7 +25,7 @@ LSTMState = tuple[Tensor, Tensor]  # h and c, each float32[M, B, H]
 
 
 def squash_(z: Tensor) -> Tensor:
-    """In place: sigmoid of the three gates, tanh of the candidate. z: [M, B, 4 H]."""
+    """Apply, in place, sigmoid to the three gates and tanh to the candidate. z: [M, B, 4 H]."""
     width = z.shape[-1] // 4
     z[..., : 3 * width].sigmoid_()
     z[..., 3 * width :].tanh_()
@@ -110,18 +110,18 @@ class LSTM(nn.Module):
         self.b = nn.ParameterList(uniform(full(models, 1), outputs, fan, generators) for _ in rows)
 
     def forward(self, x: Tensor) -> Tensor:
-        """From a state of zeros. x: [M, T, B, I] → [M, T, B, H]."""
+        """Run over T ticks from a state of zeros. x: [M, T, B, I] → [M, T, B, H]."""
         for w_i, w_h, b in zip(self.w_i, self.w_h, self.b, strict=True):
             x = _Layer.apply(x, w_i, w_h, b, self.dtype)  # type: ignore[no-untyped-call]
         return x
 
     def start(self, batch: int) -> list[LSTMState]:
-        """A state of zeros for each layer."""
+        """Return a state of zeros for each layer."""
         zeros = self.b[0].new_zeros(len(self.b[0]), batch, self.width)
         return [(zeros, zeros) for _ in self.w_h]
 
     def step(self, x: Tensor, state: Sequence[LSTMState]) -> tuple[Tensor, list[LSTMState]]:
-        """One tick in float32. x: [M, B, I] → h of the last layer, and the next state."""
+        """Run one tick in float32. x: [M, B, I] → h of the last layer, and the next state."""
         after = []
         for w_i, w_h, b, (h, c) in zip(self.w_i, self.w_h, self.b, state, strict=True):
             i, f, o, u = squash_(torch.bmm(x, w_i) + torch.bmm(h, w_h) + b).chunk(4, dim=-1)

@@ -17,25 +17,28 @@ _LOG_ROOT_TAU = 0.5 * math.log(math.tau)
 
 
 def log_normal(x: Tensor, mean: Tensor, deviation: Tensor) -> Tensor:
-    """Log density of each component of x by itself."""
+    """Return the log density of each component of x by itself."""
     return -0.5 * ((x - mean) / deviation) ** 2 - torch.log(deviation) - _LOG_ROOT_TAU
 
 
 @dataclass(frozen=True)
 class Mixture:
-    """logits: [..., K], means and deviations: [..., K, D]."""
+    """K Gaussians over D numbers. logits: [..., K], means and deviations: [..., K, D]."""
 
     logits: Tensor
     means: Tensor
     deviations: Tensor
 
     def log_prob(self, x: Tensor) -> Tensor:
-        """x: [..., D] → [...]."""
+        """Return the log density: x: [..., D] → [...]."""
         parts = log_normal(x[..., None, :], self.means, self.deviations).sum(-1)
         return torch.logsumexp(torch.log_softmax(self.logits, dim=-1) + parts, dim=-1)
 
     def sample(self, choice: Tensor, noise: Tensor) -> Tensor:
-        """choice: [...], uniform in [0, 1), picks the mode; noise: [..., D], standard normal → [..., D]."""
+        """Draw a sample.
+
+        choice: [...], uniform in [0, 1), picks the mode; noise: [..., D], standard normal → [..., D].
+        """
         heights = torch.softmax(self.logits, dim=-1).cumsum(-1)
         mode = (choice[..., None] >= heights).sum(-1).clamp(max=self.logits.shape[-1] - 1)
         index = mode[..., None, None].expand(*mode.shape, 1, self.means.shape[-1])

@@ -24,12 +24,14 @@ _INSIDE = 1 - 2**-18  # tanh rounds to 1 where |u| is large; the bound is strict
 
 
 def bounded(u: Tensor, epsilon: float) -> Tensor:
-    """u: [..., 7] → the same direction, shorter than epsilon."""
+    """Shorten u, [..., 7], to less than epsilon; its direction stays."""
     length = torch.sqrt((u * u).sum(-1, keepdim=True) + _NO_LENGTH**2)
     return epsilon * _INSIDE * torch.tanh(length) * (u / length)
 
 
 class Residual(nn.Module):
+    """Corrects the action of a base by less than epsilon for each arm."""
+
     def __init__(
         self, obs: Tensor, generators: Generators, *, arms: int, hidden: Sequence[int], epsilon: float
     ) -> None:
@@ -41,6 +43,6 @@ class Residual(nn.Module):
         self.net.last.zero()
 
     def forward(self, obs: Tensor, action: Tensor) -> Tensor:
-        """obs: [M, B, D], the base's action: [M, B, arms * 7] → delta: [M, B, arms * 7]."""
+        """Return the correction. obs: [M, B, D], the base's action: [M, B, arms * 7] → delta: [M, B, arms * 7]."""
         u = self.net(torch.cat((obs, action), -1)).float()
         return bounded(u.unflatten(-1, (-1, ACTION_SIZE)), self.epsilon).flatten(-2)

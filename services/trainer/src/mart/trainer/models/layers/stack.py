@@ -19,12 +19,12 @@ Generators = Sequence[torch.Generator]
 
 
 def full(models: int, width: int) -> Tensor:
-    """bool[M, width]: a mask of columns that are all real."""
+    """Return bool[M, width]: a mask of columns that are all real."""
     return torch.ones(models, width, dtype=torch.bool)
 
 
 def uniform(rows: Tensor, columns: Tensor, fan_in: Tensor, generators: Generators) -> nn.Parameter:
-    """float32[M, I, O], uniform in +-1/sqrt(fan_in) where row and column are real and 0 elsewhere.
+    """Draw weights float32[M, I, O], uniform in +-1/sqrt(fan_in) where row and column are real and 0 elsewhere.
 
     rows: bool[M, I]. columns: bool[M, O]. fan_in: int[M]. As torch.nn.Linear and torch.nn.LSTM begin.
     """
@@ -38,7 +38,7 @@ def uniform(rows: Tensor, columns: Tensor, fan_in: Tensor, generators: Generator
 
 
 class Linear(nn.Module):
-    """y = x W + b for every model: [M, B, I] → [M, B, O]."""
+    """A linear layer, y = x W + b, for every model: [M, B, I] → [M, B, O]."""
 
     def __init__(self, inputs: Tensor, outputs: Tensor, generators: Generators) -> None:
         """inputs: bool[M, I], outputs: bool[M, O], which columns are real."""
@@ -74,4 +74,5 @@ class MLP(nn.Module):
 
     @property
     def last(self) -> Any:
+        """The last layer, a Linear."""
         return self.layers[-1]

@@ -29,13 +29,15 @@ _LOG_VARIANCE = (-8.0, 30.0)  # robomimic's clamp
 
 @dataclass(frozen=True)
 class PlannerLoss:
-    """Each [M, B]."""
+    """What the planner minimises; each [M, B]."""
 
     reconstruction: Tensor
     divergence: Tensor
 
 
 class Planner(nn.Module):
+    """Draws subgoals: what should be seen `window` ticks from now."""
+
     def __init__(
         self,
         real: Tensor,
@@ -58,7 +60,7 @@ class Planner(nn.Module):
         self.prior = MLP(real, hidden, full(models, modes * (1 + 2 * latent)), generators)
 
     def loss(self, obs: Tensor, goal: Tensor, noise: Tensor) -> PlannerLoss:
-        """obs, goal: [M, B, D]. noise: [M, B, latent], standard normal."""
+        """Return the losses. obs, goal: [M, B, D]. noise: [M, B, latent], standard normal."""
         mean, deviation = self._posterior(obs, goal)
         z = mean + deviation * noise
         error = self.decode(z, obs) - goal
@@ -66,26 +68,26 @@ class Planner(nn.Module):
         return PlannerLoss((self.weights[:, None] * error * error).sum(-1), divergence)
 
     def prior_of(self, obs: Tensor) -> Mixture:
-        """p(z | o). obs: [M, B, D]."""
+        """Return the prior p(z | o). obs: [M, B, D]."""
         parameters = self.prior(obs).float()
         logits, rest = parameters[..., : self.modes], parameters[..., self.modes :]
         means, log_variances = rest.unflatten(-1, (self.modes, 2 * self.latent)).chunk(2, dim=-1)
         return Mixture(logits, means, torch.exp(0.5 * log_variances.clamp(*_LOG_VARIANCE)))
 
     def decode(self, z: Tensor, obs: Tensor) -> Tensor:
-        """z: [M, B, latent], obs: [M, B, D] → subgoal [M, B, D]."""
+        """Decode a latent. z: [M, B, latent], obs: [M, B, D] → subgoal [M, B, D]."""
         return obs + self.decoder(torch.cat((z, obs), -1)).float()
 
     def reconstruct(self, obs: Tensor, goal: Tensor, noise: Tensor) -> Tensor:
-        """`goal` as this planner would put it: drawn from the posterior and decoded. [M, B, D], as in `loss`."""
+        """Encode `goal`, draw from the posterior and decode: [M, B, D], as in `loss`."""
         mean, deviation = self._posterior(obs, goal)
         return self.decode(mean + deviation * noise, obs)
 
     def _posterior(self, obs: Tensor, goal: Tensor) -> tuple[Tensor, Tensor]:
-        """Mean and deviation of q(z | g, o), each [M, B, latent]."""
+        """Return mean and deviation of q(z | g, o), each [M, B, latent]."""
         mean, log_variance = self.encoder(torch.cat((goal, obs), -1)).float().chunk(2, dim=-1)
         return mean, torch.exp(0.5 * log_variance.clamp(*_LOG_VARIANCE))
 
     def sample(self, obs: Tensor, choice: Tensor, noise: Tensor) -> Tensor:
-        """A subgoal from the prior. choice: [M, B] uniform, noise: [M, B, latent] normal → [M, B, D]."""
+        """Draw a subgoal from the prior. choice: [M, B] uniform, noise: [M, B, latent] normal → [M, B, D]."""
         return self.decode(self.prior_of(obs).sample(choice, noise), obs)

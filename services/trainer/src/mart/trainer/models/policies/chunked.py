@@ -13,6 +13,8 @@ from mart.trainer.models.rng import WorldRng
 
 
 class ChunkedPolicy(TrainedPolicy):
+    """Does the first few actions of a chunk, then draws a new chunk."""
+
     def __init__(self, record: CheckpointRecord, networks: Networks, device: torch.device) -> None:
         super().__init__(record, networks, device)
         assert isinstance(networks.model, FlowPolicyNet)

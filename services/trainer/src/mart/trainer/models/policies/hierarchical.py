@@ -18,6 +18,8 @@ from mart.trainer.models.rng import WorldRng
 
 
 class HierarchicalPolicy(TrainedPolicy):
+    """Draws a subgoal every `window` ticks and acts towards it."""
+
     def __init__(self, record: CheckpointRecord, networks: Networks, device: torch.device) -> None:
         super().__init__(record, networks, device)
         assert isinstance(networks.model, HierarchicalBC)

@@ -15,7 +15,7 @@ from mart.trainer.models.policies.trained import TrainedPolicy
 
 
 def load_policy(checkpoint: Path, device: str = "cpu") -> TrainedPolicy:
-    """The policy of one checkpoint directory.
+    """Load the policy of one checkpoint directory.
 
     Raises NotFound where there is none; Corrupt where it is damaged, of another format, or of a task that this version
     knows otherwise; Unavailable where the device is not there.
@@ -37,7 +37,7 @@ def load_policy(checkpoint: Path, device: str = "cpu") -> TrainedPolicy:
 
 
 def _check_task(checkpoint: Path, record: CheckpointRecord) -> None:
-    """What was learned must mean the same now."""
+    """Raise Corrupt where what was learned would not mean the same now."""
     try:
         now: tuple[ObservationField, ...] = ObservationLayout.of_arms(record.task, len(record.arms)).fields
     except MartError as error:

@@ -26,7 +26,7 @@ class Policy(Protocol):
 
     @property
     def arms(self) -> tuple[str, ...]:
-        """Which it drives, in the order of `act`."""
+        """Names of the arms that it drives, in the order of `act`."""
         ...
 
     @property
@@ -35,11 +35,11 @@ class Policy(Protocol):
         ...
 
     def begin(self, worlds: int, seed: int) -> None:
-        """Before the first tick of an episode. World i draws its samples from (seed, i), however many there are."""
+        """Begin an episode, before its first tick. World i draws its samples from (seed, i), however many there are."""
         ...
 
     def act(self, observations: Mapping[str, Array]) -> Array:
-        """What to do next, of what is seen now.
+        """Return what to do next, given the observations of now.
 
         observations: by name, each float64[worlds, *shape]; more than `needs` may be there.
         Returns float64[worlds, len(arms), 7] within [-1, 1].
@@ -48,7 +48,7 @@ class Policy(Protocol):
         ...
 
     def only(self, arm: str) -> Policy:
-        """The part that drives `arm` alone, with a memory of its own.
+        """Return the part that drives `arm` alone, with a memory of its own.
 
         Raises NotFound for an unknown arm and InvalidInput where the arms are driven together, saying which.
         """

@@ -77,11 +77,11 @@ class TrainedPolicy(ABC):
 
     @abstractmethod
     def _forget(self) -> None:
-        """An episode begins."""
+        """Forget what was remembered of the episode before."""
 
     @abstractmethod
     def _act(self, obs: Tensor, rng: WorldRng) -> Tensor:
-        """One tick. obs: float32[1, worlds, D], normalised → [1, worlds, arms, 7]."""
+        """Act for one tick. obs: float32[1, worlds, D], normalised → [1, worlds, arms, 7]."""
 
 
 class SingleArmPolicy:
