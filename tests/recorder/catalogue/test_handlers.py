@@ -129,7 +129,7 @@ def test_an_empty_request_is_refused(root: Path) -> None:
         CatalogueHandlers(root).answer(CatalogueRequest())
 
 
-def curate(asked: CatalogueHandlers, **wanted: Any) -> CatalogueReply.Curated:
+def edit(asked: CatalogueHandlers, **wanted: Any) -> CatalogueReply.Curated:
     return asked.answer(CatalogueRequest(curate=CatalogueRequest.Curate(**wanted))).curated
 
 
@@ -142,12 +142,12 @@ def of_dataset(asked: CatalogueHandlers, name: str) -> tuple[int, list[str]]:
 def test_a_data_set_is_put_together_by_name_or_by_filter_and_every_act_is_undone(root: Path) -> None:
     write_episode(root, ticks=5, number=2)
     asked = CatalogueHandlers(root)
-    first = curate(asked, dataset="good", paths=[PATH])
+    first = edit(asked, dataset="good", paths=[PATH])
     assert (first.changed, first.episodes, of_dataset(asked, "good")) == (1, 1, (1, ["good 1"]))
     everything = CatalogueRequest.List(task=synthetic.TASK, count=1)
-    more = curate(asked, dataset="good", all=everything)
+    more = edit(asked, dataset="good", all=everything)
     assert (more.changed, more.episodes) == (1, 2)
-    assert curate(asked, dataset="good", take_out=True, paths=[PATH]).episodes == 1
+    assert edit(asked, dataset="good", take_out=True, paths=[PATH]).episodes == 1
     undo = CatalogueRequest.Undo(dataset="good", act_ns=more.act_ns)
     assert asked.answer(CatalogueRequest(undo=undo)).curated.episodes == 0
     assert of_dataset(CatalogueHandlers(root), "good") == (0, [])
@@ -165,11 +165,11 @@ def test_what_cannot_be_put_together_is_refused_and_nothing_changes(root: Path) 
     with pytest.raises(InvalidInput, match="several tasks"):
         take_in(root, "held", rows[1:], [rows[0].model_copy(update={"datasets": ("held",)})], 1)
     with pytest.raises(InvalidInput):
-        curate(asked, dataset="new", all=CatalogueRequest.List(outcome="failure"))
+        edit(asked, dataset="new", all=CatalogueRequest.List(outcome="failure"))
     with pytest.raises(InvalidInput):
-        curate(asked, dataset="new")
+        edit(asked, dataset="new")
     with pytest.raises(NotFound):
-        curate(asked, dataset="new", paths=["../secret"])
+        edit(asked, dataset="new", paths=["../secret"])
     with pytest.raises(NotFound):
         asked.answer(CatalogueRequest(undo=CatalogueRequest.Undo(dataset="new", act_ns=7)))
     assert labels.read(root) == []

@@ -57,7 +57,7 @@ class RecordingSession:
 
         root = data_dir / "episodes"
         self.recorder = Recorder(data_dir, self.bus, self.inbox, verify_file, lambda: tidy(root, verify_file))
-        self.capture = RoomSubscriptions(network.connect(), network.connect(), self.inbox)
+        self.subscriptions = RoomSubscriptions(network.connect(), network.connect(), self.inbox)
 
     def put(self, topic: Topic, payload: bytes) -> None:
         self.bus.publisher(topic).put(payload)
@@ -93,7 +93,7 @@ class RecordingSession:
         raise AssertionError(f"{count} × {kind} was not heard; {self.events}")
 
     def close(self) -> None:
-        self.capture.close()
+        self.subscriptions.close()
         self.recorder.close()
         self.bus.close()
 

@@ -63,13 +63,13 @@ def show(name: str, folder: Path, as_json: bool) -> None:
     """Show what a data set holds, also what has been dropped, discarded or deleted since."""
     from mart.episodes import labels
     from mart.episodes.datasets import find
-    from mart.episodes.filter import MEANT
+    from mart.episodes.filter import COUNTED
     from mart.recorder import formatting
     from mart.recorder.catalogue.episode_catalogue import list_folder
 
     found = find(labels.read_folded(folder), name)
     rows = {row.path: row for row in list_folder(folder)}
-    unfit = {path: MEANT.why_not(rows[path]) if path in rows else "deleted" for path in found.episodes}
+    unfit = {path: COUNTED.why_not(rows[path]) if path in rows else "deleted" for path in found.episodes}
     told = formatting.dataset(found) | {
         "episodes": [
             {"path": path, "left_out": why, **({"outcome": rows[path].outcome} if path in rows else {})}
