@@ -8,7 +8,7 @@ import h5py
 import pyarrow.parquet as pq
 import pytest
 
-from mart.episodes import MEANT, EpisodeFilter, LabelKind, datasets, labels, list_episodes
+from mart.episodes import COUNTED, EpisodeFilter, LabelKind, datasets, labels, list_episodes
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import OUTCOME_FAILURE, OUTCOME_SUCCESS, CatalogueRequest, Outcome
 from mart.recorder.catalogue.handlers import CatalogueHandlers
@@ -108,6 +108,6 @@ def test_data_sets_hold_the_same(mart: Mart, folder: Path) -> None:
     made = mart.json("datasets", "create", "all", "--outcome", "any")
     assert made["left_out"] == {"discarded": 1, "dropped": 1}
     held = datasets.find(labels.read_folded(folder), "all").episodes
-    meant = [one.path for one in list_episodes(folder, MEANT)]
+    meant = [one.path for one in list_episodes(folder, COUNTED)]
     assert list(held) == meant
     assert [number_of(path) for path in held] == sorted(SUCCESSES + FAILURES)

@@ -68,15 +68,15 @@ def test_what_people_say_is_kept_beside_the_file(root: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "complaint"),
+    "said",
     [
-        (CatalogueRequest.Label(path=PATH), "Nothing to say"),
-        (CatalogueRequest.Label(path=PATH, outcome="great"), "must be success"),
-        (CatalogueRequest.Label(path=PATH, note="x" * 2001), "2000 are allowed"),
+        CatalogueRequest.Label(path=PATH),
+        CatalogueRequest.Label(path=PATH, outcome="great"),
+        CatalogueRequest.Label(path=PATH, note="x" * 2001),
     ],
 )
-def test_what_cannot_be_said_is_refused(root: Path, said: CatalogueRequest.Label, complaint: str) -> None:
-    with pytest.raises(InvalidInput, match=complaint):
+def test_what_cannot_be_said_is_refused(root: Path, said: CatalogueRequest.Label) -> None:
+    with pytest.raises(InvalidInput):
         CatalogueHandlers(root).answer(CatalogueRequest(label=said))
     assert labels.read(root) == []
 
@@ -106,13 +106,13 @@ def test_only_what_is_listed_can_be_asked_for(root: Path, path: str) -> None:
         CatalogueRequest(picture=CatalogueRequest.Picture(path=path)),
         CatalogueRequest(label=CatalogueRequest.Label(path=path, dropped=True)),
     ):
-        with pytest.raises(NotFound, match="There is no episode"):
+        with pytest.raises(NotFound):
             asked.answer(request)
 
 
 def test_a_camera_that_saw_nothing_and_pictures_that_are_none(root: Path) -> None:
     asked = CatalogueHandlers(root)
-    with pytest.raises(NotFound, match="no picture of 'arm7'"):
+    with pytest.raises(NotFound, match="arm7"):
         asked.answer(CatalogueRequest(video=CatalogueRequest.Video(path=PATH, camera="arm7")))
     with pytest.raises(Corrupt):  # the toy camera's bytes are no pictures
         asked.answer(CatalogueRequest(picture=CatalogueRequest.Picture(path=PATH)))
@@ -125,11 +125,11 @@ def test_a_damaged_file_says_what_is_wrong(root: Path) -> None:
 
 
 def test_an_empty_request_is_refused(root: Path) -> None:
-    with pytest.raises(InvalidInput, match="An empty request"):
+    with pytest.raises(InvalidInput):
         CatalogueHandlers(root).answer(CatalogueRequest())
 
 
-def curate(asked: CatalogueHandlers, **wanted: Any) -> CatalogueReply.Curated:
+def edit(asked: CatalogueHandlers, **wanted: Any) -> CatalogueReply.Curated:
     return asked.answer(CatalogueRequest(curate=CatalogueRequest.Curate(**wanted))).curated
 
 
@@ -142,12 +142,12 @@ def of_dataset(asked: CatalogueHandlers, name: str) -> tuple[int, list[str]]:
 def test_a_data_set_is_put_together_by_name_or_by_filter_and_every_act_is_undone(root: Path) -> None:
     write_episode(root, ticks=5, number=2)
     asked = CatalogueHandlers(root)
-    first = curate(asked, dataset="good", paths=[PATH])
+    first = edit(asked, dataset="good", paths=[PATH])
     assert (first.changed, first.episodes, of_dataset(asked, "good")) == (1, 1, (1, ["good 1"]))
     everything = CatalogueRequest.List(task=synthetic.TASK, count=1)
-    more = curate(asked, dataset="good", all=everything)
+    more = edit(asked, dataset="good", all=everything)
     assert (more.changed, more.episodes) == (1, 2)
-    assert curate(asked, dataset="good", take_out=True, paths=[PATH]).episodes == 1
+    assert edit(asked, dataset="good", take_out=True, paths=[PATH]).episodes == 1
     undo = CatalogueRequest.Undo(dataset="good", act_ns=more.act_ns)
     assert asked.answer(CatalogueRequest(undo=undo)).curated.episodes == 0
     assert of_dataset(CatalogueHandlers(root), "good") == (0, [])
@@ -160,16 +160,16 @@ def test_what_cannot_be_put_together_is_refused_and_nothing_changes(root: Path) 
         LabelledEpisode(path="a", size_bytes=1, task=synthetic.TASK),
         LabelledEpisode(path="b", size_bytes=1, task=other),
     ]
-    with pytest.raises(InvalidInput, match=r"several tasks were given.*a data set holds one"):
+    with pytest.raises(InvalidInput, match="several tasks"):
         take_in(root, "both", rows, [], 1)
-    with pytest.raises(InvalidInput, match="several tasks were given"):
+    with pytest.raises(InvalidInput, match="several tasks"):
         take_in(root, "held", rows[1:], [rows[0].model_copy(update={"datasets": ("held",)})], 1)
-    with pytest.raises(InvalidInput, match="Nothing was put into 'new': no episode was chosen"):
-        curate(asked, dataset="new", all=CatalogueRequest.List(outcome="failure"))
-    with pytest.raises(InvalidInput, match="one of the two"):
-        curate(asked, dataset="new")
-    with pytest.raises(NotFound, match="There is no episode"):
-        curate(asked, dataset="new", paths=["../secret"])
-    with pytest.raises(NotFound, match="Nothing was done to the data set 'new'"):
+    with pytest.raises(InvalidInput):
+        edit(asked, dataset="new", all=CatalogueRequest.List(outcome="failure"))
+    with pytest.raises(InvalidInput):
+        edit(asked, dataset="new")
+    with pytest.raises(NotFound):
+        edit(asked, dataset="new", paths=["../secret"])
+    with pytest.raises(NotFound):
         asked.answer(CatalogueRequest(undo=CatalogueRequest.Undo(dataset="new", act_ns=7)))
     assert labels.read(root) == []

@@ -2,21 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mart.episodes.mcap_entries import McapEntry
 from mart.protocol import codec, recording
 from mart.protocol.messages import (
-    EPISODE_PHASE_COUNTDOWN,
-    EPISODE_PHASE_PRACTICE,
-    EPISODE_PHASE_RECORDING,
-    EpisodePhase,
     Event,
-    RoomStatus,
     State,
 )
 from mart.recorder.record.room_tracker import (
@@ -24,63 +15,15 @@ from mart.recorder.record.room_tracker import (
     LINGER_S,
     SILENCE_S,
     CloseFile,
-    FileAction,
     OpenFile,
-    RoomTracker,
     has_key_frame,
 )
 from tests.recorder import synthetic
-
-
-class Driven:
-    """A tracker and what it has decided."""
-
-    def __init__(self) -> None:
-        self.tracker = RoomTracker(synthetic.ROOM)
-        self.actions: list[FileAction] = []
-        self.now_s = 0.0
-
-    def state(self, state: State) -> None:
-        at_ns = synthetic.wall_ns(state.tick)
-        self.actions += self.tracker.state(state, codec.encode(state), at_ns, self.now_s)
-
-    def states(self, states: list[State]) -> None:
-        for state in states:
-            self.state(state)
-
-    def event(self, event: Event) -> None:
-        self.actions += self.tracker.event(event, codec.encode(event), event.wall_ns, self.now_s)
-
-    def status(self, status: RoomStatus) -> None:
-        self.actions += self.tracker.status(status, self.now_s)
-
-    def wait(self, duration_s: float) -> None:
-        self.now_s += duration_s
-        self.actions += self.tracker.advance(self.now_s)
-
-    def entries(self, topic: str) -> list[McapEntry]:
-        return [action for action in self.actions if isinstance(action, McapEntry) and action.topic == topic]
-
-    @property
-    def ticks(self) -> list[int]:
-        return [entry.sequence for entry in self.entries(recording.STATE)]
-
-    @property
-    def course(self) -> list[type]:
-        return [type(action) for action in self.actions if not isinstance(action, McapEntry)]
-
-    @property
-    def closed(self) -> list[CloseFile]:
-        return [action for action in self.actions if isinstance(action, CloseFile)]
-
-
-def practice(tick: int) -> State:
-    (state,) = synthetic.states(0, number=0, first_tick=tick)
-    return state
+from tests.recorder.record.driven_room import DrivenRoom, practice
 
 
 def test_an_episode_runs_from_its_reset_to_its_outcome() -> None:
-    room = Driven()
+    room = DrivenRoom()
     room.state(practice(0))
     room.event(synthetic.started(tick=1))
     room.states(synthetic.states(5, first_tick=1))
@@ -93,7 +36,7 @@ def test_an_episode_runs_from_its_reset_to_its_outcome() -> None:
 
 
 def test_an_outcome_may_overtake_the_last_state() -> None:
-    room = Driven()
+    room = DrivenRoom()
     room.states(synthetic.states(5)[:-1])
     room.event(synthetic.ended(5))
     room.wait(GRACE_S / 2)
@@ -104,7 +47,7 @@ def test_an_outcome_may_overtake_the_last_state() -> None:
 
 
 def test_an_outcome_may_come_after_the_next_practice_has_begun() -> None:
-    room = Driven()
+    room = DrivenRoom()
     room.states(synthetic.states(5))
     room.state(practice(6))
     room.event(synthetic.ended(5))
@@ -114,7 +57,7 @@ def test_an_outcome_may_come_after_the_next_practice_has_begun() -> None:
 
 
 def test_a_room_repeats_its_last_state_after_the_end() -> None:
-    room = Driven()
+    room = DrivenRoom()
     room.states(synthetic.states(5))
     room.event(synthetic.ended(5))
     for _ in range(10):
@@ -124,7 +67,7 @@ def test_a_room_repeats_its_last_state_after_the_end() -> None:
 
 
 def test_an_episode_without_an_outcome_ends_when_the_next_begins() -> None:
-    room = Driven()
+    room = DrivenRoom()
     room.states(synthetic.states(3))
     room.states(synthetic.states(3, number=2, first_tick=10))
     assert room.course == [OpenFile, CloseFile, OpenFile]
@@ -132,93 +75,15 @@ def test_an_episode_without_an_outcome_ends_when_the_next_begins() -> None:
 
 
 def test_a_restarted_sim_ends_the_episode() -> None:
-    room = Driven()
+    room = DrivenRoom()
     room.states(synthetic.states(3))
     room.status(synthetic.status(boot=78))
     assert room.course == [OpenFile, CloseFile]
     assert room.closed[0].episode.unfinished_reason == "the sim restarted"
 
 
-def test_an_outcome_that_nobody_heard_is_learned_from_the_status() -> None:
-    room = Driven()
-    room.states(synthetic.states(5, first_tick=10))
-    for _ in range(3):
-        room.status(synthetic.episode_status(5))
-        room.wait(LINGER_S / 2)
-    assert room.course == [OpenFile, CloseFile]
-    record = room.closed[0].episode.record(room.tracker.facts)
-    assert (record.outcome, record.reason, record.complete) == ("failure", "time is up", True)
-
-
-def test_a_status_with_the_outcome_may_overtake_the_last_state() -> None:
-    room = Driven()
-    room.states(synthetic.states(5)[:-1])
-    room.status(synthetic.episode_status(5))
-    room.wait(GRACE_S / 2)
-    room.states(synthetic.states(5)[-1:])
-    room.wait(LINGER_S)
-    assert room.course == [OpenFile, CloseFile]
-    assert room.closed[0].episode.has_all
-
-
-@pytest.mark.parametrize(("number", "phase"), [(1, EPISODE_PHASE_PRACTICE), (2, EPISODE_PHASE_COUNTDOWN)])
-def test_a_room_that_has_gone_on_leaves_no_file_open(number: int, phase: EpisodePhase) -> None:
-    room = Driven()
-    room.states(synthetic.states(5))
-    for _ in range(8):
-        room.status(synthetic.episode_status(0, number, phase))
-        room.wait(GRACE_S / 4)
-    assert room.course == [OpenFile, CloseFile]
-    assert room.closed[0].episode.record(room.tracker.facts).outcome == "unspecified"
-
-
-@pytest.mark.parametrize("phase", [EPISODE_PHASE_COUNTDOWN, EPISODE_PHASE_RECORDING])
-def test_a_room_that_is_at_it_keeps_its_file_open(phase: EpisodePhase) -> None:
-    room = Driven()
-    room.states(synthetic.states(5))
-    for _ in range(8):
-        room.status(synthetic.episode_status(5, 1, phase))
-        room.wait(GRACE_S)
-    assert room.course == [OpenFile]
-
-
-def _succeeds(state: State) -> None:
-    state.progress.success = True
-
-
-def _fails(state: State) -> None:
-    state.progress.failed = "the cube fell"
-
-
-@pytest.mark.parametrize(
-    ("decide", "time_limit_s", "ending"),
-    [
-        (_succeeds, 0.0, ("success", "the task is done")),
-        (_fails, 0.0, ("failure", "the cube fell")),
-        (lambda _state: None, 0.25, ("failure", "time is up")),
-        (lambda _state: None, 0.3, ("unspecified", "its outcome was never said")),
-    ],
-)
-def test_where_nobody_said_the_outcome_the_last_state_does(
-    decide: Callable[[State], object], time_limit_s: float, ending: tuple[str, str]
-) -> None:
-    room = Driven()
-    started = synthetic.started()
-    started.episode_started.time_limit_s = time_limit_s
-    room.event(started)
-    states = synthetic.states(5)
-    decide(states[-1])
-    room.states(states)
-    room.state(practice(6))
-    room.wait(GRACE_S)
-    assert room.course == [OpenFile, CloseFile]
-    record = room.closed[0].episode.record(room.tracker.facts)
-    assert (record.outcome, record.reason) == ending
-    assert record.complete == (record.outcome != "unspecified")
-
-
 def test_a_silent_sim_ends_the_episode_but_a_paused_room_does_not() -> None:
-    room = Driven()
+    room = DrivenRoom()
     room.states(synthetic.states(3))
     for _ in range(100):
         room.wait(SILENCE_S / 5)
@@ -229,7 +94,7 @@ def test_a_silent_sim_ends_the_episode_but_a_paused_room_does_not() -> None:
 
 
 def test_after_an_outage_the_rest_is_recorded_too() -> None:
-    room = Driven()
+    room = DrivenRoom()
     room.states(synthetic.states(10)[:4])
     room.wait(SILENCE_S + 1)
     room.states(synthetic.states(10)[6:])
@@ -238,7 +103,7 @@ def test_after_an_outage_the_rest_is_recorded_too() -> None:
 
 
 def test_an_abandoned_episode_is_left_alone_and_the_next_is_recorded() -> None:
-    room = Driven()
+    room = DrivenRoom()
     room.states(synthetic.states(10)[:4])
     room.tracker.abandon()
     room.states(synthetic.states(10)[4:])
@@ -248,7 +113,7 @@ def test_an_abandoned_episode_is_left_alone_and_the_next_is_recorded() -> None:
 
 
 def test_what_came_just_before_belongs_to_the_episode() -> None:
-    room = Driven()
+    room = DrivenRoom()
     for sequence in (1, 2):
         command = synthetic.command(sequence)
         room.tracker.command("arm0", command, codec.encode(command), synthetic.wall_ns(0) - 1000)
@@ -263,7 +128,7 @@ def test_what_came_just_before_belongs_to_the_episode() -> None:
 
 
 def test_what_came_long_before_does_not() -> None:
-    room = Driven()
+    room = DrivenRoom()
     command = synthetic.command(1)
     room.tracker.command("arm0", command, codec.encode(command), synthetic.wall_ns(0) - 60_000_000_000)
     room.states(synthetic.states(1))
@@ -292,7 +157,7 @@ def arrivals(draw: st.DrawFn) -> list[State | Event]:
 
 @given(arrivals())
 def test_any_order_gives_each_state_once_between_opening_and_closing(arrivals: list[State | Event]) -> None:
-    room = Driven()
+    room = DrivenRoom()
     for arrival in arrivals:
         if isinstance(arrival, State):
             room.state(arrival)

@@ -88,6 +88,18 @@ def test_nothing_is_lost_when_the_crash_came_after_the_last_flush(tmp_path: Path
     assert ticks(one.saved.path) == list(range(_TICKS + 1))
 
 
+def test_an_outcome_that_was_not_written_is_that_of_the_last_state(tmp_path: Path) -> None:
+    states = synthetic.states(5)
+    states[-1].progress.success = True
+    file, _, _ = write_part(tmp_path, states, is_over=False)
+    file.flush()
+    file.abandon()
+    one = repaired(tmp_path)
+    assert one.saved is not None
+    record = EpisodeFile.open(one.saved.path).episode
+    assert (record.outcome, record.complete, record.repaired) == ("success", True, True)
+
+
 def test_a_repaired_file_holds_what_an_undisturbed_one_holds(tmp_path: Path, left: Left) -> None:
     leftover(tmp_path / "a", left.data)
     one = repaired(tmp_path / "a")

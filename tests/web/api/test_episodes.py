@@ -19,7 +19,7 @@ from mart.protocol.messages import (
     RoomStatus,
 )
 from mart.protocol.vocabulary import ServiceKind
-from mart.recorder.catalogue import handlers as browse
+from mart.recorder.catalogue import handlers
 from mart.recorder.catalogue.handlers import CatalogueHandlers
 from mart.recorder.catalogue.serve import answer
 from mart.runtime.bus.base import Request
@@ -142,7 +142,7 @@ async def test_what_cannot_be_put_together_is_said(
 async def test_the_file_is_downloaded_whole(
     enter: Enter, root: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(browse, "PIECE_BYTES", 1000)
+    monkeypatch.setattr(handlers, "PIECE_BYTES", 1000)
     await asyncio.sleep(0)
     answer = await (await enter("Ana")).get("/api/episode/file", params={"path": PATH})
     assert answer.content == (root / PATH).read_bytes()

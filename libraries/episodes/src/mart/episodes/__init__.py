@@ -28,7 +28,7 @@ from mart.episodes import datasets, labels
 from mart.episodes.arrays import EpisodeData, arrays_for_task, arrays_from_states
 from mart.episodes.compatibility import require_alike
 from mart.episodes.datasets import NamedDataSet
-from mart.episodes.filter import MEANT, EpisodeFilter
+from mart.episodes.filter import COUNTED, EpisodeFilter
 from mart.episodes.folder import episode_files, find_episodes, list_episodes
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.labels import EpisodeLabels, Label, LabelKind
@@ -37,7 +37,7 @@ from mart.episodes.reader import EpisodeFile, RecordedMessage, open_episode
 from mart.episodes.writer import EpisodeWriter
 
 __all__ = [
-    "MEANT",
+    "COUNTED",
     "EpisodeData",
     "EpisodeFile",
     "EpisodeFilter",

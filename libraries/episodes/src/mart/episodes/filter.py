@@ -79,4 +79,4 @@ class EpisodeFilter:
 
 
 # What can be learned from or reported on: neither dropped nor unreadable, nor ended by "this does not count".
-MEANT = EpisodeFilter(outcomes=(EpisodeOutcome.SUCCESS, EpisodeOutcome.FAILURE, EpisodeOutcome.UNSPECIFIED))
+COUNTED = EpisodeFilter(outcomes=(EpisodeOutcome.SUCCESS, EpisodeOutcome.FAILURE, EpisodeOutcome.UNSPECIFIED))

@@ -9,6 +9,7 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.filter_options import ANY, filter_of, filters
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import json_option, print_result
@@ -62,13 +63,13 @@ def show(name: str, folder: Path, as_json: bool) -> None:
     """Show what a data set holds, also what has been dropped, discarded or deleted since."""
     from mart.episodes import labels
     from mart.episodes.datasets import find
-    from mart.episodes.filter import MEANT
+    from mart.episodes.filter import COUNTED
     from mart.recorder import formatting
     from mart.recorder.catalogue.episode_catalogue import list_folder
 
     found = find(labels.read_folded(folder), name)
     rows = {row.path: row for row in list_folder(folder)}
-    unfit = {path: MEANT.why_not(rows[path]) if path in rows else "deleted" for path in found.episodes}
+    unfit = {path: COUNTED.why_not(rows[path]) if path in rows else "deleted" for path in found.episodes}
     told = formatting.dataset(found) | {
         "episodes": [
             {"path": path, "left_out": why, **({"outcome": rows[path].outcome} if path in rows else {})}
@@ -82,7 +83,7 @@ def show(name: str, folder: Path, as_json: bool) -> None:
 @datasets.command()
 @_name
 @_paths
-@filters("success", "verified")
+@filters(EpisodeOutcome.SUCCESS.value, Verdict.VERIFIED.value)
 @_folder
 @json_option
 def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
@@ -98,7 +99,7 @@ def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
 @datasets.command()
 @_name
 @_paths
-@filters("success", "verified")
+@filters(EpisodeOutcome.SUCCESS.value, Verdict.VERIFIED.value)
 @_folder
 @json_option
 def add(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:

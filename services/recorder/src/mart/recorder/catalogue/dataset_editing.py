@@ -10,7 +10,7 @@ from pathlib import Path
 from mart.episodes import datasets, labels
 from mart.episodes.compatibility import require_alike
 from mart.episodes.datasets import NamedDataSet
-from mart.episodes.filter import MEANT
+from mart.episodes.filter import COUNTED
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.labels import Label
 from mart.protocol.errors import InvalidInput, NotFound
@@ -36,7 +36,7 @@ def take_in(
     left_out: Counter[str] = Counter()
     taken: list[LabelledEpisode] = []
     for row in chosen:
-        why = MEANT.why_not(row)
+        why = COUNTED.why_not(row)
         if why:
             left_out[why] += 1
         else:

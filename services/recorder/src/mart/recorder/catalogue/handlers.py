@@ -42,8 +42,8 @@ class CatalogueHandlers:
             "file": lambda asked: CatalogueReply(piece=self._file_piece(asked)),
             "video": lambda asked: CatalogueReply(piece=self._video_piece(asked)),
             "picture": lambda asked: CatalogueReply(piece=_piece(self._picture(asked.path), 0)),
-            "curate": lambda asked: self._curated(self._curate(asked)),
-            "undo": lambda asked: self._curated(self._undo(asked)),
+            "curate": lambda asked: self._edited(self._edit(asked)),
+            "undo": lambda asked: self._edited(self._undo(asked)),
         }
 
     def answer(self, request: CatalogueRequest) -> CatalogueReply:
@@ -108,7 +108,7 @@ class CatalogueHandlers:
         self._rows[row.path] = row
         return row
 
-    def _curate(self, asked: CatalogueRequest.Curate) -> DataSetEdit:
+    def _edit(self, asked: CatalogueRequest.Curate) -> DataSetEdit:
         self._refresh()
         known, now_ns = list(self._rows.values()), clock.wall_ns()
         by_filter = asked.HasField("all")
@@ -122,7 +122,7 @@ class CatalogueHandlers:
     def _undo(self, asked: CatalogueRequest.Undo) -> DataSetEdit:
         return dataset_editing.undo(self._root, asked.dataset, asked.act_ns, clock.wall_ns())
 
-    def _curated(self, done: DataSetEdit) -> CatalogueReply:
+    def _edited(self, done: DataSetEdit) -> CatalogueReply:
         self._read_s = float("-inf")  # the rows say what they are part of
         curated = CatalogueReply.Curated(
             dataset=done.dataset.name,

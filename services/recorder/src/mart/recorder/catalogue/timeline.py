@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from mart.protocol.messages import CatalogueReply, Event, Lane, Span, State, Trace, cue_word, operator_word
+from mart.protocol.vocabulary import OperatorKind
 
 MAX_POINTS = 500
 WAITED_S = 0.25  # what people are told of as it happens: a stall
@@ -49,7 +50,7 @@ def _subtasks(states: Sequence[State], seconds: Sequence[float]) -> Iterator[Lan
 def _of_arm(states: Sequence[State], seconds: Sequence[float], index: int) -> Iterator[Lane]:
     """Tell who drove an arm, from the tick of their first command on, and where they moved it."""
     arms = [state.arms[index] for state in states]
-    sources = [operator_word(arm.source) if arm.fresh else "hold" for arm in arms]
+    sources = [operator_word(arm.source) if arm.fresh else OperatorKind.HOLD.value for arm in arms]
     sources[0] = sources[min(1, len(sources) - 1)]  # the first state has had no command yet
     yield Lane(kind="driver", name=arms[0].arm, spans=runs(seconds, sources))
     engaged = ("engaged" if arm.fresh and arm.engaged else "" for arm in arms)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from mart.episodes.filter import MEANT
+from mart.episodes.filter import COUNTED
 from mart.episodes.folder import list_episodes
 from mart.episodes.labelled_episode import require_readable
 from mart.episodes.reader import EpisodeFile
@@ -35,7 +35,7 @@ def read_attempts(folder: Path) -> list[Attempts]:
     listed = list_episodes(folder)
     require_readable(listed)
     found: defaultdict[tuple[str, int], list[Attempt]] = defaultdict(list)
-    for episode in MEANT.apply(listed):
+    for episode in COUNTED.apply(listed):
         if episode.task is None:
             raise Corrupt(f"{episode.file_path} does not say of which task it is; leave it out.")
         attempt = Attempt(_done(episode.open()), episode.outcome == EpisodeOutcome.SUCCESS)
