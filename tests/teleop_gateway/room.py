@@ -32,8 +32,8 @@ from mart.protocol.tokens import Role, SeatToken, sign
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.sim.world.world import World
-from mart.teleop_gateway.process.seat_process_protocol import SeatAssignment
 from mart.teleop_gateway.seat import Seat
+from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.settings import GatewaySettings
 from tests.support.mailbox import Mailbox
 from tests.teleop_gateway.browser import Exchange, in_background
@@ -162,7 +162,7 @@ async def running_seat(router: str, world: World, model: Model) -> AsyncIterator
     ):
         room = Room(mine, world, model)
         settings = GatewaySettings(router=router)
-        seat = Seat(AsyncBus(seats, loop), video, settings, SeatAssignment(room.name, "arm0"), SECRET)
+        seat = Seat(AsyncBus(seats, loop), video, settings, SeatAddress(room.name, "arm0"), SECRET)
         async with in_background(seat.run()), in_background(room.run()):
             await asyncio.sleep(0)  # both have begun
             room.seat(epoch=1)

@@ -126,7 +126,8 @@ def test_a_second_browser_replaces_the_first(on_seat: OnSeat) -> None:
             with seat.commands() as commands:
                 await asyncio.gather(first.drive(1, 0.3), second.drive(1, 0.3, seen_tick=4711))
                 assert {command.seen_tick for command in commands.all()} == {4711}
-            assert first.told[-1] == {"type": "replaced"}
+            # Three times: one may be lost, and two that replace each other in turns would help nobody.
+            assert first.told[-3:] == [{"type": "replaced"}] * 3
 
     on_seat(body)
 
@@ -193,7 +194,7 @@ def test_a_new_holder_gets_a_clean_seat(on_seat: OnSeat) -> None:
             former.connection.on("connectionstatechange", closed.set)
             seat.room.seat(epoch=2)
             await asyncio.wait_for(closed.wait(), 5)
-        with pytest.raises(Forbidden, match="changed hands"):
+        with pytest.raises(Forbidden):
             async with connected(seat.exchange(Role.BROWSER)):
                 pass
         async with connected(seat.exchange(Role.BROWSER, seat.token(Role.BROWSER, epoch=2))) as browser:

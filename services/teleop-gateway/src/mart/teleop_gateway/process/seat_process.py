@@ -16,8 +16,9 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.secret_file import load_or_create_secret
 from mart.runtime.service import AsyncService, run_async
-from mart.teleop_gateway.process.seat_process_protocol import WARM, SeatAssignment
+from mart.teleop_gateway.process.seat_process_protocol import WARM, decode_assignment
 from mart.teleop_gateway.seat import Seat
+from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.settings import GatewaySettings
 
 
@@ -28,20 +29,20 @@ def main() -> None:
     os.write(sys.stdout.fileno(), WARM)
     line = sys.stdin.buffer.readline()
     if line:
-        _serve(SeatAssignment.decode(line))
+        _serve(decode_assignment(line))
 
 
-def _serve(assignment: SeatAssignment) -> None:
+def _serve(address: SeatAddress) -> None:
     settings = GatewaySettings()
 
     async def run(service: AsyncService) -> None:
         secret = load_or_create_secret(settings.secret_path)
         with contextlib.closing(await asyncio.to_thread(ZenohBus.connect, settings.router)) as video_bus:
-            seat = Seat(service.bus, video_bus, settings, assignment, secret)
+            seat = Seat(service.bus, video_bus, settings, address, secret)
             await _until_gateway_ends(asyncio.create_task(seat.run()))
 
     logging.getLogger("aioice").setLevel(logging.WARNING)  # it tells about every candidate pair
-    run_async(settings, ServiceKind.SEAT, assignment.id, run)
+    run_async(settings, ServiceKind.SEAT, address.id, run)
 
 
 async def _until_gateway_ends(seat: asyncio.Task[None]) -> None:

@@ -7,7 +7,8 @@ import contextlib
 import sys
 
 from mart.protocol.errors import Unavailable
-from mart.teleop_gateway.process.seat_process_protocol import WARM, SeatAssignment
+from mart.teleop_gateway.process.seat_process_protocol import WARM, encode_assignment
+from mart.teleop_gateway.served_seats import SeatAddress
 
 _MODULE = "mart.teleop_gateway.process.seat_process"
 _END_TIMEOUT_S = 3.0
@@ -33,14 +34,14 @@ class SeatProcess:
     def pid(self) -> int:
         return self._process.pid
 
-    async def assign(self, assignment: SeatAssignment) -> None:
+    async def assign(self, seat: SeatAddress) -> None:
         """Waits until it is warm, then gives it its seat; raises Unavailable where it died before."""
         if await self._stdout.readline() != WARM:
             status = await self._process.wait()
             raise Unavailable(
                 f"A seat process ended with status {status} before it was ready; its log says why."
             )
-        self._stdin.write(assignment.encode())
+        self._stdin.write(encode_assignment(seat))
 
     async def ended(self) -> int:
         """Its exit status, once it has one."""

@@ -1,31 +1,20 @@
-"""What a gateway and its seat processes say to each other. Light: a gateway never imports what a seat needs."""
+"""Encode what a gateway and its seat processes say to each other on standard input and output."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 
-from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_POLICY
+from mart.teleop_gateway.served_seats import SeatAddress
 
-SERVED = (OPERATOR_HUMAN, OPERATOR_POLICY)  # whose seats have a process, and with it a picture
-WARM = b"warm\n"  # said by a process that has imported everything and waits for its assignment
+WARM = b"warm\n"  # said by a process that has imported everything and waits for its seat
 
 
-@dataclass(frozen=True)
-class SeatAssignment:
-    """Which seat a process serves: one line on its standard input."""
+def encode_assignment(seat: SeatAddress) -> bytes:
+    """Return the line that gives a process its seat."""
+    return json.dumps(asdict(seat)).encode() + b"\n"
 
-    room: str
-    arm: str
 
-    @property
-    def id(self) -> str:
-        """In the liveliness token."""
-        return f"{self.room}-{self.arm}"
-
-    def encode(self) -> bytes:
-        return json.dumps(asdict(self)).encode() + b"\n"
-
-    @classmethod
-    def decode(cls, line: bytes) -> SeatAssignment:
-        return cls(**json.loads(line))
+def decode_assignment(line: bytes) -> SeatAddress:
+    """Return the seat that this line gives."""
+    return SeatAddress(**json.loads(line))

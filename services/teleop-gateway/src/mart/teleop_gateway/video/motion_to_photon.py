@@ -10,7 +10,9 @@ clock offsets. A tick's stamps are collected on the way; a page's report of the 
 
 from __future__ import annotations
 
+import asyncio
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -32,6 +34,7 @@ T = TypeVar("T")
 
 _MS_PER_NS = 1e-6
 _LONGEST_NS = 10_000_000_000
+REPORT_EVERY_S = 1.0
 
 
 @dataclass(frozen=True)
@@ -68,7 +71,7 @@ class MotionToPhoton:
 
     def __init__(self, arm: str, window: int = 100, ticks: int = 256, commands: int = 256) -> None:
         self.reports = 0  # in all
-        self._arm = arm
+        self.arm = arm
         self._ticks, self._commands = ticks, commands
         self._sent: dict[int, tuple[int, int]] = {}  # by sequence: input sent, gateway received
         self._until_state: dict[int, list[tuple[int, ...]]] = {}  # a row for each command of the tick
@@ -87,7 +90,7 @@ class MotionToPhoton:
         # When the tick before this one could have fired.
         since_ns = state.stamps.due_ns - round(1e9 / control_hz)
         for arm in state.arms:
-            if arm.arm == self._arm and arm.fresh and arm.sequence in self._sent:
+            if arm.arm == self.arm and arm.fresh and arm.sequence in self._sent:
                 # The overtaken are taken to have reached the sim as fast as the one whose arrival is known.
                 newest_ns = self._sent[arm.sequence][1]
                 transit_ns = arm.arrived_ns - newest_ns
@@ -129,6 +132,17 @@ class MotionToPhoton:
 
     def _take_until(self, sequence: int) -> list[tuple[int, int]]:
         return [self._sent.pop(number) for number in list(self._sent) if number <= sequence]
+
+
+async def report_latency(latency: MotionToPhoton, tell: Callable[[Event.Latency], None]) -> None:
+    """Tell once a second, while pages report, what was measured; until cancelled."""
+    reported = 0
+    while True:
+        await asyncio.sleep(REPORT_EVERY_S)
+        summary = latency.summary()
+        if summary is not None and latency.reports > reported:
+            reported = latency.reports
+            tell(summary.event(latency.arm))
 
 
 def _keep(kept: dict[int, T], number: int, value: T, at_most: int) -> None:

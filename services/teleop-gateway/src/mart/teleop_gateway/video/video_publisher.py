@@ -7,6 +7,7 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
 from mart.protocol import codec, keys
 from mart.runtime.bus.base import Bus
+from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.video.live_view import SeatPicture
 from mart.teleop_gateway.video.thumbnail import Thumbnail
@@ -15,7 +16,8 @@ from mart.teleop_gateway.video.thumbnail import Thumbnail
 class VideoPublisher:
     """Open from its making until `close`."""
 
-    def __init__(self, bus: Bus, room: str, arm: str) -> None:
+    def __init__(self, bus: Bus, seat: SeatAddress) -> None:
+        room, arm = seat.room, seat.arm
         self._arm = arm
         self._video = bus.publisher(keys.video(room, arm))
         self._stills = bus.publisher(keys.still(room, arm))

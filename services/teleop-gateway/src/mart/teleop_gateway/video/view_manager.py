@@ -12,6 +12,7 @@ from mart.protocol.errors import MartError
 from mart.protocol.keys import DETAILED
 from mart.protocol.messages import Model, State
 from mart.runtime.bus.aio import AsyncBus
+from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.video.live_view import LiveView, Sink
 from mart.teleop_gateway.video.quality import Quality
@@ -32,14 +33,13 @@ class ViewManager:
     def __init__(
         self,
         bus: AsyncBus,
-        room: str,
-        arm: str,
+        seat: SeatAddress,
         *,
         sink: Sink,
         on_azimuth: Callable[[float], None],
         quality: Quality,
     ) -> None:
-        self._bus, self._room, self._arm = bus, room, arm
+        self._bus, self._seat = bus, seat
         self._sink, self._on_azimuth, self._quality = sink, on_azimuth, quality
         self._boot = 0
         self._sha256 = ""
@@ -85,12 +85,12 @@ class ViewManager:
     async def _fetch(self) -> None:
         while True:
             try:
-                answer = await self._bus.query(keys.model(self._room), self._wanted(), _QUERY_TIMEOUT_S)
+                answer = await self._bus.query(keys.model(self._seat.room), self._wanted(), _QUERY_TIMEOUT_S)
                 message = codec.decode(Model, answer)
                 if message.sha256 != self._sha256:
                     await self._use(message)
             except MartError as error:
-                _log.warning("No picture of %s yet: %s", self._room, error)
+                _log.warning("No picture of %s yet: %s", self._seat.room, error)
                 await asyncio.sleep(_RETRY_S)
             else:
                 return
@@ -100,9 +100,11 @@ class ViewManager:
 
     async def _use(self, message: Model) -> None:
         model = await asyncio.to_thread(load_room_model, message, self._quality)
-        azimuth_rad = camera_azimuth_rad(message, model, self._arm)
-        view = LiveView(model, self._arm, message.control_hz, self._sink, self._quality)
+        azimuth_rad = camera_azimuth_rad(message, model, self._seat.arm)
+        view = LiveView(model, self._seat.arm, message.control_hz, self._sink, self._quality)
         view.set_codecs(self._codecs)
+        # Where this is cancelled half-way, no model is drawn: the next one that is fetched must be used.
+        self._sha256 = ""
         await self._replace(view)
         self._sha256 = message.sha256
         self._on_azimuth(azimuth_rad)

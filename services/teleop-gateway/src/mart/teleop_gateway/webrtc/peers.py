@@ -1,9 +1,10 @@
-"""The peers of one seat: one browser, one phone, and whoever watches."""
+"""Hold the peers of one seat: one browser, one phone, and whoever watches."""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from typing import Protocol
 
 from mart.protocol.errors import Conflict
@@ -16,27 +17,41 @@ from mart.teleop_gateway.webrtc.peer import Peer
 MAX_VIEWERS = 8
 SILENT_S = 10.0  # each peer pings once a second; aiortc alone finds a dead one after half a minute
 _DRIVING = (Role.BROWSER, Role.PHONE)
+_GOODBYES = (
+    3  # the channel may lose messages, and a page that misses this one comes back and takes the seat again
+)
 
 
 class PeersListener(Protocol):
-    """The seat, told on the event loop. Only peers that are present speak: a replaced one is silent at once."""
+    """Be told on the event loop what peers do. Only those that are present speak: a replaced one is silent at once."""
 
-    def on_joined(self, peer: Peer) -> None: ...
+    def on_joined(self, peer: Peer) -> None:
+        """Take a new peer."""
 
-    def on_left(self, peer: Peer) -> None: ...
+    def on_left(self, peer: Peer) -> None:
+        """Take the end of a peer, for whatever reason."""
 
-    def on_pose(self, peer: Peer, payload: bytes) -> None: ...
+    def on_watched(self, codecs: AbstractSet[Codec]) -> None:
+        """Take which codecs are watched, whenever somebody joins or leaves."""
 
-    def on_status(self, peer: Peer, text: str) -> None: ...
+    def on_pose(self, peer: Peer, payload: bytes) -> None:
+        """Take a phone frame of a driving peer."""
 
-    def on_keyframe_wanted(self, codec: Codec) -> None: ...
+    def on_status(self, peer: Peer, text: str) -> None:
+        """Take a message of the status channel."""
+
+    def on_keyframe_wanted(self, codec: Codec) -> None:
+        """Take that somebody cannot go on without a keyframe."""
 
 
 class Peers:
-    def __init__(self, bus: AsyncBus, listener: PeersListener, ice_servers: Sequence[str]) -> None:
+    """Let peers in, tell and show all of them things, and let them go. Attach a listener before the first offer."""
+
+    def __init__(self, bus: AsyncBus, ice_servers: Sequence[str]) -> None:
+        """`ice_servers` are STUN and TURN URLs."""
         self._bus = bus
-        self._listener = listener
         self._ice_servers = ice_servers
+        self._listener: PeersListener | None = None
         self._driving: dict[Role, Peer] = {}
         self._viewers: list[Peer] = []
 
@@ -44,8 +59,12 @@ class Peers:
         yield from self._driving.values()
         yield from self._viewers
 
+    def attach(self, listener: PeersListener) -> None:
+        """Tell `listener` what peers do from now on."""
+        self._listener = listener
+
     async def answer(self, role: Role, offer_sdp: str) -> str:
-        """The answer's SDP, and a peer more; a driving role's earlier peer is replaced once the new one is answered.
+        """Return the answer's SDP; a driving role's earlier peer is replaced once the new one is answered.
 
         Raises InvalidInput where the offer cannot be used, Conflict where too many watch.
         """
@@ -54,38 +73,45 @@ class Peers:
         peer = Peer(role, self, self._ice_servers)
         sdp = await peer.answer(offer_sdp)
         if role in self._driving:
-            self._driving[role].send_status(status_channel.replaced())
+            for _ in range(_GOODBYES):
+                self._driving[role].send_status(status_channel.replaced())
             self._drop(self._driving[role])
         if role is Role.VIEWER:
             self._viewers.append(peer)
         else:
             self._driving[role] = peer
-        self._listener.on_joined(peer)
+        if self._listener is not None:
+            self._listener.on_joined(peer)
+            self._listener.on_watched(self.codecs())
         return sdp
 
     def codecs(self) -> frozenset[Codec]:
-        """What is being watched."""
+        """Return the codecs that are being watched."""
         return frozenset(peer.codec for peer in self if peer.codec is not None)
 
     def put(self, encoded: EncodedPicture) -> None:
+        """Show a picture to all who watch its codec."""
         for peer in self:
             if peer.track is not None and peer.codec is encoded.codec:
                 peer.track.put(encoded)
 
     def tell(self, text: str) -> None:
+        """Send a message to all on their status channels."""
         for peer in self:
             peer.send_status(text)
 
     def drop_silent(self, now_s: float) -> None:
+        """End the connections of peers that have said nothing for SILENT_S."""
         for peer in [peer for peer in self if now_s - peer.heard_s > SILENT_S]:
             self._drop(peer)
 
     def drop_driving(self) -> None:
-        """The seat has changed hands."""
+        """End the connections of those who drove: the seat has changed hands."""
         for peer in [peer for peer in self if peer.role in _DRIVING]:
             self._drop(peer)
 
     async def close(self) -> None:
+        """Return when every connection has ended; nobody is told."""
         closing = [peer.close() for peer in self]
         self._driving.clear()
         self._viewers.clear()
@@ -94,21 +120,26 @@ class Peers:
     # What a peer tells; one that was dropped is not heard any more.
 
     def on_pose(self, peer: Peer, payload: bytes) -> None:
-        if self._present(peer):
+        """Pass on a phone frame."""
+        if self._listener is not None and self._is_present(peer):
             self._listener.on_pose(peer, payload)
 
     def on_status(self, peer: Peer, text: str) -> None:
-        if self._present(peer):
+        """Pass on a message of the status channel."""
+        if self._listener is not None and self._is_present(peer):
             self._listener.on_status(peer, text)
 
     def on_keyframe_wanted(self, codec: Codec) -> None:
-        self._listener.on_keyframe_wanted(codec)
+        """Pass on that a keyframe is wanted."""
+        if self._listener is not None:
+            self._listener.on_keyframe_wanted(codec)
 
     def on_gone(self, peer: Peer) -> None:
-        if self._present(peer):
+        """Let a peer go whose connection has ended by itself."""
+        if self._is_present(peer):
             self._drop(peer)
 
-    def _present(self, peer: Peer) -> bool:
+    def _is_present(self, peer: Peer) -> bool:
         return any(peer is present for present in self)
 
     def _drop(self, peer: Peer) -> None:
@@ -116,5 +147,7 @@ class Peers:
             del self._driving[peer.role]
         else:
             self._viewers.remove(peer)
-        self._listener.on_left(peer)
+        if self._listener is not None:
+            self._listener.on_left(peer)
+            self._listener.on_watched(self.codecs())
         self._bus.spawn(peer.close())

@@ -44,7 +44,10 @@ class CueMessage:
     press_us: float
 
 
-def parse(text: str | bytes) -> PingMessage | ClockMessage | SeenMessage | SelectInputMessage | CueMessage:
+PeerMessage = PingMessage | ClockMessage | SeenMessage | SelectInputMessage | CueMessage
+
+
+def parse(text: str | bytes) -> PeerMessage:
     """Raises InvalidInput for anything else."""
     if len(text) > MAX_CHARACTERS:
         raise InvalidInput(

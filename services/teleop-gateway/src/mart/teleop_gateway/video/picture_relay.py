@@ -1,0 +1,37 @@
+"""Bring a seat's pictures from the thread that makes them to those who want them."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+from mart.teleop_gateway.video.encoder import Codec, EncodedPicture
+from mart.teleop_gateway.video.live_view import SeatPicture
+from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
+from mart.teleop_gateway.video.thumbnail import Thumbnail
+from mart.teleop_gateway.video.video_publisher import VideoPublisher
+
+
+class PictureRelay:
+    """Hand each picture on: to the peers first, who wait for it, then onto the bus."""
+
+    def __init__(
+        self,
+        loop: asyncio.AbstractEventLoop,
+        to_peers: Callable[[EncodedPicture], None],
+        publisher: VideoPublisher,
+        latency: MotionToPhoton,
+    ) -> None:
+        """`to_peers` is called on the loop."""
+        self._loop, self._to_peers, self._publisher, self._latency = loop, to_peers, publisher, latency
+
+    def put(self, made: SeatPicture | Thumbnail) -> None:
+        """Hand on what was made. Call it on the view's thread."""
+        if isinstance(made, SeatPicture):
+            self._loop.call_soon_threadsafe(self._pass_on, made)
+        self._publisher.put(made)
+
+    def _pass_on(self, picture: SeatPicture) -> None:
+        self._to_peers(picture.encoded)
+        if picture.encoded.codec is Codec.H264:
+            self._latency.on_picture(picture.tick, picture.stamps)

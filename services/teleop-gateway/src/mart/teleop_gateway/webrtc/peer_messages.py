@@ -1,0 +1,95 @@
+"""Hand what peers of a seat say to the parts of the seat that it is meant for."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Set as AbstractSet
+
+from mart.protocol import clock
+from mart.protocol.errors import InvalidInput
+from mart.protocol.tokens import Role
+from mart.teleop_gateway.input.cues import CueFilter
+from mart.teleop_gateway.input.driving import InputDevice
+from mart.teleop_gateway.input.seat_input import SeatInput
+from mart.teleop_gateway.seat_events import SeatEvents
+from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
+from mart.teleop_gateway.video.view_manager import ViewManager
+from mart.teleop_gateway.webrtc import status_channel
+from mart.teleop_gateway.webrtc.peer import Peer
+from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
+
+_log = logging.getLogger(__name__)
+
+_DEVICES = {Role.BROWSER: InputDevice.KEYBOARD, Role.PHONE: InputDevice.PHONE}
+
+
+class PeerMessages:
+    """Listen to the peers of one seat. A viewer has no device: nothing that it says moves or selects anything."""
+
+    def __init__(
+        self,
+        *,
+        seat_input: SeatInput,
+        views: ViewManager,
+        latency: MotionToPhoton,
+        events: SeatEvents,
+        broadcaster: StatusBroadcaster,
+    ) -> None:
+        self._input, self._views, self._latency = seat_input, views, latency
+        self._events, self._broadcaster = events, broadcaster
+        self._cues = CueFilter()
+
+    def on_joined(self, peer: Peer) -> None:
+        """Listen to the device of a new peer."""
+        _log.info("A %s joined", peer.role)
+        if peer.role in _DEVICES:
+            self._input.connect(_DEVICES[peer.role])
+
+    def on_left(self, peer: Peer) -> None:
+        """Forget the device of a peer that is gone."""
+        _log.info("A %s left", peer.role)
+        if peer.role in _DEVICES:
+            self._input.disconnect(_DEVICES[peer.role])
+
+    def on_watched(self, codecs: AbstractSet[Codec]) -> None:
+        """Encode what somebody watches, and nothing else."""
+        self._views.set_codecs(codecs)
+
+    def on_keyframe_wanted(self, codec: Codec) -> None:
+        """Make the next picture one that needs none before it."""
+        self._views.request_keyframe(codec)
+
+    def on_pose(self, peer: Peer, payload: bytes) -> None:
+        """Drive the arm by a phone frame."""
+        self._input.receive(_DEVICES[peer.role], payload)
+        self._broadcaster.tell_changes()
+
+    def on_status(self, peer: Peer, text: str) -> None:
+        """Do what a message on the status channel asks; one that nobody understands is left out."""
+        try:
+            message = status_channel.parse(text)
+        except InvalidInput as error:
+            _log.debug("A %s said what nobody understands: %s", peer.role, error)
+            return
+        match message:
+            case status_channel.PingMessage():
+                peer.send_status(status_channel.pong(message, clock.wall_ns()))
+            case status_channel.ClockMessage(offset_ns):
+                peer.clock_offset_ns = offset_ns
+            case status_channel.SeenMessage(tick, t_us) if peer.clock_offset_ns is not None:
+                if peer.role is Role.BROWSER:
+                    self._latency.on_seen(tick, int(t_us * 1000) + peer.clock_offset_ns)
+        if peer.role in _DEVICES:
+            self._do_for_holder(_DEVICES[peer.role], message)
+
+    def _do_for_holder(self, device: InputDevice, message: status_channel.PeerMessage) -> None:
+        match message:
+            case status_channel.ClockMessage(offset_ns):
+                self._input.set_clock(device, offset_ns)
+            case status_channel.SelectInputMessage(chosen):
+                self._input.select(chosen)
+                self._broadcaster.tell_changes()
+            case status_channel.CueMessage(cue, press_us):
+                if self._cues.admit(press_us, clock.monotonic_s()):
+                    self._events.cue(cue)

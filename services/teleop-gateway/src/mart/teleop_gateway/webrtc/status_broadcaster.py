@@ -1,0 +1,59 @@
+"""Tell every peer of a seat how the room, the arm and its driving stand: 20 times a second, and at once on a change."""
+
+from __future__ import annotations
+
+import asyncio
+
+from mart.protocol import clock
+from mart.protocol.messages import RoomStatus, State
+from mart.teleop_gateway.input.driving import Driving
+from mart.teleop_gateway.input.seat_input import SeatInput
+from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
+from mart.teleop_gateway.video.view_manager import ViewManager
+from mart.teleop_gateway.webrtc import status_channel
+from mart.teleop_gateway.webrtc.peers import Peers
+
+STATUS_EVERY_S = 0.05
+
+
+class StatusBroadcaster:
+    """Keep the newest state and status of the room, and tell peers of them. Give it both as they come."""
+
+    def __init__(
+        self, peers: Peers, seat_input: SeatInput, views: ViewManager, latency: MotionToPhoton
+    ) -> None:
+        self.state = State()
+        self.status = RoomStatus()
+        self._peers, self._input, self._views, self._latency = peers, seat_input, views, latency
+        self._told: tuple[object, ...] = ()
+
+    async def run(self) -> None:
+        """Tell until cancelled; peers that have been silent for too long are dropped on the way."""
+        while True:
+            now_s = clock.monotonic_s()
+            self._tell(now_s)
+            self._peers.drop_silent(now_s)
+            await asyncio.sleep(STATUS_EVERY_S)
+
+    def tell_changes(self) -> None:
+        """Tell now, if something is worth a message of its own."""
+        now_s = clock.monotonic_s()
+        driving = self._input.driving
+        if driving is not None and self._told != self._worth_telling(driving, now_s):
+            self._tell(now_s)
+
+    def _tell(self, now_s: float) -> None:
+        driving = self._input.driving
+        if driving is None:
+            return
+        self._told = self._worth_telling(driving, now_s)
+        latency, frames_per_s = self._latency.summary(), self._views.frames_per_s()
+        self._peers.tell(
+            status_channel.tick(
+                self.state, self.status, driving, now_s, latency=latency, frames_per_s=frames_per_s
+            )
+        )
+
+    def _worth_telling(self, driving: Driving, now_s: float) -> tuple[object, ...]:
+        waiting = tuple(waiting.arm for waiting in self.status.waiting_for)
+        return driving.engaged(now_s), driving.holding, driving.active, self.status.barrier, waiting
