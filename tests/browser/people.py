@@ -45,7 +45,7 @@ class Phone:
         self.page.evaluate(_MOVE_PHONE, [x, y, z, 1000 * duration_s])
 
 
-class Person:
+class BrowserUser:
     """One person with a laptop; `pair_phone` puts a phone in their hand."""
 
     def __init__(self, browser: Browser, platform: Platform, name: str, width: int, height: int) -> None:
@@ -114,8 +114,8 @@ class Person:
 @contextmanager
 def person(
     browser: Browser, platform: Platform, name: str, width: int = 1440, height: int = 900
-) -> Iterator[Person]:
-    someone = Person(browser, platform, name, width, height)
+) -> Iterator[BrowserUser]:
+    someone = BrowserUser(browser, platform, name, width, height)
     try:
         yield someone
     finally:

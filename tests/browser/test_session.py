@@ -18,7 +18,7 @@ from mart.protocol.codec import decode
 from mart.protocol.messages import OUTCOME_SUCCESS, ArmState, Event, State
 from mart.runtime.bus.base import Sample
 from tests.browser.pages.visits import INSPECT
-from tests.browser.people import Person, Phone, person
+from tests.browser.people import BrowserUser, Phone, person
 
 WAIT_S = 60.0
 
@@ -196,7 +196,7 @@ def third_person_is_refused(browser: Browser, platform: Platform) -> None:
         assert "Ana" in answer[1]
 
 
-def sees_the_room_live(someone: Person) -> None:
+def sees_the_room_live(someone: BrowserUser) -> None:
     picture = someone.page.get_by_role("img", name="in room-1, now")
     expect(picture).to_have_attribute("src", re.compile(r"^/api/rooms/room-1/still\?number=\d+$"))
     someone.page.wait_for_function(
@@ -212,7 +212,7 @@ def assert_file_tells_who_drove(path: Path) -> None:
     assert "Ben" in metadata["mart.operators"]["arm1"]
 
 
-def leaves(someone: Person) -> None:
+def leaves(someone: BrowserUser) -> None:
     someone.page.get_by_role("button", name="Leave").click()
     expect(someone.page.locator(".seat").first).to_be_visible(timeout=30_000)
     expect(someone.page.get_by_text(f"{someone.name}, ready")).to_have_count(0)

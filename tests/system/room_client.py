@@ -22,7 +22,7 @@ from mart.protocol.messages import (
     State,
 )
 from mart.runtime.bus.zenoh_bus import ZenohBus
-from tests.support.mailbox import Mailbox, NothingCame
+from tests.support.message_collector import MessageCollector, NothingCame
 
 _TIMEOUT_S = 30.0
 _AHEAD = PoseMessage(x=0.5, y=0.0, z=0.2, qw=1.0)
@@ -35,9 +35,11 @@ class RoomClient:
         self.room = room
         self._opened = contextlib.ExitStack()
         self.bus = self._opened.enter_context(ZenohBus.connect(endpoint))
-        self.states = self._opened.enter_context(Mailbox(self.bus, keys.state(room).key, State))
-        self.statuses = self._opened.enter_context(Mailbox(self.bus, keys.status(room).key, RoomStatus))
-        self.events = self._opened.enter_context(Mailbox(self.bus, keys.event(room).key, Event))
+        self.states = self._opened.enter_context(MessageCollector(self.bus, keys.state(room).key, State))
+        self.statuses = self._opened.enter_context(
+            MessageCollector(self.bus, keys.status(room).key, RoomStatus)
+        )
+        self.events = self._opened.enter_context(MessageCollector(self.bus, keys.event(room).key, Event))
 
     def __enter__(self) -> Self:
         return self

@@ -91,8 +91,8 @@ def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
 
 @pytest.fixture(scope="module")
 def people(platform: Platform) -> Iterator[list[EmulatedUser]]:
-    with EmulatedUsers(platform, skill="novice", seed=0).seated(ARMS) as crew:
-        yield crew
+    with EmulatedUsers(platform, skill="novice", seed=0).seated(ARMS) as users:
+        yield users
 
 
 @pytest.fixture

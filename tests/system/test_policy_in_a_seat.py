@@ -42,7 +42,7 @@ from mart.trainer.jobs.service.promotion import Origin, promote
 from mart.trainer.train.run_directory import RunDirectory
 from mart.trainer.train.spec import TrainingSpec
 from mart.trainer.train.training import train
-from tests.support.mailbox import Mailbox
+from tests.support.message_collector import MessageCollector
 from tests.support.processes import started
 from tests.trainer import recorded
 
@@ -79,14 +79,14 @@ def platform(checkpoint: Path, tmp_path_factory: pytest.TempPathFactory) -> Iter
 
 
 @pytest.fixture
-def states(platform: Platform) -> Iterator[Mailbox[State]]:
-    with Mailbox(platform.bus, keys.state(ROOM).key, State) as states:
+def states(platform: Platform) -> Iterator[MessageCollector[State]]:
+    with MessageCollector(platform.bus, keys.state(ROOM).key, State) as states:
         yield states
 
 
 @pytest.fixture
-def events(platform: Platform) -> Iterator[Mailbox[Event]]:
-    with Mailbox(platform.bus, keys.event(ROOM).key, Event) as events:
+def events(platform: Platform) -> Iterator[MessageCollector[Event]]:
+    with MessageCollector(platform.bus, keys.event(ROOM).key, Event) as events:
         yield events
 
 
@@ -94,7 +94,9 @@ def driven_by(state: State, arm: str, source: Operator) -> bool:
     return any(one.arm == arm and one.fresh and one.source == source for one in state.arms)
 
 
-def await_ticks(states: Mailbox[State], arm: str, source: Operator, ticks: int, episode: bool = True) -> None:
+def await_ticks(
+    states: MessageCollector[State], arm: str, source: Operator, ticks: int, episode: bool = True
+) -> None:
     """So many more ticks in which `source` drives the arm."""
     for _ in range(ticks):
         states.wait_for(
@@ -106,15 +108,15 @@ def await_ticks(states: Mailbox[State], arm: str, source: Operator, ticks: int, 
 
 @pytest.mark.timeout(150)
 def test_a_person_takes_over_from_a_policy_in_mid_episode_and_hands_back(
-    platform: Platform, states: Mailbox[State], events: Mailbox[Event]
+    platform: Platform, states: MessageCollector[State], events: MessageCollector[Event]
 ) -> None:
-    crew = EmulatedUsers(platform, skill="expert", seed=0)
-    with crew.seated((MINE,)) as (ana,):
+    users = EmulatedUsers(platform, skill="expert", seed=0)
+    with users.seated((MINE,)) as (ana,):
         ana.web_client.assign(ROOM, OTHER, "policy", "lifter")
         await_ticks(states, OTHER, OPERATOR_POLICY, 3, episode=False)
         ana.web_client.act(ROOM, MINE, "ready")
         await_ticks(states, OTHER, OPERATOR_POLICY, 15)
-        with crew.seated((OTHER,)) as (ben,):  # taking the seat is the takeover
+        with users.seated((OTHER,)) as (ben,):  # taking the seat is the takeover
             await_ticks(states, OTHER, OPERATOR_HUMAN, 15)
             ben.web_client.hand_back(ROOM, OTHER)
             await_ticks(states, OTHER, OPERATOR_POLICY, 10)
@@ -131,7 +133,7 @@ def test_a_person_takes_over_from_a_policy_in_mid_episode_and_hands_back(
 
 @pytest.mark.timeout(150)
 def test_a_checkpoint_is_seated_beside_a_crew_and_leaves_with_it(
-    platform: Platform, checkpoint: Path, states: Mailbox[State]
+    platform: Platform, checkpoint: Path, states: MessageCollector[State]
 ) -> None:
     with EmulatedUsers(platform, skill="expert", seed=0).beside({checkpoint: (OTHER,)}):
         await_ticks(states, OTHER, OPERATOR_POLICY, 3, episode=False)
@@ -141,8 +143,8 @@ def test_a_checkpoint_is_seated_beside_a_crew_and_leaves_with_it(
 @pytest.mark.timeout(150)
 def test_a_checkpoint_that_cannot_be_seated_says_why(platform: Platform, tmp_path: Path) -> None:
     (tmp_path / "checkpoint.json").write_text("{}")
-    crew = EmulatedUsers(platform, skill="expert", seed=0)
-    with pytest.raises(Unavailable, match=r"does not drive arm1: mart: "), crew.beside({tmp_path: (OTHER,)}):
+    users = EmulatedUsers(platform, skill="expert", seed=0)
+    with pytest.raises(Unavailable, match=r"does not drive arm1: mart: "), users.beside({tmp_path: (OTHER,)}):
         pass
 
 
@@ -183,7 +185,7 @@ def assert_nothing_jumps(arms: list[ArmState], first: int) -> None:
 
 @pytest.mark.timeout(120)
 def test_a_policy_of_ones_own_waits_while_a_person_drives_and_leaves_when_it_is_stopped(
-    platform: Platform, checkpoint: Path, states: Mailbox[State], events: Mailbox[Event]
+    platform: Platform, checkpoint: Path, states: MessageCollector[State], events: MessageCollector[Event]
 ) -> None:
     router = platform.options.router
     command = ["operate", "--room", ROOM, "--arm", OTHER, "--checkpoint", str(checkpoint), "--name", "own"]
@@ -201,7 +203,7 @@ def test_a_policy_of_ones_own_waits_while_a_person_drives_and_leaves_when_it_is_
 
 
 def test_a_policy_that_does_not_fit_is_told_and_its_seat_is_left(
-    platform: Platform, events: Mailbox[Event]
+    platform: Platform, events: MessageCollector[Event]
 ) -> None:
     with contextlib.closing(WebClient(platform.url, platform.certificate)) as ana:
         ana.join(platform.join_code, "Ana")

@@ -17,7 +17,7 @@ from mart.protocol import codec, keys
 from mart.protocol.messages import RoomsRequest, RoomStatus
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.ports import free_port
-from tests.support.mailbox import Mailbox
+from tests.support.message_collector import MessageCollector
 
 _MART = str(Path(sys.executable).with_name("mart"))
 
@@ -58,7 +58,7 @@ def test_a_room_that_was_opened_comes_back_with_its_plan(tmp_path: Path) -> None
             assert json.loads(process.stdout.readline())["room"] == "room-1"
             with (
                 ZenohBus.connect(environment["MART_ROUTER"]) as bus,
-                Mailbox(bus, keys.status("lab").key, RoomStatus) as statuses,
+                MessageCollector(bus, keys.status("lab").key, RoomStatus) as statuses,
             ):
                 if request is not None:
                     bus.query(keys.rooms("platform-1"), codec.encode(request), timeout_s=45.0)

@@ -35,7 +35,7 @@ from mart.sim.world.world import World
 from mart.teleop_gateway.seat import Seat
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.settings import GatewaySettings
-from tests.support.mailbox import Mailbox
+from tests.support.message_collector import MessageCollector
 from tests.teleop_gateway.browser import Exchange, in_background
 
 SECRET = b"s" * 32
@@ -147,8 +147,8 @@ class SeatUnderTest:
         raise_error(answer.error)
         return answer
 
-    def commands(self) -> Mailbox[Command]:
-        return Mailbox(self.bus.bus, keys.command(self.room.name, "arm0").key, Command)
+    def commands(self) -> MessageCollector[Command]:
+        return MessageCollector(self.bus.bus, keys.command(self.room.name, "arm0").key, Command)
 
 
 @contextlib.asynccontextmanager

@@ -33,7 +33,7 @@ from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.secret_file import load_or_create_secret
 from mart.teleop_gateway.emulation.emulated_phone import EmulatedPhone
 from mart.teleop_gateway.emulation.network_emulation import LinkProfile
-from tests.support.mailbox import Mailbox
+from tests.support.message_collector import MessageCollector
 from tests.support.processes import Running, running_router, running_service
 from tests.teleop_gateway.browser import Exchange, connected, in_background
 
@@ -185,8 +185,8 @@ def test_a_killed_seat_is_told_and_comes_back_and_the_phone_goes_on(platform: Pl
             link=LinkProfile(delay_s=0.005, jitter_s=0.005, loss=0.01),
         )
         with (
-            Mailbox(bus.bus, keys.event(ROOM).key, Event) as events,
-            Mailbox(bus.bus, keys.state(ROOM).key, State) as states,
+            MessageCollector(bus.bus, keys.event(ROOM).key, Event) as events,
+            MessageCollector(bus.bus, keys.state(ROOM).key, State) as states,
         ):
             async with in_background(phone.run()):
                 before = await asyncio.to_thread(states.wait_for, lambda s: s.arms[0].sequence > 0, 30)

@@ -14,7 +14,7 @@ from mart.protocol.errors import Conflict, Forbidden, InvalidInput, Unavailable
 from mart.protocol.messages import OPERATOR_POLICY, Offer
 from mart.protocol.tokens import Role
 from mart.teleop_gateway.webrtc import peers
-from tests.support.mailbox import Mailbox
+from tests.support.message_collector import MessageCollector
 from tests.teleop_gateway.browser import Browser, connected
 from tests.teleop_gateway.room import OnSeat, SeatUnderTest
 
@@ -110,7 +110,7 @@ def test_many_viewers_share_one_encode_and_the_ninth_is_refused(on_seat: OnSeat)
     async def body(seat: SeatUnderTest) -> None:
         video = keys.video(seat.room.name, "arm0").key
         async with contextlib.AsyncExitStack() as stack:
-            recorded = stack.enter_context(Mailbox(seat.bus.bus, video, CompressedVideo))
+            recorded = stack.enter_context(MessageCollector(seat.bus.bus, video, CompressedVideo))
             viewers: list[Browser] = []
             for _ in range(peers.MAX_VIEWERS):
                 viewers.append(await stack.enter_async_context(connected(seat.exchange(Role.VIEWER))))
@@ -128,7 +128,9 @@ def test_many_viewers_share_one_encode_and_the_ninth_is_refused(on_seat: OnSeat)
 
 def test_the_bus_gets_what_the_operator_sees(on_seat: OnSeat) -> None:
     async def body(seat: SeatUnderTest) -> None:
-        with Mailbox(seat.bus.bus, keys.video(seat.room.name, "arm0").key, CompressedVideo) as recorded:
+        with MessageCollector(
+            seat.bus.bus, keys.video(seat.room.name, "arm0").key, CompressedVideo
+        ) as recorded:
             picture = await asyncio.to_thread(recorded.wait_for, lambda video: b"\0\0\1\x67" in video.data)
             assert (picture.format, picture.frame_id) == ("h264", "arm0")
             age_s = clock.wall_ns() * 1e-9 - picture.timestamp.ToNanoseconds() * 1e-9
@@ -139,7 +141,9 @@ def test_the_bus_gets_what_the_operator_sees(on_seat: OnSeat) -> None:
 
 def test_the_bus_gets_stills_for_the_lobby(on_seat: OnSeat) -> None:
     async def body(seat: SeatUnderTest) -> None:
-        with Mailbox(seat.bus.bus, keys.still(seat.room.name, "arm0").key, CompressedImage) as thumbnails:
+        with MessageCollector(
+            seat.bus.bus, keys.still(seat.room.name, "arm0").key, CompressedImage
+        ) as thumbnails:
             thumbnail = await asyncio.to_thread(
                 thumbnails.wait_for, lambda image: image.data.startswith(b"\xff\xd8")
             )
@@ -165,7 +169,7 @@ def test_a_lost_picture_is_asked_for_and_comes_as_a_keyframe(on_seat: OnSeat) ->
         video = keys.video(seat.room.name, "arm0").key
         async with connected(seat.exchange(Role.BROWSER)) as browser:
             await browser.next_tick()
-            with Mailbox(seat.bus.bus, video, CompressedVideo) as recorded:
+            with MessageCollector(seat.bus.bus, video, CompressedVideo) as recorded:
                 await asyncio.to_thread(recorded.wait_for, lambda video: b"\0\0\1\x67" in video.data)
                 since = len(recorded)
                 assert browser.receiver is not None

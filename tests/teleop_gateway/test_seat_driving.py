@@ -14,7 +14,7 @@ from mart.protocol.messages import OPERATOR_HOLD, ArmState, Event, Offer, State,
 from mart.protocol.tokens import Role
 from mart.teleop_gateway.input.driving import LOST_AFTER_S
 from mart.teleop_gateway.video.motion_to_photon import STAGES
-from tests.support.mailbox import Mailbox
+from tests.support.message_collector import MessageCollector
 from tests.teleop_gateway.browser import connected, in_background
 from tests.teleop_gateway.room import OnSeat, SeatUnderTest
 
@@ -251,7 +251,7 @@ def test_a_new_run_of_the_sim_is_followed(on_seat: OnSeat) -> None:
 
 def test_motion_to_photon_is_measured_told_and_published(on_seat: OnSeat) -> None:
     async def body(seat: SeatUnderTest) -> None:
-        with Mailbox(seat.bus.bus, keys.event(seat.room.name).key, Event) as events:
+        with MessageCollector(seat.bus.bus, keys.event(seat.room.name).key, Event) as events:
             async with connected(seat.exchange(Role.BROWSER)) as browser, in_background(browser.drive(1)):
                 await browser.synchronise()
                 for _ in range(30):

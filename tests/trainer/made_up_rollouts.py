@@ -15,7 +15,7 @@ STARTED_NS = 1_790_000_000_000_000_000
 MODEL = Model(sha256="0" * 64, mjb=b"none", mujoco_version="4.0.0")
 
 
-def footage(
+def recorded(
     task: str, done: Collection[str], outcome: str = "failure", ticks: int = 4, seed: int = 7
 ) -> RolloutEpisode:
     """Subtasks of `done` are done from the middle of the episode until just before its end."""
@@ -38,7 +38,7 @@ def footage(
 
 def write_footage(folder: Path, number: int, task: str, done: Collection[str], outcome: str) -> Path:
     path = folder / f"evaluation-{number:04}-{task}.mcap"
-    write(path, footage(task, done, outcome, seed=number), MODEL, STARTED_NS)
+    write(path, recorded(task, done, outcome, seed=number), MODEL, STARTED_NS)
     return path
 
 

@@ -24,14 +24,14 @@ EPISODES = 6
 
 
 @dataclass
-class Site:
+class RunningSite:
     url: str
     join_code: str
     paths: list[Path]  # of the episodes, the oldest first
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningSite]:
     """Six episodes, of which the first failed and the second was dropped."""
     port, data_dir = free_port(), tmp_path_factory.mktemp("data")
     paths = [write_episode(data_dir / "episodes", 10, number).path for number in range(1, EPISODES + 1)]
@@ -44,16 +44,16 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
             (["trainer"], "trainer", "trainer-1"),
         ):
             services.enter_context(running_service(command, endpoint, data_dir, kind=kind, id=name))
-        yield Site(f"https://localhost:{port}/", (data_dir / "join-code").read_text().strip(), paths)
+        yield RunningSite(f"https://localhost:{port}/", (data_dir / "join-code").read_text().strip(), paths)
 
 
 def episodes_page(
-    browser: Browser, site: Site, size: str = "wide", scheme: str = "light", query: str = ""
+    browser: Browser, site: RunningSite, size: str = "wide", scheme: str = "light", query: str = ""
 ) -> AbstractContextManager[Page]:
     return joined(browser, site.url, site.join_code, f"episodes{query}", size=size, scheme=scheme)
 
 
-def test_from_a_filter_to_a_data_set_to_a_training(browser: Browser, site: Site) -> None:
+def test_from_a_filter_to_a_data_set_to_a_training(browser: Browser, site: RunningSite) -> None:
     with episodes_page(browser, site) as page:
         page.get_by_label("Outcome").select_option("Success")
         expect(page.get_by_role("button", name="Use 5 for training")).to_be_visible()
@@ -94,7 +94,7 @@ def test_from_a_filter_to_a_data_set_to_a_training(browser: Browser, site: Site)
 
 
 @pytest.mark.parametrize(("size", "scheme"), LOOKS[:4])
-def test_it_is_legible_and_whole(browser: Browser, site: Site, size: str, scheme: str) -> None:
+def test_it_is_legible_and_whole(browser: Browser, site: RunningSite, size: str, scheme: str) -> None:
     for path in site.paths[2:4]:
         labels.say(path, LabelKind.JOIN, "lifting-by-ana", 5)
     with episodes_page(browser, site, size, scheme, "?dataset=lifting-by-ana") as page:

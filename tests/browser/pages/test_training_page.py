@@ -26,7 +26,7 @@ SPEAK_S = 0.2
 
 
 @dataclass
-class Site:
+class RunningSite:
     url: str
     join_code: str
     bus: ZenohBus
@@ -34,7 +34,7 @@ class Site:
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningSite]:
     """Pages and a room that speaks five times a second; no trainer yet."""
     port, data_dir, done = free_port(), tmp_path_factory.mktemp("web"), threading.Event()
     with (
@@ -50,26 +50,28 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
 
         speaking = threading.Thread(target=speak)
         speaking.start()
-        yield Site(f"https://localhost:{port}/", (data_dir / "join-code").read_text().strip(), bus, room)
+        yield RunningSite(
+            f"https://localhost:{port}/", (data_dir / "join-code").read_text().strip(), bus, room
+        )
         done.set()
         speaking.join()
 
 
 @pytest.fixture
-def trainer(site: Site) -> Iterator[Trainer]:
+def trainer(site: RunningSite) -> Iterator[Trainer]:
     with contextlib.closing(Trainer(site.bus)) as trainer:
         yield trainer
 
 
 def page_of(
-    browser: Browser, site: Site, size: str = "wide", scheme: str = "light"
+    browser: Browser, site: RunningSite, size: str = "wide", scheme: str = "light"
 ) -> AbstractContextManager[Page]:
     return joined(browser, site.url, site.join_code, "training", size=size, scheme=scheme)
 
 
 @pytest.mark.parametrize(("size", "scheme"), LOOKS)
 def test_it_is_legible_and_whole(
-    browser: Browser, site: Site, trainer: Trainer, size: str, scheme: str
+    browser: Browser, site: RunningSite, trainer: Trainer, size: str, scheme: str
 ) -> None:
     with page_of(browser, site, size, scheme) as page:
         page.get_by_label("Compare d-HBC, job").last.check()
@@ -83,7 +85,7 @@ def test_it_is_legible_and_whole(
 
 
 def test_without_a_trainer_it_says_how_to_start_one_and_goes_on_by_itself(
-    browser: Browser, site: Site
+    browser: Browser, site: RunningSite
 ) -> None:
     with page_of(browser, site) as page:
         expect(page.locator("#absent")).to_contain_text("mart trainer")
@@ -93,7 +95,7 @@ def test_without_a_trainer_it_says_how_to_start_one_and_goes_on_by_itself(
 
 
 def test_the_grid_tells_the_papers_name_and_the_name_sets_the_grid(
-    browser: Browser, site: Site, trainer: Trainer
+    browser: Browser, site: RunningSite, trainer: Trainer
 ) -> None:
     with page_of(browser, site) as page:
         name = page.locator(".model-name")
@@ -116,7 +118,7 @@ def test_the_grid_tells_the_papers_name_and_the_name_sets_the_grid(
         assert (len(submitted.models), list(submitted.order.seeds)) == (7, [0, 1, 2])
 
 
-def test_the_task_is_that_of_the_episodes(browser: Browser, site: Site, trainer: Trainer) -> None:
+def test_the_task_is_that_of_the_episodes(browser: Browser, site: RunningSite, trainer: Trainer) -> None:
     with page_of(browser, site) as page:
         task = page.locator("#order select").nth(1)
         expect(task).to_have_value(TASK)
@@ -124,7 +126,7 @@ def test_the_task_is_that_of_the_episodes(browser: Browser, site: Site, trainer:
         expect(task).to_have_value(OTHER_TASK)
 
 
-def test_a_checkpoint_is_promoted_and_seated(browser: Browser, site: Site, trainer: Trainer) -> None:
+def test_a_checkpoint_is_promoted_and_seated(browser: Browser, site: RunningSite, trainer: Trainer) -> None:
     with page_of(browser, site) as page:
         page.locator(".run strong:text-is('d-HBC')").click()
         page.get_by_role("button", name="Promote the checkpoint").first.click()

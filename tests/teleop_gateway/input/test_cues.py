@@ -12,7 +12,7 @@ from mart.protocol import keys
 from mart.protocol.messages import CUE_GO, Event
 from mart.protocol.tokens import Role
 from mart.teleop_gateway.input.cues import MAX_PER_S, CueFilter
-from tests.support.mailbox import Mailbox
+from tests.support.message_collector import MessageCollector
 from tests.teleop_gateway.browser import connected
 from tests.teleop_gateway.room import OnSeat, SeatUnderTest
 
@@ -25,7 +25,7 @@ def test_never_twice_and_never_too_many(tellings: list[tuple[int, float]]) -> No
     presses, now_s, admitted = CueFilter(), 0.0, list[tuple[int, float]]()
     for press, after_s in tellings:
         now_s += after_s
-        if presses.admit(float(press), now_s):
+        if presses.allow(float(press), now_s):
             admitted.append((press, now_s))
     assert len({press for press, _ in admitted}) == len(admitted)
     times_s = [at_s for _, at_s in admitted]
@@ -34,17 +34,17 @@ def test_never_twice_and_never_too_many(tellings: list[tuple[int, float]]) -> No
 
 def test_one_too_many_stays_refused_though_its_copies_come_later() -> None:
     presses = CueFilter()
-    assert [presses.admit(float(press), 0.0) for press in range(MAX_PER_S + 1)] == [True] * MAX_PER_S + [
+    assert [presses.allow(float(press), 0.0) for press in range(MAX_PER_S + 1)] == [True] * MAX_PER_S + [
         False
     ]
-    assert not presses.admit(float(MAX_PER_S), 5.0)
-    assert presses.admit(99.0, 5.0)
+    assert not presses.allow(float(MAX_PER_S), 5.0)
+    assert presses.allow(99.0, 5.0)
 
 
 @pytest.mark.system
 def test_a_seat_says_it_once_and_only_for_who_drives(on_seat: OnSeat) -> None:
     async def body(seat: SeatUnderTest) -> None:
-        with Mailbox(seat.bus.bus, keys.event(seat.room.name).key, Event) as events:
+        with MessageCollector(seat.bus.bus, keys.event(seat.room.name).key, Event) as events:
             async with (
                 connected(seat.exchange(Role.BROWSER)) as browser,
                 connected(seat.exchange(Role.VIEWER)) as viewer,

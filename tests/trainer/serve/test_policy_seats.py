@@ -26,7 +26,7 @@ from mart.protocol.messages import (
 from mart.protocol.pose import Pose
 from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
 from mart.trainer.serve.policy_seats import PromotedPolicies
-from tests.support.mailbox import Mailbox
+from tests.support.message_collector import MessageCollector
 from tests.trainer.serve.toys import Wanderer
 from tests.web.room import Room
 
@@ -40,8 +40,8 @@ class Stand:
         self.bus, self.policies = bus, policies
         self.room = Room(bus)
         self.driver = SeatDriver(bus, None, PromotedPolicies(Path("policies"), self.load))
-        self.commands = Mailbox(bus, keys.commands("room-1"), Command)
-        self.events = Mailbox(bus, keys.event("room-1").key, Event)
+        self.commands = MessageCollector(bus, keys.commands("room-1"), Command)
+        self.events = MessageCollector(bus, keys.event("room-1").key, Event)
         self.loaded: list[str] = []
         self.tick = 0
 

@@ -47,9 +47,9 @@ def collect_episodes(spec: CollectionSpec) -> Iterator[CollectedEpisode]:
     with contextlib.ExitStack() as stack:
         platform = stack.enter_context(running_platform(_private_options(spec)))
         browser = stack.enter_context(running_browser()) if spec.browsers else None
-        crew = EmulatedUsers(platform, spec.skill, spec.seed, browser)
-        people = stack.enter_context(crew.seated(spec.operators.scripts))
-        stack.enter_context(crew.beside(spec.operators.policies))
+        users = EmulatedUsers(platform, spec.skill, spec.seed, browser)
+        people = stack.enter_context(users.seated(spec.operators.scripts))
+        stack.enter_context(users.beside(spec.operators.policies))
         session = LiveSession(platform.bus, platform.options.room, SavedEpisodes(spec.out).find)
         stack.enter_context(contextlib.closing(session))
         for _ in range(spec.episodes):

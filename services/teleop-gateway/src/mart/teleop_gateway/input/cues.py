@@ -17,7 +17,7 @@ class CueFilter:
         self._rate = RateLimit(MAX_PER_S)
         self._known: deque[float] = deque(maxlen=_REMEMBERED)
 
-    def admit(self, press_us: float, now_s: float) -> bool:
+    def allow(self, press_us: float, now_s: float) -> bool:
         """Whether this press is new and not one too many; one too many stays refused, however often it is told."""
         if press_us in self._known:
             return False

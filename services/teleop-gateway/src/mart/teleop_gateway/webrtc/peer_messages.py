@@ -91,5 +91,5 @@ class PeerMessages:
                 self._input.select(chosen)
                 self._broadcaster.tell_changes()
             case status_channel.CueMessage(cue, press_us):
-                if self._cues.admit(press_us, clock.monotonic_s()):
+                if self._cues.allow(press_us, clock.monotonic_s()):
                     self._events.cue(cue)

@@ -22,10 +22,10 @@ class NothingCame(AssertionError):
         super().__init__(f"No such message within {timeout_s:g} s; of {len(messages)} the last began: {last}")
 
 
-class Mailbox(Generic[M]):
+class MessageCollector(Generic[M]):
     """Keeps every message that arrives on `key_expression`, in order.
 
-    with Mailbox(bus, keys.state("room-1").key, State) as states:
+    with MessageCollector(bus, keys.state("room-1").key, State) as states:
         state = states.wait_for(lambda state: state.tick > 10)
     """
 
@@ -60,7 +60,7 @@ class Mailbox(Generic[M]):
         with self._arrived:
             return len(self._messages)
 
-    def __enter__(self) -> Mailbox[M]:
+    def __enter__(self) -> MessageCollector[M]:
         return self
 
     def __exit__(self, *_: object) -> None:
