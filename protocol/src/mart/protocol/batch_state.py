@@ -40,7 +40,7 @@ class BatchState:
 
 
 def pack_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """As they travel. Raises InvalidInput where shape, finiteness or range are not those of actions."""
+    """Return actions as they travel. Raises InvalidInput where shape, finiteness or range are not those of actions."""
     packed = np.ascontiguousarray(actions, dtype="<f8")
     if packed.shape != shape:
         raise InvalidInput(f"Actions of shape {packed.shape} were given; {shape} is needed.")
@@ -49,7 +49,7 @@ def pack_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float
 
 
 def check_actions(actions: Array) -> None:
-    """Raises InvalidInput where a number is not finite or not in [-1, 1]."""
+    """Check actions. Raises InvalidInput where a number is not finite or not in [-1, 1]."""
     if not np.isfinite(actions).all():
         raise InvalidInput("Actions with NaN or infinity were given; every number must be finite.")
     largest = float(np.abs(actions).max(initial=0.0))
@@ -75,7 +75,7 @@ def pack(worlds: BatchState) -> WorldArrays:
 
 
 def unpack(task: Task, message: WorldArrays, count: int) -> BatchState:
-    """Raises Corrupt where an array has not the size that the task and the number of worlds ask for."""
+    """Return what arrived. Raises Corrupt where an array has another size than task and worlds ask for."""
     reasons = tuple(message.failed)
     if len(reasons) != count:
         raise Corrupt(f"{len(reasons)} worlds were answered, but there are {count}.")

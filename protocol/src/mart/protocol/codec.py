@@ -19,7 +19,7 @@ def encode(message: Message) -> bytes:
 
 
 def decode(kind: type[M], payload: bytes, limit_bytes: int = MAX_MESSAGE_BYTES) -> M:
-    """Raises InvalidInput where `payload` is longer than `limit_bytes` or is not a `kind`."""
+    """Return the message. Raises InvalidInput where `payload` is longer than `limit_bytes` or is not a `kind`."""
     if len(payload) > limit_bytes:
         raise InvalidInput(
             f"A {kind.DESCRIPTOR.name} of {len(payload)} bytes was given; at most {limit_bytes} are allowed."

@@ -35,7 +35,7 @@ class NotFound(MartError):
 
     @classmethod
     def named(cls, kind: str, given: str, allowed: Iterable[str]) -> NotFound:
-        """`kind` is the thing in words ("task"), `given` the unknown name, `allowed` the names that exist."""
+        """Make the error for an unknown name: `kind` in words ("task"), the name `given`, those that are `allowed`."""
         names = sorted(allowed)
         close = difflib.get_close_matches(given, names, n=1)
         hint = f" Did you mean {close[0]!r}?" if close else ""

@@ -43,12 +43,12 @@ def command(room: str, arm: str) -> Topic:
 
 
 def intent(room: str, arm: str) -> Topic:
-    """Where a scripted expert wants an emulated phone to lead an arm; carries a Command, never reaches the sim."""
+    """Return where an expert says how an emulated phone is to lead an arm; carries a Command, never reaches the sim."""
     return Topic(_key(room, "arm", arm, "intent"), Priority.NORMAL, express=True)
 
 
 def in_order(topic: Topic) -> Topic:
-    """For a lockstep room's states, commands and events: all arrive, in the order in which they were said.
+    """Return the topic with the delivery of an unpaced room: everything arrives, in the order in which it was said.
 
     Nothing there waits for a clock, so what is said may be more than what can be recorded: the room has to wait.
     """

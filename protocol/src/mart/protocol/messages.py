@@ -187,7 +187,7 @@ def pose_message(pose: Pose) -> PoseMessage:
 
 
 def pose_from_message(message: PoseMessage) -> Pose:
-    """Raises InvalidInput where the numbers are not finite or the quaternion is not of unit norm."""
+    """Return the pose. Raises InvalidInput where a number is not finite or the quaternion is not of unit norm."""
     return Pose(
         np.array([message.x, message.y, message.z]),
         np.array([message.qw, message.qx, message.qy, message.qz]),
@@ -199,7 +199,7 @@ def error_message(error: MartError) -> Error:
 
 
 def raise_error(error: Error) -> None:
-    """Raises what the other side reported; does nothing where `error` is empty."""
+    """Raise what the other side reported; do nothing where `error` is empty."""
     if error.code or error.message:
         raise from_wire(error.code, error.message)
 
@@ -215,37 +215,37 @@ def outcome_word(outcome: Outcome) -> EpisodeOutcome:
 
 
 def phase_word(phase: EpisodePhase) -> str:
-    """practice, countdown, recording or ended."""
+    """Return the word for a phase: practice, countdown, recording or ended."""
     return _word(EpisodePhase.Name(phase), "EPISODE_PHASE_")
 
 
 def barrier_word(phase: BarrierPhase) -> str:
-    """running, stalled, paused or stopped."""
+    """Return the word for the barrier's phase: running, stalled, paused or stopped."""
     return _word(BarrierPhase.Name(phase), "BARRIER_PHASE_")
 
 
 def job_state_word(state: JobState) -> str:
-    """queued, running, done, failed or cancelled."""
+    """Return the word for a job's state: queued, running, done, failed or cancelled."""
     return _word(JobState.Name(state), "JOB_STATE_")
 
 
 def cue_word(cue: Cue) -> str:
-    """have_it, go, wait, slower or thanks."""
+    """Return the word for a cue: have_it, go, wait, slower or thanks."""
     return _word(Cue.Name(cue), "CUE_")
 
 
 def operator_from_word(word: str) -> Operator:
-    """Raises InvalidInput for anything but human, policy, script or hold."""
+    """Return the wire's member. Raises InvalidInput for anything but human, policy, script or hold."""
     return cast("Operator", _value(Operator, "OPERATOR_", "Operator", word))
 
 
 def outcome_from_word(word: str) -> Outcome:
-    """Raises InvalidInput for anything but success, failure or discarded."""
+    """Return the wire's member. Raises InvalidInput for anything but success, failure or discarded."""
     return cast("Outcome", _value(Outcome, "OUTCOME_", "Outcome", word))
 
 
 def cue_from_word(word: str) -> Cue:
-    """Raises InvalidInput for anything but have_it, go, wait, slower or thanks."""
+    """Return the wire's member. Raises InvalidInput for anything but have_it, go, wait, slower or thanks."""
     return cast("Cue", _value(Cue, "CUE_", "Cue", word))
 
 

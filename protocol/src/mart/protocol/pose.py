@@ -52,7 +52,7 @@ class Pose:
 
     @classmethod
     def from_matrix(cls, rotation: ArrayLike, position: ArrayLike) -> Pose:
-        """rotation: shape (3, 3), orthonormal; position: shape (3,), metres."""
+        """Make a pose of a rotation matrix, shape (3, 3), orthonormal, and a position, shape (3,), metres."""
         return cls(
             np.asarray(position, dtype=np.float64), quaternion_from_matrix(np.asarray(rotation, np.float64))
         )
@@ -83,7 +83,7 @@ class Pose:
         return np.column_stack([rotate(self.quaternion_wxyz, axis) for axis in np.eye(3)])
 
     def transform_points(self, points: ArrayLike) -> Array:
-        """points: shape (..., 3) in this frame; the same points in the parent frame."""
+        """Return points, shape (..., 3), given in this frame, in the parent frame."""
         return np.asarray(points, dtype=np.float64) @ self.rotation_matrix().T + self.position
 
     def distance_to(self, other: Pose) -> tuple[float, float]:
@@ -112,7 +112,7 @@ def quaternion_conjugate(quaternion_wxyz: Array) -> Array:
 
 
 def quaternion_exp(rotation_vector: Array) -> Array:
-    """rotation_vector: axis times angle, shape (3,), radians."""
+    """Return the unit quaternion of a rotation vector: axis times angle, shape (3,), radians."""
     angle = float(np.linalg.norm(rotation_vector))
     half = 0.5 * angle
     scale = 0.5 if angle < _SMALL_ANGLE_RAD else np.sin(half) / angle
@@ -135,7 +135,7 @@ def rotate(quaternion_wxyz: Array, vector: Array) -> Array:
 
 
 def quaternion_from_matrix(rotation: Array) -> Array:
-    """rotation: shape (3, 3). Shepperd's method: divides by the largest of the four components."""
+    """Return the quaternion of a rotation matrix, shape (3, 3). Shepperd's method: divides by the largest component."""
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation.tolist()
     squares = (xx + yy + zz, xx - yy - zz, yy - xx - zz, zz - xx - yy)
     largest = squares.index(max(squares))

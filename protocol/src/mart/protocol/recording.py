@@ -95,7 +95,7 @@ class EpisodeRecord(Record):
 
 
 class RoomRecord(Record):
-    """Of what room the file is: written when it is opened, so that a file that was cut short still says it."""
+    """Tell of what room the file is: written when it is opened, so that a file that was cut short still says it."""
 
     NAME = "mart.room"
 

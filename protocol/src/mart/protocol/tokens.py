@@ -46,7 +46,7 @@ def sign(token: SeatToken, secret: bytes) -> str:
 
 
 def verify(text: str, secret: bytes) -> SeatToken:
-    """Raises Forbidden where the token is missing, forged, expired or incomplete."""
+    """Return what a token grants. Raises Forbidden where it is missing, forged, expired or incomplete."""
     if not text or len(text) > _MAX_TOKEN_CHARACTERS:
         raise Forbidden("No seat token was given; take a seat in the lobby to get one.")
     try:

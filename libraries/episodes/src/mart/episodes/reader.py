@@ -107,7 +107,7 @@ class EpisodeFile:
 
     @property
     def room(self) -> RoomRecord:
-        """Of what room the file is, also where it was cut short."""
+        """Tell of what room the file is, also where it was cut short."""
         return self._read(RoomRecord)
 
     def states(self) -> Iterator[State]:

@@ -42,7 +42,7 @@ class SeatCommander:
         source: OperatorOnWire,
         needs: Iterable[str] | None = None,
     ) -> None:
-        """`needs` names the observations to show; None: those that the task shows the operators of these arms."""
+        """Command for an operator. `needs` names the observations to show; None: those shown to these arms."""
         self.arms = tuple(arms)
         self._operator, self._task, self._source = operator, task, source
         self._shapes = _shapes(task, self.arms, needs)

@@ -70,7 +70,7 @@ class SeatDriver(Generic[K]):
     """Drive every seat that an selection names. What cannot drive is told to the room, and its seats are given up."""
 
     def __init__(self, bus: Bus, room: str | None, selection: SeatSelection[K]) -> None:
-        """`room`: this one alone; None: every room."""
+        """Watch `room` alone; None: every room."""
         self._bus, self._selection = bus, selection
         self._driven: dict[tuple[str, K], _DrivenSeats] = {}
         self._failed: dict[tuple[str, K], Mapping[str, int]] = {}  # with the epochs that were given up

@@ -35,7 +35,7 @@ class RoomWatch:
         )
 
     def take(self, timeout_s: float) -> tuple[Mapping[str, RoomStatus], Mapping[str, State]]:
-        """By room, what came since the last call; waits for something at most `timeout_s`."""
+        """Return, by room, what came since the last call; wait for something at most `timeout_s`."""
         with self._arrived:
             if not self._statuses and not self._states:
                 self._arrived.wait(timeout_s)

@@ -53,7 +53,7 @@ class RolloutClient:
     """
 
     def __init__(self, bus: Bus, replicas: Sequence[str]) -> None:
-        """Raises InvalidInput without replicas, or where one is named twice."""
+        """Use these replicas. Raises InvalidInput without any, or where one is named twice."""
         if not replicas or len(set(replicas)) < len(replicas):
             raise InvalidInput(
                 f"Replicas {', '.join(replicas) or 'of no name'} were given; name each of them, once."

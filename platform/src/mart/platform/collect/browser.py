@@ -27,7 +27,7 @@ ARGUMENTS = [
 
 
 def chromium_path() -> str:
-    """Raises Unavailable where no Chromium is installed."""
+    """Return where Chromium is. Raises Unavailable where none is installed."""
     for name in ("chromium", "chromium-browser", "google-chrome"):
         if path := shutil.which(name):
             return path
@@ -36,7 +36,7 @@ def chromium_path() -> str:
 
 @contextlib.contextmanager
 def running_browser() -> Iterator[Browser]:
-    """Raises Unavailable where Playwright or Chromium is missing."""
+    """Run a headless Chromium for the block. Raises Unavailable where Playwright or Chromium is missing."""
     path = chromium_path()
     try:
         from playwright.sync_api import sync_playwright

@@ -43,7 +43,7 @@ class EmulatedUser:
 
 @dataclass(frozen=True)
 class EmulatedUsers:
-    """`skill` and `seed` are the scripts'; each person's seed is the crew's plus the number of the seat."""
+    """Seat emulated people. `skill` and `seed` are the scripts'; each one's seed is this plus the seat's number."""
 
     platform: Platform
     skill: str

@@ -57,7 +57,7 @@ class LiveSession:
         return self._await_file(number)
 
     def close(self) -> None:
-        """Stop listening."""
+        """Stop listening to the room."""
         for subscription in self._subscriptions:
             subscription.close()
 

@@ -16,7 +16,7 @@ _FILE = "checkpoint.json"
 
 @dataclass(frozen=True)
 class SeatOperators:
-    """`scripts`: arms that emulated people drive. `policies`: arms by the checkpoint that drives them."""
+    """Tell who drives: `scripts`, arms of emulated people; `policies`, arms by the checkpoint that drives them."""
 
     scripts: tuple[str, ...]
     policies: Mapping[Path, tuple[str, ...]] = field(default_factory=dict)

@@ -9,7 +9,7 @@ from mart.platform.collect.saved_episodes import CollectedEpisode
 
 
 class CollectionSummary:
-    """`now_s`: monotonic; wall time counts from the start, that of the services included."""
+    """Add up collected episodes. `now_s`: monotonic; wall time counts from the start, that of the services included."""
 
     def __init__(self, now_s: float) -> None:
         self._began_s = now_s

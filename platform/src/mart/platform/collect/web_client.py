@@ -46,7 +46,7 @@ class WebClient:
         self._request("POST", f"api/rooms/{room}/seats/{arm}", {"operator": operator, "policy": policy})
 
     def hand_back(self, room: str, arm: str) -> None:
-        """To the machine from which this person took over."""
+        """Hand the arm back to the machine from which this person took over."""
         self._request("POST", f"api/rooms/{room}/seats/{arm}/hand-back")
 
     def leave(self, room: str, arm: str) -> None:
@@ -58,7 +58,7 @@ class WebClient:
         return code
 
     def act(self, room: str, arm: str, action: str) -> None:
-        """ready, unready, success, failure, discard or reset."""
+        """Say one thing about the episode: ready, unready, success, failure, discard or reset."""
         self._request("POST", f"api/rooms/{room}/episode", {"action": action, "arm": arm})
 
     def cookies(self) -> list[dict[str, str]]:

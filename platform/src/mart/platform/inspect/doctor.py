@@ -36,7 +36,7 @@ class Diagnosis:
 
 
 def examine(settings: Settings) -> Iterator[Diagnosis]:
-    """From the machine upwards; what stands on a missing layer is not looked at."""
+    """Examine the layers from the machine upwards; what stands on a missing layer is not looked at."""
     yield _graphics()
     yield _chromium()
     yield _disk(settings.data_dir)

@@ -76,7 +76,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Workspace:
-    """Where a tool may be sent, in the arm's base frame: part of a shell around the base axis, over the table.
+    """Bound where a tool may be sent, in the arm's base frame: part of a shell around the base axis, over the table.
 
     Measured with the hand pointing down: nearer to the axis than `radius_min_m` joint 4 meets its limit; further than
     `reach_m` from the point at `reach_center_z_m` on the axis the arm is stretched; beside and behind its base it ties

@@ -26,7 +26,7 @@ class Gateway:
     """Follow what rooms and other gateways say, and keep the processes that follow from it."""
 
     def __init__(self, bus: AsyncBus, name: str) -> None:
-        """`name` is what this gateway is called on the bus."""
+        """Make a gateway. `name` is what it is called on the bus."""
         self.name = name
         self._bus = bus
         self._register = SeatRegister(name)

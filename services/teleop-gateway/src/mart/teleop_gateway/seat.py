@@ -41,7 +41,7 @@ class Seat:
     def __init__(
         self, bus: AsyncBus, video_bus: Bus, settings: GatewaySettings, address: SeatAddress, secret: bytes
     ) -> None:
-        """`video_bus` is a session of its own: pictures must never stand in a command's way.
+        """Make a seat. `video_bus` is a session of its own: pictures must never stand in a command's way.
 
         `secret` is what seat tokens are signed with.
         """

@@ -42,7 +42,7 @@ class SeatRegister:
     """
 
     def __init__(self, gateway: str) -> None:
-        """`gateway` is the name of the gateway that keeps this register: it is always among those that serve."""
+        """Keep a register for the gateway of this name, which is always among those that serve."""
         self._gateway = gateway
         self._gateways = frozenset({gateway})
         self._asked: frozenset[str] | None = None

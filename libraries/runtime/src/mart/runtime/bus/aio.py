@@ -34,7 +34,7 @@ class AsyncBus:
         return newest
 
     def serve(self, topic: Topic, answer: Callable[[bytes], Awaitable[bytes]]) -> Closable:
-        """`answer` turns a request's payload into the reply's; it must not raise (reply with an error instead)."""
+        """Answer requests. `answer` turns a request's payload into the reply's; it must not raise."""
 
         async def respond(request: Request) -> None:
             request.reply(await answer(request.payload))

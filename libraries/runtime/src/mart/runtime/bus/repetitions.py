@@ -18,7 +18,7 @@ class Asker(Protocol):
 
 
 class Repetitions:
-    """Of one served key; its methods may be called from any thread.
+    """Remember the answers of one served key; its methods may be called from any thread.
 
     A request is in progress as long as somebody holds it: one that was let go without an answer is done anew.
     """

@@ -69,7 +69,7 @@ class EpisodeAccumulator:
 
     @property
     def started_ns(self) -> int:
-        """When the room sent the first state (Unix time)."""
+        """Tell when the room sent the first state (Unix time)."""
         return self._first.stamps.sent_ns
 
     @property

@@ -45,7 +45,7 @@ class StateHistory:
         self._count = 0
 
     def clear(self) -> None:
-        """Forget them."""
+        """Forget all states so far."""
         self._count = 0
 
     def note(self, data: mujoco.MjData, actions: Array) -> None:

@@ -25,7 +25,7 @@ _PATIENCE_S = 0.5  # for the word that the clutch holds
 
 @dataclass(frozen=True)
 class ToolIntent:
-    """Where an expert wants the tool. gripper: 0 open … 1 closed."""
+    """Say where an expert wants the tool. gripper: 0 open … 1 closed."""
 
     pose_tool_in_base: Pose
     gripper: float
@@ -55,7 +55,7 @@ def resting_pose(heading_rad: float, pitch_rad: float = math.radians(45)) -> Pos
 
 
 class EmulatedHand:
-    """`azimuth_rad`: of the seat's camera in the arm's base frame; `scale`: the gateway's."""
+    """Hold a phone. `azimuth_rad`: of the seat's camera in the arm's base frame; `scale`: the gateway's."""
 
     def __init__(self, azimuth_rad: float, rest_in_session: Pose, scale: float = 1.0) -> None:
         self._azimuth_rad = azimuth_rad

@@ -67,7 +67,7 @@ class EmulatedPhone:
         self._replaced = False
 
     async def run(self) -> None:
-        """Until cancelled or replaced by another phone: connects, drives, and connects anew when that breaks."""
+        """Connect, drive, and connect anew when that breaks, until cancelled or replaced by another phone."""
         azimuth_rad = await self._camera_azimuth_rad()
         self._hand = EmulatedHand(azimuth_rad, resting_pose(_HEADING_RAD), self._scale)
         with contextlib.ExitStack() as stack:

@@ -27,7 +27,7 @@ class PhonePairing:
 
 
 class PairingClient:
-    """`insecure`: take any certificate, for the one that a platform makes for itself at first start."""
+    """Speak to a lobby. `insecure`: take any certificate, such as a platform makes for itself at first start."""
 
     def __init__(
         self, url: str, insecure: bool = False, transport: httpx.AsyncBaseTransport | None = None
@@ -46,7 +46,7 @@ class PairingClient:
             )
 
     async def renew(self, pairing: PhonePairing) -> PhonePairing:
-        """For the seat as it is now; raises Conflict while somebody else holds it."""
+        """Return a token for the seat as it is now; raises Conflict while somebody else holds it."""
         answer = await self._ask("GET", f"{_seat(pairing)}/phone-token", None, _bearer(pairing))
         with self._complete():
             return replace(pairing, token=answer["token"], epoch=int(answer["epoch"]))

@@ -11,7 +11,7 @@ _REMEMBERED = 8
 
 
 class CueFilter:
-    """Of one seat."""
+    """Count the presses of one seat."""
 
     def __init__(self) -> None:
         self._rate = RateLimit(MAX_PER_S)

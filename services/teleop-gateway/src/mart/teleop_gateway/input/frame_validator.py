@@ -67,7 +67,7 @@ class FrameValidator:
 
     @property
     def last_good_s(self) -> float:
-        """When the last good frame came; minus infinity before the first."""
+        """Tell when the last good frame came; minus infinity before the first."""
         return self._last_s
 
     def validate(self, payload: bytes, now_s: float) -> HandSample | None:

@@ -15,7 +15,7 @@ _STILL_PER_S = 0.2  # strokes; it closes at 3.7 a second, and 10 times the gap a
 
 @dataclass(frozen=True)
 class GripperSample:
-    """0 open … 1 closed. measured: how far it is closed; told: what it was asked for."""
+    """Hold two readings, 0 open … 1 closed. measured: how far it is closed; told: what it was asked for."""
 
     measured: float
     told: float

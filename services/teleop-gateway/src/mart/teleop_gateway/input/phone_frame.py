@@ -62,7 +62,7 @@ class PhoneFrame:
 
     @classmethod
     def decode(cls, payload: bytes) -> PhoneFrame:
-        """Raises MalformedFrame where length or magic are wrong; bits and bytes kept for later are ignored."""
+        """Return the frame. Raises MalformedFrame where length or magic are wrong; reserved bits are ignored."""
         if len(payload) != SIZE_BYTES:
             raise MalformedFrame(f"{len(payload)} bytes were given; a phone frame has {SIZE_BYTES}.")
         magic, epoch, sequence, seen_tick, sent_us, *numbers, flags, _ = _LAYOUT.unpack(payload)

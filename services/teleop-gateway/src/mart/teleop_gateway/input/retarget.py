@@ -1,4 +1,4 @@
-"""From a hand's motion to a tool's: what the person sees move is what they moved.
+"""Turn a hand's motion into a tool's: what the person sees move is what they moved.
 
 Frames: the phone reports its pose in a session frame (x right, y up, z towards the person) whose heading is arbitrary;
 the arm wants targets in its base frame (x forward, y left, z up); the person watches through the seat's camera. So the
@@ -108,7 +108,7 @@ class Retarget:
 
 
 def heading_rad(phone_in_session: Pose) -> float:
-    """Where a held phone points, as an angle about the session's y axis; 0 is along -z, away from the person.
+    """Return where a held phone points, an angle about the session's y axis; 0 is along -z, away from the person.
 
     Zero where it points straight up or down.
     """
@@ -117,7 +117,7 @@ def heading_rad(phone_in_session: Pose) -> float:
 
 
 def azimuth_of_camera_rad(camera_in_base: Pose) -> float:
-    """Where a camera (OpenGL axes: x right, y up, looking along -z) looks, about the base's z axis; 0 is along x."""
+    """Return where a camera (OpenGL axes: x right, y up, looks along -z) looks, about the base's z; 0 is along x."""
     x, y, _ = rotate(camera_in_base.quaternion_wxyz, _AHEAD)
     return math.atan2(y, x) if math.hypot(x, y) > _TINY else 0.0
 
@@ -130,5 +130,5 @@ def session_to_base(heading_rad: float, azimuth_rad: float) -> Array:
 
 
 def conjugated(turn: Array, rotation: Array) -> Array:
-    """`rotation`, wxyz, seen from the frame that `turn` leads to."""
+    """Return `rotation`, wxyz, as seen from the frame that `turn` leads to."""
     return quaternion_multiply(turn, quaternion_multiply(rotation, quaternion_conjugate(turn)))

@@ -29,7 +29,7 @@ class SeatInput:
         on_command: Callable[[Command], None],
         on_new_holder: Callable[[], None],
     ) -> None:
-        """`hand_scale` is metres of tool for each metre of hand; `on_new_holder` drops the peers of the former one."""
+        """Read inputs. `hand_scale`: metres of tool a metre of hand; `on_new_holder` drops the former one's peers."""
         self.driving: Driving | None = None
         self._seat = seat
         self._hand_scale = hand_scale

@@ -22,7 +22,7 @@ class OpenSeatHandler:
     """Know which seats' processes answer offers, whichever gateway runs them."""
 
     def __init__(self, bus: AsyncBus, register: SeatRegister) -> None:
-        """`register` tells the newest epoch of every seat; call `on_change` whenever it has news."""
+        """Answer with `register`, which tells the newest epoch of every seat; call `on_change` whenever it has news."""
         self._bus, self._register = bus, register
         self._open: set[str] = set()  # ids of seats
         self._changed = ChangeSignal()

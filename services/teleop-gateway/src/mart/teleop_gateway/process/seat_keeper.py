@@ -23,7 +23,7 @@ class SeatKeeper:
     """Hold one process for each seat of a set that may change at any time."""
 
     def __init__(self, bus: AsyncBus, gateway: str) -> None:
-        """`gateway` is the name of the gateway, as it signs what it tells the rooms."""
+        """Keep processes of the gateway of this name, which signs what it tells the rooms."""
         self._bus, self._gateway = bus, gateway
         self._pool = SeatProcessPool()
         self._kept: dict[SeatAddress, asyncio.Task[None]] = {}

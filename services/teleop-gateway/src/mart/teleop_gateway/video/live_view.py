@@ -115,7 +115,7 @@ class LiveView:
         self._queue.request_keyframe(codec)
 
     def frames_per_s(self) -> float:
-        """Of the last pictures; 0 where nothing was drawn for a second."""
+        """Return the rate of the last pictures; 0 where nothing was drawn for a second."""
         times_s = tuple(self._times_s)
         if len(times_s) < 2 or clock.monotonic_s() - times_s[-1] > 1.0:
             return 0.0

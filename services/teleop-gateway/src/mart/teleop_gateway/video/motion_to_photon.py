@@ -48,7 +48,7 @@ class PictureStamps:
 
 @dataclass(frozen=True)
 class LatencySummary:
-    """Of the newest reports; `frames`: pictures reported; `stages`: median milliseconds of each of STAGES, in order."""
+    """Sum up the newest reports; `frames`: pictures reported; `stages`: median milliseconds of each of STAGES."""
 
     p50_ms: float
     p95_ms: float
@@ -121,7 +121,7 @@ class MotionToPhoton:
         return True
 
     def summary(self) -> LatencySummary | None:
-        """None before the first report."""
+        """Return the delays so far, None before the first report."""
         if not self._reports:
             return None
         stamps = np.array([row for rows in self._reports for row in rows], dtype=np.int64)

@@ -22,7 +22,7 @@ class PictureRelay:
         publisher: VideoPublisher,
         latency: MotionToPhoton,
     ) -> None:
-        """`to_peers` is called on the loop."""
+        """Relay pictures; `to_peers` is called on the loop."""
         self._loop, self._to_peers, self._publisher, self._latency = loop, to_peers, publisher, latency
 
     def put(self, made: SeatPicture | Thumbnail) -> None:

@@ -18,8 +18,8 @@ _SQUARES = 40  # of the strip, side by side
 
 @dataclass(frozen=True)
 class Quality:
-    """`width_px` is a multiple of 80, also at every share of it that is drawn. `samples` a pixel smooth edges;
-    `detailed` asks the room for detailed meshes.
+    """Describe pictures: `width_px`, a multiple of 80 also at every share of it that is drawn; `samples` a pixel, which
+    smooth edges; `detailed` asks the room for detailed meshes.
     """
 
     width_px: int
@@ -33,7 +33,7 @@ class Quality:
 
     @property
     def height_px(self) -> int:
-        """With the strip."""
+        """Return the height of the picture with its strip."""
         return self.view_height_px + self.width_px // _SQUARES
 
     def sized(self, share: Fraction) -> Quality:

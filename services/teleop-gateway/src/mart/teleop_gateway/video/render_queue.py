@@ -67,7 +67,7 @@ class RenderQueue:
             return fresh
 
     def take_orders(self) -> tuple[frozenset[Codec], frozenset[Codec]]:
-        """(codecs that somebody watches, codecs of which a keyframe is wanted); the wishes are fulfilled then."""
+        """Return the codecs that somebody watches and those of which a keyframe is wanted, which is seen to then."""
         with self._changed:
             wanted, self._keyframes = frozenset(self._keyframes), set()
             return self._codecs, wanted

@@ -15,7 +15,7 @@ _JPEG_QUALITY = 80
 
 @dataclass(frozen=True)
 class Thumbnail:
-    """image_ns: when the world was in this state."""
+    """Hold one small picture. image_ns: when the world was in this state."""
 
     jpeg: bytes
     image_ns: int
@@ -28,7 +28,7 @@ class ThumbnailMaker:
         self._due_s = 0.0
 
     def take(self, view_rgb: Image, image_ns: int, now_s: float) -> Thumbnail | None:
-        """Of a view of shape (height, width, 3); None where the last one is not old enough."""
+        """Return one of a view of shape (height, width, 3); None where the last one is not old enough."""
         if now_s < self._due_s:
             return None
         self._due_s = now_s + EVERY_S

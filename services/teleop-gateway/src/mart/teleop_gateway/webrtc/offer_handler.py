@@ -29,7 +29,7 @@ class OfferHandler:
     """Let those in whose token is for this seat and its present holder."""
 
     def __init__(self, seat: SeatAddress, secret: bytes, seat_input: SeatInput, peers: Peers) -> None:
-        """`secret` is what seat tokens are signed with."""
+        """Answer offers. `secret` is what seat tokens are signed with."""
         self._seat, self._secret = seat, secret
         self._input, self._peers = seat_input, peers
         self._limit = RateLimit(MAX_OFFERS_PER_S)

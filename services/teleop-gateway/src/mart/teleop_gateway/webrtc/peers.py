@@ -48,7 +48,7 @@ class Peers:
     """Let peers in, tell and show all of them things, and let them go. Attach a listener before the first offer."""
 
     def __init__(self, bus: AsyncBus, ice_servers: Sequence[str]) -> None:
-        """`ice_servers` are STUN and TURN URLs."""
+        """Keep a seat's peers. `ice_servers` are STUN and TURN URLs."""
         self._bus = bus
         self._ice_servers = ice_servers
         self._listener: PeersListener | None = None

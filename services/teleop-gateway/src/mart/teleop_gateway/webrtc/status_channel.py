@@ -38,7 +38,7 @@ class SelectInputMessage:
 
 @dataclass(frozen=True)
 class CueMessage:
-    """press_us: when the key was pressed, on the peer's clock; it names the press, which is told several times."""
+    """Hold one press. press_us: when it was, on the peer's clock; names it, for it is told several times."""
 
     cue: Cue
     press_us: float
@@ -48,7 +48,7 @@ PeerMessage = PingMessage | ClockMessage | SeenMessage | SelectInputMessage | Cu
 
 
 def parse(text: str | bytes) -> PeerMessage:
-    """Raises InvalidInput for anything else."""
+    """Return what a peer says. Raises InvalidInput for anything else."""
     if len(text) > MAX_CHARACTERS:
         raise InvalidInput(
             f"A status message of {len(text)} characters was given; {MAX_CHARACTERS} are allowed."
@@ -76,7 +76,7 @@ def pong(ping: PingMessage, gateway_ns: int) -> str:
 
 
 def replaced() -> str:
-    """To a driving peer whose place a newer one of the same role takes: it need not try again by itself."""
+    """Tell a driving peer that a newer one of its role takes its place: it need not try again by itself."""
     return _text({"type": "replaced"})
 
 

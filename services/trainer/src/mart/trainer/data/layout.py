@@ -1,4 +1,4 @@
-"""Where each number of an observation vector belongs: the catalogue's names as columns.
+"""Say where each number of an observation vector belongs: the catalogue's names as columns.
 
 The joint observation of a task is the concatenation of its named observations, in the catalogue's order; an arm's
 part is what its operator sees, in the same order. Parts overlap where arms see the same thing.

@@ -57,7 +57,7 @@ class Windows:
     def __init__(
         self, dataset: Dataset, obs: Tensor, weights: Tensor | None, spec: WindowSpec, device: torch.device
     ) -> None:
-        """obs: float32[rows, D], the observations as the networks take them. weights: float32[rows, arms]."""
+        """Gather from obs, float32[rows, D], as networks take them, with weights, float32[rows, arms]."""
         ends = torch.from_numpy(dataset.ends)
         first = torch.from_numpy(np.searchsorted(dataset.ends, dataset.ends, side="left"))
         starts = torch.from_numpy(dataset.starts)

@@ -1,4 +1,4 @@
-"""Where worlds come from: replicas on the platform's bus, or a router and a replica of our own.
+"""Find worlds to judge in: replicas on the platform's bus, or a router and a replica of our own.
 
 The trainer never imports the sim. It starts `mart replica` as anybody would, where that command is installed.
 """

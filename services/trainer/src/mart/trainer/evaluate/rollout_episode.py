@@ -65,7 +65,7 @@ class RolloutEpisode:
         return len(self.actions)
 
     def state(self, tick: int, started_ns: int) -> State:
-        """After `tick` ticks. Nobody waited and nothing was late: the stamps are those of real time."""
+        """Return the state after `tick` ticks. Nobody waited, nothing was late: the stamps are those of real time."""
         at_ns = self._at_ns(tick, started_ns)
         return State(
             room=ROOM,

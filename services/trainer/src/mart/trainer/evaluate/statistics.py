@@ -11,7 +11,7 @@ _Z_95 = 1.959963984540054  # of the standard normal distribution, two-sided
 
 @dataclass(frozen=True)
 class Rate:
-    """`hits` of `trials`, and where the true rate lies with 95 % confidence."""
+    """Tell `hits` of `trials`, and where the true rate lies with 95 % confidence."""
 
     hits: int
     trials: int

@@ -1,4 +1,4 @@
-"""Where networks are computed, and in which numbers."""
+"""Choose where networks are computed, and in which numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a point of the grid to its networks and to the windows that they learn from."""
+"""Build the networks of a point of the grid, and the windows that they learn from."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Networks(nn.Module):
         seeds: Sequence[int],
         dtype: torch.dtype = torch.float32,
     ) -> None:
-        """dtype: of an LSTM's matrix products while training."""
+        """Make untrained networks. dtype: of an LSTM's matrix products while training."""
         super().__init__()
         self.normaliser = Normaliser(layout.width)
         self.model: HierarchicalBC | FlowPolicyNet = (

@@ -45,7 +45,7 @@ class ObservedEpisode:
 
     @property
     def bins(self) -> NDArray[np.int64]:
-        """int64[T]: in which part of the episode each tick is."""
+        """Return int64[T]: in which part of the episode each tick is."""
         return np.arange(len(self.actions)) * BINS // len(self.actions)
 
 

@@ -16,7 +16,7 @@ class PoliciesSettings(Settings):
 
     @property
     def id(self) -> str:
-        """Of the service."""
+        """Return the id of the service."""
         return f"policies-{self.room}" if self.room else "policies"
 
     @property

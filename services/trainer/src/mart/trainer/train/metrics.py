@@ -24,7 +24,7 @@ class MetricsWriter:
     """
 
     def __init__(self, run: RunDirectory, seeds: tuple[int, ...], updates: int, updates_in_all: int) -> None:
-        """updates: made so far; what was written of later ones is forgotten, for they are made again."""
+        """Go on after `updates` updates; what was written of later ones is forgotten, for they are made again."""
         _forget_after(run, updates)
         self._file = run.metrics.open("a", encoding="utf-8")
         self._board = SummaryWriter(str(run.tensorboard), purge_step=updates + 1)

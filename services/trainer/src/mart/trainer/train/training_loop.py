@@ -60,7 +60,7 @@ class TrainingLoop:
         seeds: Sequence[int],
         dtype: torch.dtype,
     ) -> None:
-        """dtype: of matrix products. The networks' device is the windows'."""
+        """Start or continue a training. dtype: of matrix products. The networks' device is the windows'."""
         self.networks, self.seeds, self.updates = networks, tuple(seeds), 0
         self.updates_in_all = sum(phase.updates for phase in phases)
         self._windows, self._phases, self._sizes, self._dtype = windows, list(phases), sizes, dtype

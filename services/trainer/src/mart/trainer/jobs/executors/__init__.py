@@ -1,1 +1,1 @@
-"""Where jobs run."""
+"""Run jobs, on this machine or on a cluster."""

@@ -51,7 +51,7 @@ class RayExecutor:
 
     @property
     def slots(self) -> int:
-        """0 until a driver is connected; asking for it starts one, where the head answers."""
+        """Count free places: 0 until a driver is connected; asking starts one, where the head answers."""
         if self._driver is None and clock.monotonic_s() >= self._not_before_s:
             if _answers(self._head, _SOON_S):
                 self._connect()

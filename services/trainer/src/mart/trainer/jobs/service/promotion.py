@@ -22,7 +22,7 @@ _NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a checkpoint comes from, and what is known of it."""
+    """Tell where a checkpoint comes from, and what is known of it."""
 
     job: str
     evaluation: Evaluation | None

@@ -20,7 +20,7 @@ class TrainerSettings(Settings):
 
     @property
     def jobs_path(self) -> Path:
-        """Where the job table is."""
+        """Tell where the job table is."""
         return self.data_dir / "jobs.sqlite"
 
     @property

@@ -47,7 +47,7 @@ class Recurrent(nn.Module):
     def __init__(
         self, inputs: Tensor, generators: Generators, *, width: int, layers: int, dtype: torch.dtype
     ) -> None:
-        """inputs: bool[M, I], which columns are real."""
+        """Make layers for inputs, bool[M, I], which say which columns are real."""
         super().__init__()
         self.lstm = LSTM(inputs, width, layers, generators, dtype)
         self.features = full(len(inputs), width)

@@ -36,7 +36,7 @@ class Flow(nn.Module):
         hidden: Sequence[int],
         steps: int,
     ) -> None:
-        """obs: bool[M, C], which columns of what it is conditioned on are real. size: of one tick's action."""
+        """Condition on obs, bool[M, C], which say which columns are real. size: of one tick's action."""
         super().__init__()
         models = len(obs)
         self.chunk, self.size, self.steps = chunk, size, steps

@@ -16,7 +16,7 @@ class MeanHead(nn.Module):
     """The mean action, squashed into (-1, 1) by tanh: the paper's objective |pi(s) - a|^2."""
 
     def __init__(self, features: Tensor, size: int, generators: Generators) -> None:
-        """features: bool[M, F], which columns are real."""
+        """Make a head for features, bool[M, F], which say which columns are real."""
         super().__init__()
         self.out = Linear(features, full(len(features), size), generators)
 

@@ -99,7 +99,7 @@ class LSTM(nn.Module):
     def __init__(
         self, inputs: Tensor, width: int, layers: int, generators: Generators, dtype: torch.dtype
     ) -> None:
-        """inputs: bool[M, I], which columns are real."""
+        """Make layers for inputs, bool[M, I], which say which columns are real."""
         super().__init__()
         self.width, self.dtype = width, dtype
         models = len(inputs)

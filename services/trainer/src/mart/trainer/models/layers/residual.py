@@ -35,7 +35,7 @@ class Residual(nn.Module):
     def __init__(
         self, obs: Tensor, generators: Generators, *, arms: int, hidden: Sequence[int], epsilon: float
     ) -> None:
-        """obs: bool[M, D], which columns of observations are real. arms: how many each model corrects."""
+        """Correct `arms` arms a model from obs, bool[M, D], which say which columns of observations are real."""
         super().__init__()
         models, size = len(obs), arms * ACTION_SIZE
         self.epsilon = epsilon

@@ -41,7 +41,7 @@ class Linear(nn.Module):
     """A linear layer, y = x W + b, for every model: [M, B, I] → [M, B, O]."""
 
     def __init__(self, inputs: Tensor, outputs: Tensor, generators: Generators) -> None:
-        """inputs: bool[M, I], outputs: bool[M, O], which columns are real."""
+        """Map inputs, bool[M, I], to outputs, bool[M, O]: both say which columns are real."""
         super().__init__()
         fan_in = inputs.sum(1)
         self.weight = uniform(inputs, outputs, fan_in, generators)

@@ -48,7 +48,7 @@ class Planner(nn.Module):
         latent: int,
         modes: int,
     ) -> None:
-        """real: bool[M, D], which columns of observations are. weights: float32[M, D], of each in recon; sum 1."""
+        """Plan for real columns, bool[M, D]. weights: float32[M, D], of each in the reconstruction; sum 1."""
         super().__init__()
         models = len(real)
         self.latent, self.modes = latent, modes

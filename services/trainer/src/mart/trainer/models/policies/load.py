@@ -1,4 +1,4 @@
-"""From a checkpoint to the policy that it is."""
+"""Load a checkpoint as the policy that it is."""
 
 from __future__ import annotations
 
