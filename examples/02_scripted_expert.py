@@ -57,6 +57,6 @@ if __name__ == "__main__":
                 actions = {
                     arm: env.action_for(arm, *experts[arm].act(observations[arm])) for arm in env.agents
                 }
-                observations, _, _, _, infos = env.step(actions)
+                observations, _rewards, _terminations, _truncations, infos = env.step(actions)
                 ticks += 1
             print(f"seed {seed}: {'success' if infos['arm0']['success'] else 'failure'} after {ticks} ticks")
