@@ -21,7 +21,7 @@ class PairOfWorlds:
         }
         self.arms = tuple(self._home)
         self.task = first.task
-        self.control_period_s = first.control_period_s
+        self.control_hz, self.control_period_s = first.control_hz, first.control_period_s
         self.model_sha256 = first.model_sha256
         self.model_bytes = first.model_bytes
         self.progress = first.progress

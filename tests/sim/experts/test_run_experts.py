@@ -21,7 +21,7 @@ def test_three_and_four_arms_work_side_by_side(arms: int) -> None:
         assert list(progress.subtasks.values()) == [True] * arms
 
 
-def test_a_rehearsal_can_be_cut_short_and_repeated() -> None:
+def test_an_episode_can_be_cut_short_and_repeated() -> None:
     world = World.build("two_arm_multi_cube_lifting")
     run_experts(world, 3, until_s=1.0)
     state = world.integration_state()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from gymnasium import spaces
@@ -19,6 +20,7 @@ from mart.sim.scene.meshes import Detail
 from mart.sim.world import Diverged, World
 
 Observations = dict[str, NDArray[np.float64]]
+Action = NDArray[np.floating[Any] | np.integer[Any]]  # shape (arms, 7), or (7,) of one arm
 
 RENDER_MODES = ("rgb_array",)
 MAX_SEED = 2**63

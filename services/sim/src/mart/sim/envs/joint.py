@@ -15,6 +15,7 @@ from mart.render import Image
 from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
+    Action,
     EnvOptions,
     EpisodeRunner,
     Observations,
@@ -24,7 +25,7 @@ from mart.sim.envs.episode_runner import (
 )
 
 
-class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integer[Any]]]):
+class JointEnv(gymnasium.Env[dict[str, Any], Action]):
     """Step a task as one agent: actions of shape (arms, 7) in [-1, 1]; observations are all that any operator sees.
 
     The reward is 1 for the step that completes the task and 0 for every other. An episode terminates with success or
@@ -63,9 +64,7 @@ class JointEnv(gymnasium.Env[dict[str, Any], NDArray[np.floating[Any] | np.integ
         result = self._runner.reset(drawn)
         return result.observations, result.info()
 
-    def step(
-        self, action: NDArray[np.floating[Any] | np.integer[Any]]
-    ) -> tuple[Observations, float, bool, bool, dict[str, Any]]:
+    def step(self, action: Action) -> tuple[Observations, float, bool, bool, dict[str, Any]]:
         """Advance one control period; return observations, reward, terminated, truncated, info."""
         result = self._runner.step(action)
         return result.observations, result.reward, result.terminated, result.truncated, result.info()

@@ -19,6 +19,7 @@ from mart.render import Image
 from mart.sim.envs.episode_runner import (
     MAX_SEED,
     RENDER_MODES,
+    Action,
     EnvOptions,
     EpisodeRunner,
     Observations,
@@ -31,7 +32,7 @@ from mart.sim.envs.episode_runner import (
 Infos = dict[str, dict[str, object]]
 
 
-class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ignore[misc]
+class ArmsEnv(ParallelEnv[str, Observations, Action]):  # type: ignore[misc]
     """Step a task as one agent for each arm (`arm0`, …): actions of shape (7,) in [-1, 1]; all share reward and end.
 
     All agents start together and end together: with success, with irrecoverable failure or at the task's horizon.
@@ -87,7 +88,7 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
         return self._seen(result), self._infos(result)
 
     def step(
-        self, actions: Mapping[str, ArrayLike]
+        self, actions: Mapping[str, Action]
     ) -> tuple[dict[str, Observations], dict[str, float], dict[str, bool], dict[str, bool], Infos]:
         """Advance one control period. Raises InvalidInput where an arm has no action: the world waits for every arm."""
         result = self._runner.step(self._together(actions))
@@ -115,7 +116,7 @@ class ArmsEnv(ParallelEnv[str, Observations, NDArray[np.float32]]):  # type: ign
         """Let the renderer go."""
         self._runner.close()
 
-    def _together(self, actions: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
+    def _together(self, actions: Mapping[str, Action]) -> NDArray[np.float64]:
         if set(actions) != set(self.possible_agents):
             raise InvalidInput(
                 f"Actions for {', '.join(sorted(actions)) or 'nobody'} were given; every arm needs one: "
