@@ -5,12 +5,15 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Awaitable, Callable
 
+import pytest
+
 from mart.protocol import codec, keys
 from mart.protocol.messages import OPERATOR_HUMAN, OpenSeat, OpenSeatReply, Operator, RoomStatus
 from mart.protocol.messages import Seat as SeatMessage
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryNetwork
+from mart.teleop_gateway.process import open_seat_handler
 from mart.teleop_gateway.process.open_seat_handler import OpenSeatHandler
 from mart.teleop_gateway.served_seats import SeatAddress, SeatRegister
 
@@ -102,7 +105,9 @@ def test_who_asks_with_an_older_token_may_still_be_a_viewer() -> None:
     on_opening(body)
 
 
-def test_a_seat_that_nobody_serves_is_unavailable() -> None:
+def test_a_seat_that_nobody_serves_is_unavailable(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(open_seat_handler, "OPEN_TIMEOUT_S", 0.6)  # it is asked for once in that time
+
     async def body(opening: Opening) -> None:
         assert await opening.ask() == "Unavailable"
 

@@ -1,1 +1,1 @@
-"""WebRTC in front, Zenoh behind: phones and browsers become operators, states become the pictures they see."""
+"""Turn phones and browsers into operators, and states into the pictures they see: WebRTC in front, Zenoh behind."""

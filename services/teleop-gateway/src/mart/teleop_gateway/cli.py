@@ -1,4 +1,4 @@
-"""`mart gateway` and `mart phone`. Heavy modules are imported when a command runs."""
+"""Offer `mart gateway` and `mart phone`. Heavy modules are imported when a command runs."""
 
 from __future__ import annotations
 

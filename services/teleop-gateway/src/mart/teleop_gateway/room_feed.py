@@ -52,7 +52,7 @@ class RoomFeed:
         self._broadcaster.tell_changes()
 
     def _on_state_arrival(self, state: State) -> None:
-        """On the bus's thread."""
+        """Take a state on the bus's thread, and pass it on to the event loop."""
         received_ns = clock.wall_ns()
         for arm in state.arms:
             if arm.arm == self._seat.arm:

@@ -1,4 +1,4 @@
-"""What a gateway can be told."""
+"""Read what a gateway can be told from the environment."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from mart.teleop_gateway.video.quality import QualityName
 
 
 class GatewaySettings(Settings):
+    """Hold what a gateway and its seat processes can be told."""
+
     ice_servers: tuple[str, ...] = Field((), description="STUN and TURN URLs; none on one network.")
     hand_scale: float = Field(
         1.0, gt=0, le=4, description="Metres of tool motion for each metre of hand motion."

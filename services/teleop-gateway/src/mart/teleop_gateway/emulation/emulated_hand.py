@@ -1,4 +1,4 @@
-"""The hand that holds an emulated phone: moves the phone so that the tool goes where an expert wants it. Pure.
+"""Move an emulated phone as a hand would, so that the tool goes where an expert wants it. Pure.
 
 It is the inverse of `retarget`, with a person's manners: it presses the clutch while nothing moves, keeps still until
 it is told that the clutch holds, and never moves faster than a hand does.
@@ -25,7 +25,7 @@ _PATIENCE_S = 0.5  # for the word that the clutch holds
 
 @dataclass(frozen=True)
 class ToolIntent:
-    """Say where an expert wants the tool. gripper: 0 open … 1 closed."""
+    """Tell where an expert wants the tool. `gripper` is 0 open … 1 closed."""
 
     pose_tool_in_base: Pose
     gripper: float
@@ -34,7 +34,7 @@ class ToolIntent:
 
 @dataclass(frozen=True)
 class PhoneReading:
-    """What the phone reports next."""
+    """Tell what the emulated phone reports next. `gripper` is 0 open … 1 closed."""
 
     phone_in_session: Pose
     clutch: bool
@@ -48,16 +48,17 @@ class _Phase(enum.Enum):
 
 
 def resting_pose(heading_rad: float, pitch_rad: float = math.radians(45)) -> Pose:
-    """A phone held in front of a person: turned by `heading_rad` about the session's y axis, its top tilted back."""
+    """Return a phone held before a person: turned by `heading_rad` about the session's y axis, its top tilted back."""
     turn = np.array([math.cos(heading_rad / 2), 0.0, math.sin(heading_rad / 2), 0.0])
     tilt = np.array([math.cos(pitch_rad / 2), -math.sin(pitch_rad / 2), 0.0, 0.0])
     return Pose(np.zeros(3), quaternion_multiply(turn, tilt))
 
 
 class EmulatedHand:
-    """Hold a phone. `azimuth_rad`: of the seat's camera in the arm's base frame; `scale`: the gateway's."""
+    """Move a phone so that the tool goes where an expert wants it."""
 
     def __init__(self, azimuth_rad: float, rest_in_session: Pose, scale: float = 1.0) -> None:
+        """`azimuth_rad` is the seat's camera's, in the arm's base frame; `scale` must be the gateway's."""
         self._azimuth_rad = azimuth_rad
         self._scale = scale
         self._rest = rest_in_session
@@ -71,7 +72,7 @@ class EmulatedHand:
         self._gripper = 0.0
 
     def see(self, measured_tool_in_base: Pose, now_s: float) -> None:
-        """A new state of the arm."""
+        """Take where the arm's tool is now."""
         if self._measured is not None:
             metres, radians = measured_tool_in_base.distance_to(self._measured)
             if metres < _STILL_M and radians < _STILL_RAD:
@@ -80,13 +81,13 @@ class EmulatedHand:
         self._moved_s = now_s
 
     def world_was_reset(self, now_s: float) -> None:
-        """Lets go; what it held on to is not there any more."""
+        """Let go: what the hand held on to is not there any more."""
         self._enter(_Phase.OPEN, now_s)
 
     def move(
         self, intent: ToolIntent | None, clutch_holds: bool, now_s: float, elapsed_s: float
     ) -> PhoneReading:
-        """The phone after `elapsed_s`. `clutch_holds`: as the gateway last told."""
+        """Return the phone after `elapsed_s`. `clutch_holds` is what the gateway told last."""
         if intent is not None:
             self._gripper = intent.gripper
         wanted = intent is not None and intent.engaged
@@ -133,7 +134,7 @@ class EmulatedHand:
 
 
 def _towards(start: Pose, goal: Pose, elapsed_s: float) -> Pose:
-    """As far on the way as a hand gets in `elapsed_s`."""
+    """Return the pose that a hand gets to on the way in `elapsed_s`."""
     metres, radians = goal.distance_to(start)
     part = min(
         1.0,

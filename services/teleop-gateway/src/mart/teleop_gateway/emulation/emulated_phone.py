@@ -1,4 +1,4 @@
-"""An emulated phone: over WebRTC exactly what the phone page does, led by an expert's intents instead of a hand."""
+"""Do over WebRTC exactly what the phone page does, led by an expert's intents instead of a hand."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ Exchange = Callable[[str], Awaitable[str]]  # an offer's SDP → the answer's; r
 
 
 class EmulatedPhone:
-    """The phone of one seat. `exchange` is how the page signals; the bus is only for intents, states and the model.
+    """Drive one seat as a phone does. `exchange` is how a page signals; the bus is for intents, states and the model.
 
     `scale` must be the gateway's.
     """
@@ -86,7 +86,7 @@ class EmulatedPhone:
             _log.info("Another phone drives %s now", self.arm)
 
     async def _drive_once(self, hand: EmulatedHand) -> None:
-        """One connection, until it breaks."""
+        """Hold one connection, until it breaks."""
         connection = RTCPeerConnection(RTCConfiguration([]))
         try:
             pose = _lossy(connection, "pose")
@@ -157,7 +157,7 @@ class EmulatedPhone:
             self._replaced = True
 
     def _on_pong(self, message: dict[str, Any], status: RTCDataChannel) -> None:
-        """The fastest of the last pings knows the clocks best: half of its way is the least wrong."""
+        """Tell the clock offset of the fastest of the last pings: half of its way is the least wrong."""
         now_us = _now_us()
         middle_us = (message["t_us"] + now_us) / 2
         self._pings.append((now_us - message["t_us"], int(message["gateway_ns"] - middle_us * 1000)))

@@ -1,4 +1,4 @@
-"""A link worse than the one at hand: delay, jitter and loss from a seed, for emulated phones."""
+"""Emulate a link worse than the one at hand: delay, jitter and loss from a seed, for emulated phones."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class LinkProfile:
-    """One way: a message takes `delay_s` plus up to `jitter_s` more (uniform), or is lost with probability `loss`."""
+    """Describe one way of a link: delay, up to `jitter_s` more (uniform), and `loss`, the share of messages lost."""
 
     delay_s: float = 0.0
     jitter_s: float = 0.0
@@ -18,14 +18,14 @@ class LinkProfile:
 
 
 class EmulatedLink:
-    """Messages may overtake each other, as on the unordered channels that this stands for."""
+    """Carry messages as a bad link does. They may overtake each other, as on the unordered channels it stands for."""
 
     def __init__(self, profile: LinkProfile, seed: int = 0) -> None:
         self._profile = profile
         self._random = random.Random(seed)
 
     def carry(self, deliver: Callable[[], None]) -> None:
-        """Calls `deliver` when the message arrives, on the running event loop; never, where it is lost."""
+        """Call `deliver` when the message arrives, on the running event loop; never, where it is lost."""
         profile = self._profile
         if self._random.random() < profile.loss:
             return

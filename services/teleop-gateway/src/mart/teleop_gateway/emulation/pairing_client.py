@@ -1,4 +1,4 @@
-"""How a phone joins over HTTPS: docs/protocol.md, "HTTP"."""
+"""Join a seat over HTTPS, as a phone does: docs/protocol.md, "HTTP"."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TIMEOUT_S = 10.0
 
 @dataclass(frozen=True)
 class PhonePairing:
-    """The right to drive one arm with a phone."""
+    """Hold the right to drive one arm with a phone."""
 
     token: str
     room: str
@@ -27,18 +27,19 @@ class PhonePairing:
 
 
 class PairingClient:
-    """Speak to a lobby. `insecure`: take any certificate, such as a platform makes for itself at first start."""
+    """Ask the lobby, as a phone's page does, for the right to drive an arm and for connections."""
 
     def __init__(
         self, url: str, insecure: bool = False, transport: httpx.AsyncBaseTransport | None = None
     ) -> None:
+        """`insecure` takes any certificate, for the one that a platform makes for itself at first start."""
         self._url = url.rstrip("/")
         verify: ssl.SSLContext | bool = False if insecure else ssl.create_default_context()
         origin = {"Origin": self._url}
         self._http = httpx.AsyncClient(verify=verify, timeout=_TIMEOUT_S, headers=origin, transport=transport)
 
     async def pair(self, code: str) -> PhonePairing:
-        """Uses up a pairing code; raises what the lobby answers, Unavailable where nobody does."""
+        """Use up a pairing code; raises what the lobby answers, Unavailable where nobody does."""
         answer = await self._ask("POST", "/api/pair", {"code": code}, {})
         with self._complete():
             return PhonePairing(
@@ -46,13 +47,13 @@ class PairingClient:
             )
 
     async def renew(self, pairing: PhonePairing) -> PhonePairing:
-        """Return a token for the seat as it is now; raises Conflict while somebody else holds it."""
+        """Return the pairing for the seat as it is now; raises Conflict while somebody else holds it."""
         answer = await self._ask("GET", f"{_seat(pairing)}/phone-token", None, _bearer(pairing))
         with self._complete():
             return replace(pairing, token=answer["token"], epoch=int(answer["epoch"]))
 
     async def offer(self, pairing: PhonePairing, sdp: str) -> str:
-        """The answer's SDP."""
+        """Return the gateway's answer to an offer, both as SDP."""
         answer = await self._ask("POST", f"{_seat(pairing)}/offer", {"sdp": sdp}, _bearer(pairing))
         with self._complete():
             return str(answer["sdp"])
@@ -75,7 +76,7 @@ class PairingClient:
 
     @contextlib.contextmanager
     def _complete(self) -> Iterator[None]:
-        """Whatever else than a lobby's answer is no lobby."""
+        """Raise Unavailable for whatever else than a lobby's answer came."""
         try:
             yield
         except (httpx.HTTPError, ValueError, TypeError, KeyError) as error:

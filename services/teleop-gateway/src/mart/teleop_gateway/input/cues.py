@@ -1,4 +1,4 @@
-"""Words to one's partners: a press is told several times, because messages may be lost, and counts once. Pure."""
+"""Count a press for a word to one's partners once: it is told several times, because messages may be lost. Pure."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ _REMEMBERED = 8
 
 
 class CueFilter:
-    """Count the presses of one seat."""
+    """Remember the presses of one seat's holder, and let each through once."""
 
     def __init__(self) -> None:
         self._rate = RateLimit(MAX_PER_S)
         self._known: deque[float] = deque(maxlen=_REMEMBERED)
 
     def allow(self, press_us: float, now_s: float) -> bool:
-        """Whether this press is new and not one too many; one too many stays refused, however often it is told."""
+        """Tell whether this press is new and not one too many; such a one stays refused, however often it is told."""
         if press_us in self._known:
             return False
         self._known.append(press_us)

@@ -1,4 +1,4 @@
-"""One seat's inputs: who drives, and what the arm is asked to do. Pure: payloads and `now` in, commands out."""
+"""Decide which device drives, and what the arm is asked to do. Pure: payloads and `now` in, commands out."""
 
 from __future__ import annotations
 
@@ -19,13 +19,15 @@ _OLDEST_INPUT_NS = 10_000_000_000  # an older stamp is a wrong clock, not a slow
 
 
 class InputDevice(enum.StrEnum):
+    """Name what a person drives with."""
+
     KEYBOARD = "keyboard"  # and mouse, from the browser
     PHONE = "phone"
 
 
 @dataclass
 class _Source:
-    """What is known of one driving peer. clock_offset_ns: gateway clock minus the peer's, once the peer has told it."""
+    """Hold what is known of one driving peer. clock_offset_ns: gateway clock minus the peer's, once it has told."""
 
     validator: FrameValidator
     grips: bool = False  # its gripper counts
@@ -35,13 +37,15 @@ class _Source:
 
 @dataclass(frozen=True)
 class PhoneState:
+    """Tell how long ago the phone's last good frame came, and whether it knew where it was."""
+
     age_s: float
     tracking: bool
 
 
 @dataclass
 class Driving:
-    """The driving of one arm by one holder of its seat (one epoch).
+    """Drive one arm for one holder of its seat (one epoch).
 
     `first_sequence` must be above every command's number of an earlier process for the same epoch: the sim takes only
     newer ones. gripper_told: what the gripper was asked for in the newest tick, by whoever drove then; None: unknown.
@@ -63,29 +67,32 @@ class Driving:
     _frame_numbers: dict[int, int] = field(default_factory=dict)
 
     def connect(self, source: InputDevice) -> None:
-        """A new peer: its numbers begin anew. A phone that comes is meant to be used."""
+        """Take a new peer: its numbers begin anew. A phone that comes is meant to be used."""
         self._keep_counts(source)
         self._sources[source] = _Source(FrameValidator(self.seat_epoch))
         if source is InputDevice.PHONE:
             self.select(InputDevice.PHONE)
 
     def disconnect(self, source: InputDevice) -> None:
-        """A peer left for good; a phone that leaves gives the arm back to the keyboard."""
+        """Forget a peer that left for good; a phone that leaves gives the arm back to the keyboard."""
         self._keep_counts(source)
         self._sources.pop(source, None)
         if source is InputDevice.PHONE:
             self.select(InputDevice.KEYBOARD)
 
     def select(self, source: InputDevice) -> None:
+        """Let this device drive from now on."""
         if source is not self.active:
             self.active = source
             self.retarget.release()
 
     def set_clock(self, source: InputDevice, offset_ns: int) -> None:
+        """Take the gateway's clock minus the device's, nanoseconds."""
         if source in self._sources:
             self._sources[source].clock_offset_ns = offset_ns
 
     def clock_offset_ns(self, source: InputDevice) -> int | None:
+        """Return the gateway's clock minus the device's; None where the device has not told."""
         known = self._sources.get(source)
         return known.clock_offset_ns if known else None
 
@@ -97,7 +104,7 @@ class Driving:
         now_s: float,
         now_ns: int,
     ) -> Command | None:
-        """The command that a frame asks for; None for a bad frame, an input that is not in use or an unseen arm.
+        """Return the command that a frame asks for; None for a bad frame, an input not in use or an unseen arm.
 
         now_s: monotonic; now_ns: wall clock, for the stamps.
         """
@@ -115,41 +122,44 @@ class Driving:
         return self._command(hand, self._target, peer.clock_offset_ns, now_ns)
 
     def see(self, arm: ArmState, sim_time_s: float) -> None:
-        """The arm after the newest tick, whoever drove it."""
+        """Take how the arm is after the newest tick, whoever drove it."""
         self.gripper_told = (arm.action[-1] + 1.0) / 2.0 if arm.action else arm.gripper
         grip = GripperSample(arm.gripper, self.gripper_told, sim_time_s)
         self.holding = bool(arm.action) and holds(self.holding, self._grip, grip)
         self._grip = grip
 
     def world_was_reset(self) -> None:
+        """Let go of everything: targets from before the reset mean nothing now."""
         self._target = None
         self.retarget.forget()
 
     def lost(self, now_s: float) -> bool:
-        """Whether the input in use has been silent for too long."""
+        """Tell whether the input in use has been silent for too long."""
         peer = self._sources.get(self.active)
         return peer is None or now_s - peer.validator.last_good_s > LOST_AFTER_S
 
     def engaged(self, now_s: float) -> bool:
+        """Tell whether the arm follows a hand now."""
         return self._target is not None and self._target.engaged and not self.lost(now_s)
 
     @property
     def gripper(self) -> float:
-        """What was asked for last, 0 open … 1 closed."""
+        """Return what the gripper was asked for last, 0 open … 1 closed."""
         return self._target.gripper if self._target else self.gripper_told or 0.0
 
     def phone(self, now_s: float) -> PhoneState | None:
+        """Return how the phone is; None where none has sent a good frame."""
         peer = self._sources.get(InputDevice.PHONE)
         if peer is None or peer.last is None:
             return None
         return PhoneState(now_s - peer.validator.last_good_s, Flag.TRACKING in peer.last.frame.flags)
 
     def rejected(self) -> Counter[str]:
-        """Frames dropped since this holder came, by reason."""
+        """Return how many frames were dropped since this holder came, by reason."""
         return sum((_counts(peer.validator) for peer in self._sources.values()), Counter(self._rejected))
 
     def frame_number(self, sequence: int) -> int | None:
-        """The phone frame that became the command of this number; None where it was not this process's."""
+        """Return the number of the frame that became this command; None where it was not this process's."""
         return self._frame_numbers.get(sequence)
 
     def _keep_counts(self, source: InputDevice) -> None:
@@ -181,7 +191,7 @@ class Driving:
 
 
 def _means_its_gripper(hand: HandSample, before: HandSample | None) -> bool:
-    """A hand that has just come does not know what its arm holds: until it presses or grips, it must drop nothing."""
+    """Tell whether a hand's gripper counts: who has just come does not know what it holds, and must drop nothing."""
     return hand.clutch or (before is not None and hand.frame.gripper != before.frame.gripper)
 
 
@@ -190,7 +200,7 @@ def _counts(validator: FrameValidator) -> Counter[str]:
 
 
 def _input_sent_ns(sent_us: int, clock_offset_ns: int | None, now_ns: int) -> int:
-    """The peer's sending time on the gateway's clock; 0 where it is unknown or cannot be true."""
+    """Return the peer's sending time on the gateway's clock; 0 where it is unknown or cannot be true."""
     if clock_offset_ns is None:
         return 0
     sent_ns = sent_us * 1000 + clock_offset_ns

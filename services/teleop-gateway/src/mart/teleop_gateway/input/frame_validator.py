@@ -1,4 +1,4 @@
-"""What stands between a phone and an arm: drops bad frames, and lets go of the clutch where the hand is in doubt.
+"""Drop bad frames of a phone, and let go of the clutch where the hand is in doubt.
 
 Pure: payloads and `now_s` in, admitted frames out. The rules are in docs/protocol.md, "Phone frame".
 """
@@ -27,7 +27,7 @@ JUMP_WITHIN_S = 0.1
 
 
 class FrameRejection(enum.StrEnum):
-    """Why a frame was dropped."""
+    """Name why a frame was dropped."""
 
     RATE = "rate"
     MALFORMED = "malformed"
@@ -47,7 +47,7 @@ class _Rejected(Exception):
 
 @dataclass(frozen=True)
 class HandSample:
-    """An admitted frame. `clutch`: it is held and nothing speaks against it."""
+    """Hold a good frame. `clutch` tells that it is held and nothing speaks against it."""
 
     frame: PhoneFrame
     pose_phone_in_session: Pose
@@ -55,7 +55,7 @@ class HandSample:
 
 
 class FrameValidator:
-    """Watches the frames of one peer."""
+    """Watch the frames of one peer, and count those that are dropped."""
 
     def __init__(self, seat_epoch: int) -> None:
         self.rejected: Counter[FrameRejection] = Counter()
@@ -67,11 +67,11 @@ class FrameValidator:
 
     @property
     def last_good_s(self) -> float:
-        """Tell when the last good frame came; minus infinity before the first."""
+        """Return when the last good frame came; minus infinity before the first."""
         return self._last_s
 
     def validate(self, payload: bytes, now_s: float) -> HandSample | None:
-        """The hand this payload shows, or None where it was dropped (and counted)."""
+        """Return the hand that this payload shows, or None where it was dropped (and counted)."""
         try:
             return self._accept(self._read(payload, now_s), now_s)
         except _Rejected as error:
@@ -91,7 +91,7 @@ class FrameValidator:
         return frame
 
     def _rules(self, frame: PhoneFrame) -> Iterator[tuple[FrameRejection, bool]]:
-        """What must hold, in order: a later rule may rely on an earlier one."""
+        """Yield what must hold, in order: a later rule may rely on an earlier one."""
         newest = self._last.frame.sequence if self._last else -1
         numbers = (*frame.position, *frame.quaternion_wxyz, frame.gripper)
         yield FrameRejection.EPOCH, frame.seat_epoch == self._seat_epoch

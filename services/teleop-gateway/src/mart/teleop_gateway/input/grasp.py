@@ -1,4 +1,4 @@
-"""Whether a gripper has taken hold of something, from what it was told and how far it came. Pure.
+"""Tell whether a gripper has taken hold of something, from what it was told and how far it came. Pure.
 
 No sensor says so: a gripper that is told to close further and stands still has something between its fingers. The
 thinnest thing in the tasks, a handle of 2 cm, leaves a gap of 0.25; closing on nothing, a gripper that is slow enough
@@ -15,7 +15,7 @@ _STILL_PER_S = 0.2  # strokes; it closes at 3.7 a second, and 10 times the gap a
 
 @dataclass(frozen=True)
 class GripperSample:
-    """Hold two readings, 0 open … 1 closed. measured: how far it is closed; told: what it was asked for."""
+    """Hold how far a gripper is closed (`measured`) and was asked to close (`told`), 0 open … 1 closed."""
 
     measured: float
     told: float
@@ -23,12 +23,12 @@ class GripperSample:
 
     @property
     def gap(self) -> float:
-        """How much further it would close; a gripper that is told half closes all the way, the rest is force."""
+        """Return how much further it would close; told half, it closes all the way, and the rest is force."""
         return min(1.0, 2.0 * self.told) - self.measured
 
 
 def holds(held: bool, before: GripperSample | None, now: GripperSample) -> bool:
-    """Whether something is held now. held: whether it was `before`; None: nothing is known of the time before."""
+    """Tell whether something is held now. `held` is whether it was at `before`; None: nothing is known of then."""
     if now.gap < _LEAST_GAP:
         return False
     if before is None or now.sim_time_s < before.sim_time_s:

@@ -1,4 +1,4 @@
-"""The phone frame: 60 bytes that say everything a hand says, 60 times a second.
+"""Encode and decode the phone frame: 60 bytes that say everything a hand says, 60 times a second.
 
 The layout is specified in docs/protocol.md, "Phone frame"; golden bytes shared with the page's encoder are in
 tests/teleop_gateway/golden/phone_frame.json.
@@ -18,6 +18,8 @@ SIZE_BYTES = _LAYOUT.size
 
 
 class Flag(enum.IntFlag):
+    """Name the bits of a frame's flags."""
+
     CLUTCH = 1  # held
     TRACKING = 2  # good
     EMERGENCY_STOP = 4  # held
@@ -26,12 +28,12 @@ class Flag(enum.IntFlag):
 
 
 class MalformedFrame(InvalidInput):
-    """These bytes are no phone frame."""
+    """Tell that bytes are no phone frame."""
 
 
 @dataclass(frozen=True)
 class PhoneFrame:
-    """One frame as sent; nothing about its numbers has been checked.
+    """Hold one frame as it was sent; nothing about its numbers has been checked.
 
     position: metres, in the phone's session frame (x right, y up, z towards the person). gripper: 0 open … 1 closed.
     sent_us: the sender's own clock.
@@ -47,6 +49,7 @@ class PhoneFrame:
     flags: Flag
 
     def encode(self) -> bytes:
+        """Return the frame's 60 bytes."""
         return _LAYOUT.pack(
             MAGIC,
             self.seat_epoch,
@@ -62,7 +65,7 @@ class PhoneFrame:
 
     @classmethod
     def decode(cls, payload: bytes) -> PhoneFrame:
-        """Return the frame. Raises MalformedFrame where length or magic are wrong; reserved bits are ignored."""
+        """Return the frame in 60 bytes; bits and bytes kept for later are ignored. Raises MalformedFrame."""
         if len(payload) != SIZE_BYTES:
             raise MalformedFrame(f"{len(payload)} bytes were given; a phone frame has {SIZE_BYTES}.")
         magic, epoch, sequence, seen_tick, sent_us, *numbers, flags, _ = _LAYOUT.unpack(payload)

@@ -29,7 +29,7 @@ _TINY = 1e-9
 
 @dataclass(frozen=True)
 class ArmTarget:
-    """What the arm is asked to do. gripper: 0 open … 1 closed."""
+    """Tell what the arm is asked to do. `gripper` is 0 open … 1 closed."""
 
     pose_tool_in_base: Pose
     gripper: float
@@ -38,7 +38,7 @@ class ArmTarget:
 
 @dataclass(frozen=True)
 class _ClutchReference:
-    """What was where when the clutch was pressed, and how motions turn from session to base (quaternions wxyz)."""
+    """Hold what was where at the press, and how motions turn from session to base (quaternions wxyz)."""
 
     phone_in_session: Pose
     tool_in_base: Pose
@@ -47,7 +47,7 @@ class _ClutchReference:
 
 
 class Retarget:
-    """One hand on one arm. `azimuth_rad`: where the seat's camera looks, see `azimuth_of_camera_rad`.
+    """Let one hand lead one arm. `azimuth_rad` is where the seat's camera looks, see `azimuth_of_camera_rad`.
 
     `scale`: metres of tool for each metre of hand; rotations are never scaled.
     """
@@ -59,7 +59,7 @@ class Retarget:
         self._held: Pose | None = None
 
     def follow(self, hand: HandSample, measured_tool_in_base: Pose) -> ArmTarget:
-        """The target after this frame.
+        """Return the target after this frame.
 
         A press takes both poses as references and asks for the measured pose: nothing moves. An open clutch holds the
         last target.
@@ -76,11 +76,11 @@ class Retarget:
         return ArmTarget(self._held, hand.frame.gripper, engaged=hand.clutch)
 
     def release(self) -> None:
-        """Another hand takes over: the next frame with a held clutch takes its references anew."""
+        """Let another hand take over: the next frame with a held clutch takes its references anew."""
         self._grip = None
 
     def forget(self) -> None:
-        """The world was reset: as `release`, and what was held before it means nothing now."""
+        """Do as `release` and forget the last target: the world was reset, and it means nothing now."""
         self._grip = None
         self._held = None
 
@@ -108,7 +108,7 @@ class Retarget:
 
 
 def heading_rad(phone_in_session: Pose) -> float:
-    """Return where a held phone points, an angle about the session's y axis; 0 is along -z, away from the person.
+    """Return where a held phone points, about the session's y axis; 0 is along -z, away from the person.
 
     Zero where it points straight up or down.
     """
@@ -117,18 +117,18 @@ def heading_rad(phone_in_session: Pose) -> float:
 
 
 def azimuth_of_camera_rad(camera_in_base: Pose) -> float:
-    """Return where a camera (OpenGL axes: x right, y up, looks along -z) looks, about the base's z; 0 is along x."""
+    """Return where a camera (OpenGL axes) looks, about the z axis of the base frame; 0 is along x."""
     x, y, _ = rotate(camera_in_base.quaternion_wxyz, _AHEAD)
     return math.atan2(y, x) if math.hypot(x, y) > _TINY else 0.0
 
 
 def session_to_base(heading_rad: float, azimuth_rad: float) -> Array:
-    """The rotation, quaternion wxyz, that lays a heading in the session onto an azimuth in the base frame."""
+    """Return the rotation, quaternion wxyz, that lays a heading in the session onto an azimuth in the base frame."""
     back = np.array([math.cos(heading_rad / 2), 0.0, -math.sin(heading_rad / 2), 0.0])
     ahead = np.array([math.cos(azimuth_rad / 2), 0.0, 0.0, math.sin(azimuth_rad / 2)])
     return quaternion_multiply(ahead, quaternion_multiply(_SESSION_TO_LEVEL, back))
 
 
 def conjugated(turn: Array, rotation: Array) -> Array:
-    """Return `rotation`, wxyz, as seen from the frame that `turn` leads to."""
+    """Return `rotation`, quaternion wxyz, as seen from the frame that `turn` leads to."""
     return quaternion_multiply(turn, quaternion_multiply(rotation, quaternion_conjugate(turn)))

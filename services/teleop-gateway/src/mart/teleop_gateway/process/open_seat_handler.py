@@ -57,7 +57,7 @@ class OpenSeatHandler:
             ) from error
 
     def _is_open(self, seat: SeatAddress, epoch: int) -> bool:
-        """Whether its process is there, and is not the one of an earlier holder, about to end.
+        """Tell whether its process is there, and is not the one of an earlier holder, about to end.
 
         An epoch older than the newest is no reason to refuse: viewers may stay while a seat changes hands. The seat's
         process looks at the token.

@@ -1,4 +1,4 @@
-"""The process of one seat: `python -m mart.teleop_gateway.process.seat_process`, started by the gateway.
+"""Run one seat: `python -m mart.teleop_gateway.process.seat_process`, started by the gateway.
 
 It imports everything (seconds), says WARM, and waits for its assignment on standard input: so a claim is served by a
 process that is ready. It ends when standard input ends, and so never outlives its gateway.
@@ -25,6 +25,7 @@ from mart.teleop_gateway.settings import GatewaySettings
 def main() -> None:
     # Mesa's software renderer hands the strips of a picture to a pool of threads. On a machine whose cores are busy
     # each hand-over waits for a turn: two seats drew in 62 ms with the pool and in 29 ms without (2 cores, 2 browsers).
+    """Import everything, say so, wait for a seat on standard input, and serve it."""
     os.environ.setdefault("LP_NUM_THREADS", "0")
     os.write(sys.stdout.fileno(), WARM)
     line = sys.stdin.buffer.readline()
@@ -46,7 +47,7 @@ def _serve(address: SeatAddress) -> None:
 
 
 async def _until_gateway_ends(seat: asyncio.Task[None]) -> None:
-    """Standard input ends with the gateway, even when it is killed.
+    """Let the seat run until standard input ends: with the gateway, even when that is killed.
 
     The seat is told to end once, whoever says so and how often: it takes its time to close peers, view and publishers
     in that order, and another cancellation would tear it out of that.

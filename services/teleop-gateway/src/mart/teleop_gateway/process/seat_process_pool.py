@@ -1,4 +1,4 @@
-"""Seat processes as their gateway sees them: warmed up ahead, assigned, watched, ended."""
+"""Start processes of seats ahead of time, assign, watch and end them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _END_TIMEOUT_S = 3.0
 
 
 class SeatProcess:
-    """One process. It ends by itself when its standard input closes, so also when this process is killed."""
+    """Hold one process. It ends by itself when its standard input closes, so also when this process is killed."""
 
     def __init__(
         self, process: asyncio.subprocess.Process, stdin: asyncio.StreamWriter, stdout: asyncio.StreamReader
@@ -24,6 +24,7 @@ class SeatProcess:
 
     @classmethod
     async def start(cls) -> SeatProcess:
+        """Start a process; it warms up by itself."""
         pipe = asyncio.subprocess.PIPE
         process = await asyncio.create_subprocess_exec(sys.executable, "-m", _MODULE, stdin=pipe, stdout=pipe)
         assert process.stdin is not None
@@ -32,10 +33,11 @@ class SeatProcess:
 
     @property
     def pid(self) -> int:
+        """Return the process's id."""
         return self._process.pid
 
     async def assign(self, seat: SeatAddress) -> None:
-        """Waits until it is warm, then gives it its seat; raises Unavailable where it died before."""
+        """Wait until it is warm, then give it its seat; raises Unavailable where it died before."""
         if await self._stdout.readline() != WARM:
             status = await self._process.wait()
             raise Unavailable(
@@ -44,11 +46,11 @@ class SeatProcess:
         self._stdin.write(encode_assignment(seat))
 
     async def ended(self) -> int:
-        """Its exit status, once it has one."""
+        """Return its exit status, once it has one."""
         return await self._process.wait()
 
     async def end(self) -> None:
-        """Orderly if it will, by force if not."""
+        """End it: orderly if it will, by force if not."""
         self._stdin.close()
         try:
             await asyncio.wait_for(self._process.wait(), _END_TIMEOUT_S)
@@ -59,22 +61,24 @@ class SeatProcess:
 
 
 class SeatProcessPool:
-    """Keeps one warm process ahead of the next claim."""
+    """Keep one warm process ahead of the next seat."""
 
     def __init__(self) -> None:
         self._next: asyncio.Task[SeatProcess] | None = None
 
     def prepare(self) -> None:
+        """Start the next process, if there is none."""
         if self._next is None:
             self._next = asyncio.create_task(SeatProcess.start())
 
     async def take(self) -> SeatProcess:
-        """The warm one; call `prepare` again once it has its seat."""
+        """Return the process that was prepared; call `prepare` again once it has its seat."""
         self.prepare()
         assert self._next is not None
         ready, self._next = self._next, None
         return await ready
 
     async def close(self) -> None:
+        """End the process that nobody took."""
         if self._next is not None:
             await (await self._next).end()

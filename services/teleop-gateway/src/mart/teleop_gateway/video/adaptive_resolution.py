@@ -1,4 +1,4 @@
-"""How large a seat's picture is: one that takes too long to make is made smaller, because late is worse than coarse.
+"""Choose how large a seat's picture is: one that takes too long is made smaller, because late is worse than coarse.
 
 Pure. Where a machine's cores are shared by several seats and their browsers, how long a picture takes is mostly how
 long it waits for its turn; half the pixels bring all of them forward.
@@ -20,7 +20,7 @@ _LONGEST_PATIENCE_S = 300.0
 
 
 class AdaptiveResolution:
-    """Tells one of `SIZES`, as a share of the full width, after each picture."""
+    """Choose one of `SIZES`, a share of the full width, by how long pictures take."""
 
     def __init__(self, frames_per_s: float) -> None:
         self._period_s = 1.0 / frames_per_s
@@ -32,10 +32,11 @@ class AdaptiveResolution:
 
     @property
     def size(self) -> Fraction:
+        """Return the size of the next picture, as a share of the full width."""
         return SIZES[self._at]
 
     def record(self, took_s: float, now_s: float) -> Fraction:
-        """A picture took so long; the size of the next one."""
+        """Take how long a picture took; returns the size of the next one."""
         self._took_s.append(took_s)
         if len(self._took_s) == _PICTURES:
             busy = median(self._took_s) / self._period_s
@@ -48,11 +49,11 @@ class AdaptiveResolution:
         return self.size
 
     def _busy_at(self, at: int, busy: float) -> float:
-        """What is expected of another size: time in proportion to pixels."""
+        """Return the share of the time that another size is expected to take: in proportion to its pixels."""
         return busy * float(SIZES[at] / self.size) ** 2
 
     def _fitting(self, busy: float) -> int:
-        """The largest of the smaller sizes that is expected to be in time, or the smallest."""
+        """Return the largest of the smaller sizes that is expected to be in time, or the smallest."""
         smaller = range(self._at + 1, len(SIZES))
         return next((at for at in smaller if self._busy_at(at, busy) <= _MOST), smaller[-1])
 
@@ -60,7 +61,7 @@ class AdaptiveResolution:
         return now_s - self._changed_s > self._patience_s
 
     def _grow_later(self, now_s: float) -> None:
-        """Whoever has to shrink again soon after growing waits twice as long before trying again."""
+        """Wait twice as long before growing again, where the last growth was followed by this shrinking."""
         soon = now_s - self._grown_s < _FIRST_PATIENCE_S
         self._patience_s = min(2.0 * self._patience_s, _LONGEST_PATIENCE_S) if soon else _FIRST_PATIENCE_S
 

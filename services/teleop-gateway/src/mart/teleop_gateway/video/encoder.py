@@ -1,4 +1,4 @@
-"""Pictures to H.264, and to VP8 for a browser without it: one encoder each, whatever the number of viewers.
+"""Encode pictures in H.264, and in VP8 for a browser without it: one encoder each, whatever the number of viewers.
 
 The settings trade size for time: a picture must leave in 2 ms and be decoded without waiting for another one.
 """
@@ -24,13 +24,15 @@ _TIME_BASE = Fraction(1, CLOCK_HZ)
 
 
 class Codec(enum.StrEnum):
+    """Name a video codec as WebRTC does."""
+
     H264 = "H264"
     VP8 = "VP8"
 
 
 @dataclass(frozen=True)
 class EncodedPicture:
-    """One picture. pts: in 1/90000 s of the monotonic clock. `data`: an H.264 access unit (Annex B) or a VP8 frame."""
+    """Hold one encoded picture: an H.264 access unit (Annex B) or a VP8 frame. `pts` is in 1/90000 s, monotonic."""
 
     codec: Codec
     data: bytes
@@ -40,7 +42,7 @@ class EncodedPicture:
 
 @dataclass(frozen=True)
 class _Recipe:
-    """How FFmpeg is told to encode. bitrate_bps: 0 where the quality is constant instead."""
+    """Say how FFmpeg is told to encode. bitrate_bps: 0 where the quality is constant instead."""
 
     encoder: str
     profile: str | None
@@ -92,7 +94,7 @@ _RECIPES = MappingProxyType(
 
 
 class Encoder:
-    """One stream of pictures in one codec."""
+    """Encode one stream of pictures in one codec."""
 
     def __init__(self, codec: Codec, frames_per_s: float, quality: Quality = FAST) -> None:
         recipe = _RECIPES[codec]
@@ -109,6 +111,7 @@ class Encoder:
         self._context = context
 
     def encode(self, picture_i420: Image, pts: int, keyframe: bool) -> EncodedPicture:
+        """Return the picture, shape (3/2 height, width) in I420, encoded; a keyframe where one is asked for."""
         frame = av.VideoFrame.from_numpy_buffer(picture_i420, format="yuv420p")  # both encoders copy it
         frame.pts = pts
         frame.time_base = _TIME_BASE
@@ -120,5 +123,6 @@ class Encoder:
 
 
 def to_i420(picture_rgb: Image) -> Image:
-    """Shape (height, width, 3) → (3/2 height, width). OpenCV takes 0.15 ms where a new sws context takes 3."""
+    """Return an RGB picture, shape (height, width, 3), as I420, shape (3/2 height, width)."""
+    # OpenCV takes 0.15 ms where a new context of FFmpeg's swscale takes 3.
     return cv2.cvtColor(picture_rgb, cv2.COLOR_RGB2YUV_I420)  # type: ignore[return-value]

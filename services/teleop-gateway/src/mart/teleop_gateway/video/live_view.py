@@ -1,4 +1,4 @@
-"""The picture of one seat: rendered and encoded once, handed to everyone who watches. A thread of its own.
+"""Draw and encode one seat's picture once for everyone who watches, on a thread of its own.
 
 Newest wins before the encoder: a slow renderer leaves states out. After it nothing may be left out, since every
 picture builds on the one before; see `track`. Pictures that take too long are drawn smaller; see `adaptive_resolution`.
@@ -40,7 +40,7 @@ _RATE_WINDOW = 40
 
 @dataclass(frozen=True)
 class SeatPicture:
-    """One encoded picture on its way to the peers and onto the bus. image_ns: when the world was in this state."""
+    """Hold one encoded picture on its way to peers and bus. `image_ns` is when the world was in this state."""
 
     encoded: EncodedPicture
     tick: int
@@ -52,28 +52,30 @@ Sink = Callable[[SeatPicture | Thumbnail], None]
 
 
 class _RenderPipeline:
-    """What a picture of one size takes: a renderer, encoders, and the picture itself."""
+    """Hold what a picture of one size takes: a renderer, encoders, and the picture itself."""
 
     def __init__(self, renderer: SeatRenderer, quality: Quality, frames_per_s: float) -> None:
         self._renderer, self._full, self._frames_per_s = renderer, quality, frames_per_s
         self._prepare(quality)
 
     def resize(self, size: Fraction) -> None:
-        """A share of the full width. The first picture of another size is a keyframe."""
+        """Draw at this share of the full width. The first picture of another size is a keyframe."""
         quality = self._full.sized(size)
         if quality != self._quality:
             self._renderer.resize(quality)
             self._prepare(quality)
 
     def draw(self, state: State) -> None:
+        """Fill the picture with this state."""
         self._renderer.draw(state.integration_state, state.tick, self.picture_rgb)
 
     @property
     def view_rgb(self) -> Image:
-        """The picture without the strip."""
+        """Return the picture without the strip."""
         return self.picture_rgb[: self._quality.view_height_px]
 
     def close(self) -> None:
+        """Give back what the renderer holds."""
         self._renderer.close()
 
     def _prepare(self, quality: Quality) -> None:
@@ -83,7 +85,7 @@ class _RenderPipeline:
 
 
 class LiveView:
-    """Draws `camera` of `model` from `start` to `stop`. The sink is called on its thread: it may only hand over."""
+    """Draw `camera` of `model` from `start` to `stop`. The sink is called on its thread: it may only hand over."""
 
     def __init__(
         self, model: mujoco.MjModel, camera: str, frames_per_s: float, sink: Sink, quality: Quality = FAST
@@ -92,26 +94,29 @@ class LiveView:
         self._frames_per_s = frames_per_s
         self._queue = RenderQueue()
         self._keyframe_s = dict.fromkeys(Codec, -KEYFRAME_EVERY_S)
-        self._complaints = RateLimit(1)
+        self._log_limit = RateLimit(1)
         self._times_s: deque[float] = deque(maxlen=_RATE_WINDOW)
         self._thread = threading.Thread(target=self._run, name=f"view-{camera}", daemon=True)
 
     def start(self) -> None:
+        """Begin to draw, on a thread of its own."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Returns when the thread has ended."""
+        """Return when the thread has ended."""
         self._queue.close()
         self._thread.join()
 
     def offer(self, state: State, received_ns: int) -> None:
+        """Draw this state next, in the place of one that is not drawn yet. `received_ns` is when it came here."""
         self._queue.offer(state, received_ns)
 
     def set_codecs(self, codecs: AbstractSet[Codec]) -> None:
-        """What the peers need. H.264 is always made: the recorder keeps what the operator saw."""
+        """Encode in these codecs. H.264 is always made: the recorder keeps what the operator saw."""
         self._queue.set_codecs(codecs)
 
     def request_keyframe(self, codec: Codec) -> None:
+        """Make the next picture in this codec a keyframe."""
         self._queue.request_keyframe(codec)
 
     def frames_per_s(self) -> float:
@@ -142,24 +147,24 @@ class LiveView:
         drawn: UndrawnState | None = None
         rendered_ns = 0
         while True:
-            fresh = self._queue.wait(_REPEAT_AFTER_S, _KEYFRAME_WITHIN_S)
+            undrawn = self._queue.wait(_REPEAT_AFTER_S, _KEYFRAME_WITHIN_S)
             begun_s = clock.monotonic_s()
-            if fresh is not None:
+            if undrawn is not None:
                 pipeline.resize(resolution.size)
                 try:
-                    pipeline.draw(fresh.state)
+                    pipeline.draw(undrawn.state)
                 except InvalidInput as error:
-                    if self._complaints.allows(begun_s):
+                    if self._log_limit.allows(begun_s):
                         _log.warning("A state was not drawn: %s", error)
                     continue
-                drawn, rendered_ns = fresh, clock.wall_ns()
+                drawn, rendered_ns = undrawn, clock.wall_ns()
                 self._times_s.append(clock.monotonic_s())
             if drawn is not None:
                 self._encode(pipeline, drawn, rendered_ns)
-            if fresh is not None:
+            if undrawn is not None:
                 now_s = clock.monotonic_s()
                 resolution.record(now_s - begun_s, now_s)
-                thumbnail = thumbnails.take(pipeline.view_rgb, fresh.state.stamps.stepped_ns, now_s)
+                thumbnail = thumbnails.take(pipeline.view_rgb, undrawn.state.stamps.stepped_ns, now_s)
                 if thumbnail is not None:
                     self._sink(thumbnail)
 

@@ -1,4 +1,4 @@
-"""Motion to photon: from the moment a hand's frame was sent to the moment its effect was on the screen.
+"""Measure motion to photon: from when a hand's frame was sent to when its effect was on the screen.
 
 Every frame counts, also those that a newer one overtook before the tick: a hand moves all the time, and what it did
 right after a tick waits longest. (Used commands alone would leave two thirds of a tick out of the account.) Frames that
@@ -39,7 +39,7 @@ REPORT_EVERY_S = 1.0
 
 @dataclass(frozen=True)
 class PictureStamps:
-    """One tick's way through the gateway."""
+    """Hold one tick's way through the gateway."""
 
     state_received_ns: int
     rendered_ns: int
@@ -48,7 +48,7 @@ class PictureStamps:
 
 @dataclass(frozen=True)
 class LatencySummary:
-    """Sum up the newest reports; `frames`: pictures reported; `stages`: median milliseconds of each of STAGES."""
+    """Sum up the newest reports: `frames` pictures, and the median milliseconds of each of STAGES, in order."""
 
     p50_ms: float
     p95_ms: float
@@ -60,6 +60,7 @@ class LatencySummary:
         return f"p50 {self.p50_ms:.1f} ms, p95 {self.p95_ms:.1f} ms of {self.frames} pictures ({stages})"
 
     def event(self, arm: str) -> Event.Latency:
+        """Return the summary as the room is told of it."""
         named = [Event.Latency.Stage(name=n, p50_ms=ms) for n, ms in zip(STAGES, self.stages, strict=True)]
         return Event.Latency(
             arm=arm, p50_ms=self.p50_ms, p95_ms=self.p95_ms, frames=self.frames, stages=named
@@ -67,7 +68,7 @@ class LatencySummary:
 
 
 class MotionToPhoton:
-    """Keeps the last `window` reports of one arm."""
+    """Measure one arm: keeps the last `window` reports."""
 
     def __init__(self, arm: str, window: int = 100, ticks: int = 256, commands: int = 256) -> None:
         self.reports = 0  # in all
@@ -79,14 +80,14 @@ class MotionToPhoton:
         self._reports: deque[list[tuple[int, ...]]] = deque(maxlen=window)
 
     def on_command(self, command: Command) -> None:
-        """A frame became a command. One without a stamp (its sender's clock is not mapped yet) has no account."""
+        """Take a frame that became a command; without a stamp (its sender's clock is unknown yet) it does not count."""
         stamps = command.stamps
         if stamps.input_sent_ns:
             sent = (stamps.input_sent_ns, stamps.gateway_received_ns)
             _keep(self._sent, command.sequence, sent, self._commands)
 
     def on_state(self, state: State, control_hz: float) -> None:
-        """Keeps the way of the command that this tick used, and of those that it overtook; a held arm has none."""
+        """Keep the way of the command that this tick used, and of those it overtook; a held arm has none."""
         # When the tick before this one could have fired.
         since_ns = state.stamps.due_ns - round(1e9 / control_hz)
         for arm in state.arms:
@@ -102,13 +103,13 @@ class MotionToPhoton:
                 _keep(self._until_state, state.tick, rows, self._ticks)
 
     def on_picture(self, tick: int, stamps: PictureStamps) -> None:
-        """A picture sent a second time closes the account: a report from now on may mean either."""
+        """Take when a picture was made; one sent again closes the account, since a report may mean either."""
         if tick in self._pictures:
             self._until_state.pop(tick, None)
         _keep(self._pictures, tick, stamps, self._ticks)
 
     def on_seen(self, tick: int, displayed_ns: int) -> bool:
-        """A page displayed this tick; False where the account cannot be closed or cannot be true."""
+        """Take that a page displayed this tick; False where the account cannot be closed or cannot be true."""
         until_state, picture = self._until_state.get(tick), self._pictures.get(tick)
         if until_state is None or picture is None:
             return False
@@ -121,7 +122,7 @@ class MotionToPhoton:
         return True
 
     def summary(self) -> LatencySummary | None:
-        """Return the delays so far, None before the first report."""
+        """Return the newest reports summed up; None before the first."""
         if not self._reports:
             return None
         stamps = np.array([row for rows in self._reports for row in rows], dtype=np.int64)

@@ -1,4 +1,4 @@
-"""How pictures look, as data. The strip with the tick is part of every picture and grows with it."""
+"""Say how pictures look, as data. The strip with the tick is part of every picture and grows with it."""
 
 from __future__ import annotations
 
@@ -18,8 +18,10 @@ _SQUARES = 40  # of the strip, side by side
 
 @dataclass(frozen=True)
 class Quality:
-    """Describe pictures: `width_px`, a multiple of 80 also at every share of it that is drawn; `samples` a pixel, which
-    smooth edges; `detailed` asks the room for detailed meshes.
+    """Say how large and how fine pictures are.
+
+    `width_px` is a multiple of 80, also at every share of it that is drawn. `samples` a pixel smooth edges; `detailed`
+    asks the room for detailed meshes.
     """
 
     width_px: int
@@ -29,19 +31,20 @@ class Quality:
 
     @property
     def view_height_px(self) -> int:
+        """Return the height of the view, without the strip."""
         return self.width_px * 3 // 4
 
     @property
     def height_px(self) -> int:
-        """Return the height of the picture with its strip."""
+        """Return the height of the picture, with the strip."""
         return self.view_height_px + self.width_px // _SQUARES
 
     def sized(self, share: Fraction) -> Quality:
-        """The same at a share of the width."""
+        """Return the same quality at a share of the width."""
         return replace(self, width_px=int(self.width_px * share))
 
     def blank_picture(self) -> Image:
-        """Shape (height_px, width_px, 3)."""
+        """Return a black picture, shape (height_px, width_px, 3)."""
         return np.zeros((self.height_px, self.width_px, 3), np.uint8)
 
 

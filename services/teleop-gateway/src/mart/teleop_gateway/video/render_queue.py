@@ -1,4 +1,4 @@
-"""What the event loop and the view's thread tell each other; newest state wins."""
+"""Hand states from the event loop to the view's thread; the newest state wins."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from mart.teleop_gateway.video.encoder import Codec
 
 @dataclass(frozen=True)
 class UndrawnState:
-    """A state that has not been drawn. received_ns: when it came to the gateway."""
+    """Hold a state that has not been drawn. `received_ns` is when it came to the gateway."""
 
     state: State
     received_ns: int
 
 
 class RenderQueue:
-    """Any thread may give; one thread takes."""
+    """Hold the newest state and what is wanted of the next picture. Any thread may give; one thread takes."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
@@ -30,28 +30,30 @@ class RenderQueue:
         self._closed = False
 
     def offer(self, state: State, received_ns: int) -> None:
-        """A newer state; one that nobody has taken yet is left out."""
+        """Put a newer state; one that nobody has taken yet is left out."""
         with self._changed:
             self._newest = UndrawnState(state, received_ns)
             self._changed.notify()
 
     def request_keyframe(self, codec: Codec) -> None:
+        """Want the next picture in this codec to be a keyframe."""
         with self._changed:
             self._keyframes.add(codec)
             self._changed.notify()
 
     def set_codecs(self, codecs: AbstractSet[Codec]) -> None:
-        """Which codecs somebody watches."""
+        """Tell which codecs somebody watches."""
         with self._changed:
             self._codecs = frozenset(codecs)
 
     def close(self) -> None:
+        """Tell whoever takes that there will be no more."""
         with self._changed:
             self._closed = True
             self._changed.notify()
 
     def wait(self, idle_s: float, keyframe_s: float) -> UndrawnState | None:
-        """Waits for a state; None after `idle_s`, or already after `keyframe_s` where a keyframe is wanted.
+        """Wait for a state; None after `idle_s`, or already after `keyframe_s` where a keyframe is wanted.
 
         Raises Closed when there will be no more.
         """
@@ -67,11 +69,11 @@ class RenderQueue:
             return fresh
 
     def take_orders(self) -> tuple[frozenset[Codec], frozenset[Codec]]:
-        """Return the codecs that somebody watches and those of which a keyframe is wanted, which is seen to then."""
+        """Return the codecs that somebody watches, and those of which a keyframe is wanted: once, for each wish."""
         with self._changed:
             wanted, self._keyframes = frozenset(self._keyframes), set()
             return self._codecs, wanted
 
 
 class RenderQueueClosed(Exception):  # an end, not an error
-    """The handover was closed."""
+    """Tell that there will be no more states."""

@@ -1,4 +1,4 @@
-"""A small picture of a seat's view every two seconds: what the lobby shows of the room."""
+"""Make a small picture of a seat's view every two seconds: what the lobby shows of the room."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ _JPEG_QUALITY = 80
 
 @dataclass(frozen=True)
 class Thumbnail:
-    """Hold one small picture. image_ns: when the world was in this state."""
+    """Hold a small JPEG. `image_ns` is when the world was in this state."""
 
     jpeg: bytes
     image_ns: int
 
 
 class ThumbnailMaker:
-    """Says when one is due, and makes it."""
+    """Make a thumbnail whenever one is due."""
 
     def __init__(self) -> None:
         self._due_s = 0.0
 
     def take(self, view_rgb: Image, image_ns: int, now_s: float) -> Thumbnail | None:
-        """Return one of a view of shape (height, width, 3); None where the last one is not old enough."""
+        """Return a thumbnail of a view, shape (height, width, 3); None where the last one is not old enough."""
         if now_s < self._due_s:
             return None
         self._due_s = now_s + EVERY_S

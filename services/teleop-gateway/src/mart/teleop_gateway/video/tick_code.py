@@ -1,4 +1,4 @@
-"""The tick, written into the picture and read back: docs/protocol.md, "Tick code in the picture"."""
+"""Write the tick into the picture and read it back: docs/protocol.md, "Tick code in the picture"."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _PARTS = HEIGHT_PX // SQUARE_PX  # a picture is 31 squares high, and the strip i
 
 
 def write(tick: int, strip_rgb: Image) -> None:
-    """Fills the strip, shape (16 k, 640 k, 3), with `tick` (its low 32 bits)."""
+    """Fill the strip, shape (16 k, 640 k, 3), with `tick` (its low 32 bits)."""
     word = tick & 0xFFFFFFFF
     code = word << 8 | _checksum(word)
     bits = np.array([code >> (_BITS - 1 - i) & 1 for i in range(_BITS)], dtype=np.uint8)
@@ -26,7 +26,7 @@ def write(tick: int, strip_rgb: Image) -> None:
 
 
 def read(luma: Image) -> int | None:
-    """The tick in a whole frame's luma, shape (496 k, 640 k); None where the checksum is wrong."""
+    """Return the tick in a whole frame's luma, shape (496 k, 640 k); None where the checksum is wrong."""
     height, square = luma.shape[0], luma.shape[1] // _BITS
     centres = np.arange(_BITS) * square + square // 2
     bits = luma[height - height // _PARTS // 2, centres] >= _THRESHOLD

@@ -1,4 +1,4 @@
-"""A seat's pictures on their way onto the bus: its video, and stills of it."""
+"""Publish a seat's video, and thumbnails of it, on the bus."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mart.teleop_gateway.video.thumbnail import Thumbnail
 
 
 class VideoPublisher:
-    """Open from its making until `close`."""
+    """Publish a seat's pictures on the bus: its video, and thumbnails of it. Open from its making until `close`."""
 
     def __init__(self, bus: Bus, seat: SeatAddress) -> None:
         room, arm = seat.room, seat.arm
@@ -23,11 +23,12 @@ class VideoPublisher:
         self._stills = bus.publisher(keys.still(room, arm))
 
     def close(self) -> None:
+        """Publish nothing any more."""
         self._video.close()
         self._stills.close()
 
     def put(self, made: SeatPicture | Thumbnail) -> None:
-        """VP8 is for peers only. From any one thread."""
+        """Publish what was made, from any one thread; VP8 is left out, it is for peers only."""
         if isinstance(made, Thumbnail):
             image = CompressedImage(frame_id=self._arm, data=made.jpeg, format="jpeg")
             image.timestamp.FromNanoseconds(made.image_ns)

@@ -1,4 +1,4 @@
-"""The room's model, fetched once for each run of its sim, and the view that draws it."""
+"""Fetch the room's model once for each run of its sim, and hold the view that draws it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _RETRY_S = 0.5
 
 
 class ViewManager:
-    """States go in from any thread; pictures come out at `sink`, on the view's thread.
+    """Hold the view of the room's newest model. States come from any thread; `sink` is called on the view's thread.
 
     `on_azimuth` is called on the event loop with the azimuth of the seat's camera whenever there is a new model.
     """
@@ -49,12 +49,13 @@ class ViewManager:
         self._stopping: asyncio.Future[None] | None = None  # the view before
 
     def offer(self, state: State, received_ns: int) -> None:
+        """Draw this state next. Call it on any thread."""
         view = self._view
         if view is not None:
             view.offer(state, received_ns)
 
     def on_boot(self, boot: int) -> None:
-        """The sim has started anew, perhaps with another model. Call on the event loop."""
+        """Take that the sim has started anew, perhaps with another model. Call it on the event loop."""
         if boot == self._boot:
             return
         self._boot = boot
@@ -63,19 +64,22 @@ class ViewManager:
         self._fetching = self._bus.spawn(self._fetch())
 
     def set_codecs(self, codecs: AbstractSet[Codec]) -> None:
+        """Encode in these codecs, now and in every later view."""
         self._codecs = frozenset(codecs)
         if self._view is not None:
             self._view.set_codecs(self._codecs)
 
     def request_keyframe(self, codec: Codec) -> None:
+        """Make the next picture in this codec a keyframe."""
         if self._view is not None:
             self._view.request_keyframe(codec)
 
     def frames_per_s(self) -> float:
+        """Return the rate of the last pictures; 0 where there are none."""
         return self._view.frames_per_s() if self._view is not None else 0.0
 
     async def close(self) -> None:
-        """No picture comes after it."""
+        """Return when no picture will come any more."""
         if self._fetching is not None:
             self._fetching.cancel()
         await self._replace(None)

@@ -1,4 +1,4 @@
-"""What aiortc 1.16 has no public way for, in one place; tests/teleop_gateway/test_aiortc_hooks.py fails if it moves.
+"""Do what aiortc 1.16 has no public way for; tests/teleop_gateway/webrtc/test_aiortc_hooks.py fails if it moves.
 
 Playout delay (webrtc.googlesource.com, docs/native-code/rtp-hdrext/playout-delay): an RTP header extension by which a
 sender tells how long a receiver may hold a picture. (0, 0) means show it at once: worth 14 ms in Chromium, and the
@@ -19,24 +19,24 @@ _NO_DELAY = bytes(3)  # 12 bits of minimum, 12 bits of maximum, in steps of 10 m
 
 
 def offer_playout_delay() -> None:
-    """Makes every connection of this process negotiate the extension; call once before the first, again is harmless."""
+    """Make every connection of this process negotiate the extension; call it before the first, again is harmless."""
     video = HEADER_EXTENSIONS["video"]
     if all(extension.uri != PLAYOUT_DELAY_URI for extension in video):
         video.append(RTCRtpHeaderExtensionParameters(id=_FREE_ID, uri=PLAYOUT_DELAY_URI))
 
 
 def show_at_once(sender: RTCRtpSender) -> None:
-    """Puts a playout delay of (0, 0) on every packet of this sender, where the peer negotiated it."""
+    """Put a playout delay of (0, 0) on every packet of this sender, where the peer negotiated it."""
     sender._RTCRtpSender__rtp_header_extensions_map = _NoPlayoutDelay()  # type: ignore[attr-defined]  # noqa: SLF001
 
 
 def on_keyframe_request(sender: RTCRtpSender, handler: Callable[[], None]) -> None:
-    """Calls `handler` on PLI and FIR: a sender of encoded pictures only sets a flag that nobody reads."""
+    """Call `handler` on PLI and FIR: a sender of encoded pictures only sets a flag that nobody reads."""
     sender._send_keyframe = handler  # type: ignore[method-assign]  # noqa: SLF001
 
 
 def sent_codec(transceiver: RTCRtpTransceiver) -> str:
-    """The codec that was negotiated for sending: "H264", "VP8"."""
+    """Return the codec that was negotiated for sending: "H264", "VP8"."""
     return transceiver._codecs[0].name  # noqa: SLF001
 
 

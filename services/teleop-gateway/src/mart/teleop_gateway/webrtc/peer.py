@@ -1,4 +1,4 @@
-"""One WebRTC peer of a seat: a browser, a phone or a viewer."""
+"""Hold one WebRTC peer of a seat: a browser, a phone or a viewer."""
 
 from __future__ import annotations
 
@@ -37,19 +37,23 @@ _GONE = ("closed", "failed")
 
 
 class PeerListener(Protocol):
-    """Who is told what a peer does; always on the event loop."""
+    """Be told what a peer does; always on the event loop."""
 
-    def on_pose(self, peer: Peer, payload: bytes) -> None: ...
+    def on_pose(self, peer: Peer, payload: bytes) -> None:
+        """Take a message of its pose channel."""
 
-    def on_status(self, peer: Peer, text: str) -> None: ...
+    def on_status(self, peer: Peer, text: str) -> None:
+        """Take a message of its status channel."""
 
-    def on_keyframe_wanted(self, codec: Codec) -> None: ...
+    def on_keyframe_wanted(self, codec: Codec) -> None:
+        """Take that it cannot go on without a keyframe."""
 
-    def on_gone(self, peer: Peer) -> None: ...
+    def on_gone(self, peer: Peer) -> None:
+        """Take that its connection has ended."""
 
 
 class Peer:
-    """Answer its offer, then let it run; `close` ends it, also when it is already gone."""
+    """Hold one connection: answer its offer, then let it run; `close` ends it, also when it is already gone."""
 
     def __init__(self, role: Role, listener: PeerListener, ice_servers: Sequence[str] = ()) -> None:
         offer_playout_delay()
@@ -67,7 +71,7 @@ class Peer:
         self._connection.on("connectionstatechange", self._on_state)
 
     async def answer(self, offer_sdp: str) -> str:
-        """The answer's SDP; raises InvalidInput where the offer cannot be used. The peer is closed then."""
+        """Return the answer's SDP; raises InvalidInput where the offer cannot be used. The peer is closed then."""
         if len(offer_sdp) > MAX_SDP_CHARACTERS:
             raise InvalidInput(
                 f"An offer of {len(offer_sdp)} characters was given; {MAX_SDP_CHARACTERS} are allowed."
@@ -80,12 +84,13 @@ class Peer:
         return self._connection.localDescription.sdp
 
     def send_status(self, text: str) -> None:
-        """Dropped where the channel is not open, or still busy with older ones."""
+        """Send a message; it is dropped where the channel is not open, or still busy with older ones."""
         channel = self._status
         if channel is not None and channel.readyState == "open" and channel.bufferedAmount < _STALE_BYTES:
             channel.send(text)
 
     async def close(self) -> None:
+        """Return when the connection has ended."""
         if self.track is not None:
             self.track.stop()
         await self._connection.close()

@@ -1,4 +1,4 @@
-"""The status channel: JSON, one small object a message. docs/protocol.md, "Status channel"."""
+"""Read and write the status channel: JSON, one small object a message. docs/protocol.md, "Status channel"."""
 
 from __future__ import annotations
 
@@ -17,28 +17,36 @@ MAX_CHARACTERS = 1100  # one SCTP packet
 
 @dataclass(frozen=True)
 class PingMessage:
+    """Ask for the gateway's time. `t_us` is the sender's own clock."""
+
     t_us: float
 
 
 @dataclass(frozen=True)
 class ClockMessage:
+    """Tell the gateway's clock minus the sender's, nanoseconds."""
+
     offset_ns: int
 
 
 @dataclass(frozen=True)
 class SeenMessage:
+    """Tell when a tick was displayed, on the sender's clock."""
+
     tick: int
     t_us: float
 
 
 @dataclass(frozen=True)
 class SelectInputMessage:
+    """Ask for this device to drive."""
+
     input: InputDevice
 
 
 @dataclass(frozen=True)
 class CueMessage:
-    """Hold one press. press_us: when it was, on the peer's clock; names it, for it is told several times."""
+    """Give a word to the partners. `press_us`, the sender's clock, names the press, which is told several times."""
 
     cue: Cue
     press_us: float
@@ -48,7 +56,7 @@ PeerMessage = PingMessage | ClockMessage | SeenMessage | SelectInputMessage | Cu
 
 
 def parse(text: str | bytes) -> PeerMessage:
-    """Return what a peer says. Raises InvalidInput for anything else."""
+    """Return what a peer's message says; raises InvalidInput for anything that is none of these."""
     if len(text) > MAX_CHARACTERS:
         raise InvalidInput(
             f"A status message of {len(text)} characters was given; {MAX_CHARACTERS} are allowed."
@@ -72,19 +80,22 @@ def parse(text: str | bytes) -> PeerMessage:
 
 
 def pong(ping: PingMessage, gateway_ns: int) -> str:
+    """Return the answer to a ping."""
     return _text({"type": "pong", "t_us": ping.t_us, "gateway_ns": gateway_ns})
 
 
 def replaced() -> str:
-    """Tell a driving peer that a newer one of its role takes its place: it need not try again by itself."""
+    """Return the word to a driving peer whose place a newer one takes: it need not try again by itself."""
     return _text({"type": "replaced"})
 
 
 def ping(t_us: float) -> str:
+    """Return a peer's question for the gateway's time."""
     return _text({"type": "ping", "t_us": t_us})
 
 
 def clock_offset(offset_ns: int) -> str:
+    """Return a peer's word of the gateway's clock minus its own, nanoseconds."""
     return _text({"type": "clock", "offset_ns": offset_ns})
 
 
@@ -97,7 +108,7 @@ def tick(
     frames_per_s: float,
     latency: LatencySummary | None,
 ) -> str:
-    """What a page shows, at most MAX_CHARACTERS long."""
+    """Return what a page shows, at most MAX_CHARACTERS long."""
     sequence = next((arm.sequence for arm in state.arms if arm.arm == driving.arm), 0)
     phone = driving.phone(now_s)
     return _text(

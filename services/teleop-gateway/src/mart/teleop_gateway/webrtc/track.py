@@ -1,4 +1,4 @@
-"""The last metre to one peer: encoded pictures in, RTP out, with a queue that never grows old."""
+"""Feed one peer: encoded pictures in, RTP out, with a queue that never grows old."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _QUEUE = 3
 
 
 class EncodedTrack(MediaStreamTrack):
-    """Passes encoded pictures on without touching them.
+    """Pass encoded pictures on without touching them.
 
     A picture builds on the one before, so none may be left out of the middle: on overflow everything waiting is
     dropped, and nothing is sent until the keyframe that is asked for then.
@@ -35,7 +35,7 @@ class EncodedTrack(MediaStreamTrack):
         self._needs_keyframe = True
 
     def put(self, encoded: EncodedPicture) -> None:
-        """Call on the event loop. Ignored until the connection asks for its first picture."""
+        """Queue a picture, on the event loop. Ignored until the connection asks for its first one."""
         if not self._started or (self._needs_keyframe and not encoded.keyframe):
             return
         if len(self._queue) >= _QUEUE and not encoded.keyframe:
@@ -50,6 +50,7 @@ class EncodedTrack(MediaStreamTrack):
         self._arrived.set()
 
     async def recv(self) -> av.Packet[Any]:
+        """Return the next picture as a packet; raises MediaStreamError once the track has ended."""
         if not self._started:
             self._started = True
             self._request_keyframe()
@@ -65,5 +66,6 @@ class EncodedTrack(MediaStreamTrack):
         return packet
 
     def stop(self) -> None:
+        """End the track, and whoever waits for a picture of it."""
         super().stop()
         self._arrived.set()
