@@ -1,4 +1,4 @@
-# MART's verbs. Each works from a fresh clone on Debian 12 with Python 3.11 and make; `make` lists them.
+# MART's verbs. Each works from a fresh clone on Debian 12 or 13 with Python 3 and make; `make` lists them.
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
@@ -149,6 +149,7 @@ $(VENV)/.build: $(VENV)/bin/python constraints.txt
 
 $(VENV)/.parts: $(VENV)/.build $(PART_SOURCES)
 	@tools/system-packages render
+	@tools/cpu-torch $(BIN)/python constraints.txt
 	@$(PIP) install --constraint constraints.txt --no-build-isolation $(addprefix --editable ,$(PARTS))
 	@touch $@
 
