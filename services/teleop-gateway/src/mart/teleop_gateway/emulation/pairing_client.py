@@ -32,7 +32,7 @@ class PairingClient:
     def __init__(
         self, url: str, insecure: bool = False, transport: httpx.AsyncBaseTransport | None = None
     ) -> None:
-        """`insecure` takes any certificate, for the one that a platform makes for itself at first start."""
+        """Speak to the lobby at `url`; `insecure` takes any certificate, for one that a platform made for itself."""
         self._url = url.rstrip("/")
         verify: ssl.SSLContext | bool = False if insecure else ssl.create_default_context()
         origin = {"Origin": self._url}
