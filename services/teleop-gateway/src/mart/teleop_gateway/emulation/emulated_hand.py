@@ -58,7 +58,7 @@ class EmulatedHand:
     """Move a phone so that the tool goes where an expert wants it."""
 
     def __init__(self, azimuth_rad: float, rest_in_session: Pose, scale: float = 1.0) -> None:
-        """Hold the phone: `azimuth_rad` is the seat's camera's, in the arm's base frame; `scale` must be the gateway's."""
+        """Hold the phone. `azimuth_rad`: the seat's camera's, in the arm's base frame; `scale`: the gateway's."""
         self._azimuth_rad = azimuth_rad
         self._scale = scale
         self._rest = rest_in_session
