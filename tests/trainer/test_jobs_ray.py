@@ -21,10 +21,8 @@ from tests.support.processes import free_port, running_router
 from tests.trainer.conftest import Recorded
 from tests.trainer.test_jobs import Client, trainer, watched, worker_of
 
-pytestmark = [
-    pytest.mark.system,
-    pytest.mark.timeout(300),
-]  # Ray's processes take their time on a busy machine
+# Ray's processes take their time on a busy machine.
+pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 
 
 @contextlib.contextmanager
