@@ -22,10 +22,8 @@ from tests.support.processes import running_router
 from tests.trainer.conftest import Recorded
 from tests.trainer.jobs.service.test_trainer_service import Client, trainer, watched, worker_of
 
-pytestmark = [
-    pytest.mark.system,
-    pytest.mark.timeout(300),
-]  # Ray's processes take their time on a busy machine
+# Ray's processes take their time on a busy machine.
+pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 
 
 @contextlib.contextmanager
