@@ -93,6 +93,7 @@ declare namespace Api {
   type EpisodeAction = "ready" | "unready" | "success" | "failure" | "discard" | "reset";
 
   interface Notice {
+    id: number;
     room: string;
     kind: "notice";
     level: string;
@@ -101,6 +102,7 @@ declare namespace Api {
   }
 
   interface CueGiven {
+    id: number;
     room: string;
     kind: "cue_given";
     arm: string;
@@ -108,6 +110,7 @@ declare namespace Api {
   }
 
   interface EpisodeSaved {
+    id: number;
     room: string;
     kind: "episode_saved";
     number: number;

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from mart.protocol import codec, keys
-from mart.protocol.errors import InvalidInput
+from mart.protocol import keys
 from mart.protocol.messages import (
     OPERATOR_POLICY,
     EpisodeRequest,
@@ -11,8 +10,8 @@ from mart.protocol.messages import (
     RoomReply,
     Seat,
     SeatRequest,
-    raise_error,
 )
+from mart.runtime.ask import ask
 from mart.runtime.bus import Bus
 
 _TIMEOUT_S = 5.0
@@ -46,15 +45,7 @@ class RoomClient:
     def ready(self, arm: str, holder_id: str = "", number: int = 0) -> None:
         """Say that this arm is ready for an episode, the next one or that of a number."""
         ready = EpisodeRequest.Ready(arm=arm, holder_id=holder_id, ready=True, number=number)
-        self._ask(keys.episode(self.room), codec.encode(EpisodeRequest(ready=ready)))
+        ask(self._bus, keys.episode(self.room), EpisodeRequest(ready=ready), RoomReply, _TIMEOUT_S)
 
     def _ask_seat(self, request: SeatRequest) -> RoomReply:
-        return self._ask(keys.seat(self.room), codec.encode(request))
-
-    def _ask(self, topic: keys.Topic, payload: bytes) -> RoomReply:
-        try:
-            reply = codec.decode(RoomReply, self._bus.query(topic, payload, _TIMEOUT_S))
-        except InvalidInput as error:
-            raise InvalidInput(f"{self.room} answered with something else than a reply: {error}") from error
-        raise_error(reply.error)
-        return reply
+        return ask(self._bus, keys.seat(self.room), request, RoomReply, _TIMEOUT_S)

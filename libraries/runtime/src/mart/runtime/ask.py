@@ -25,6 +25,9 @@ Reply = TypeVar(
 )
 
 
+MAX_REPLY_BYTES = 64 * 1024
+
+
 def ask(
     bus: Bus,
     topic: Topic,
@@ -32,7 +35,7 @@ def ask(
     reply_type: type[Reply],
     timeout_s: float,
     *,
-    limit_bytes: int = codec.MAX_MESSAGE_BYTES,
+    limit_bytes: int = MAX_REPLY_BYTES,
 ) -> Reply:
     """Send `request` to whoever serves `topic` and return the decoded reply. Blocks this thread.
 
@@ -49,7 +52,7 @@ async def ask_async(
     reply_type: type[Reply],
     timeout_s: float,
     *,
-    limit_bytes: int = codec.MAX_MESSAGE_BYTES,
+    limit_bytes: int = MAX_REPLY_BYTES,
 ) -> Reply:
     """Do the same as `ask` on an event loop."""
     return _checked(reply_type, await bus.query(topic, codec.encode(request), timeout_s), limit_bytes)

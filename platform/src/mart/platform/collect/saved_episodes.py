@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from mart.episodes import find_episodes
 from mart.episodes.reader import EpisodeFile
 from mart.protocol.messages import Event
 from mart.protocol.recording import SUFFIX
@@ -68,7 +69,7 @@ class SavedEpisodes:
 
     def __init__(self, data_dir: Path) -> None:
         self._data_dir = data_dir
-        self._before = frozenset(self._paths("*"))
+        self._before = frozenset((data_dir / "episodes").glob(f"*/*{SUFFIX}"))
 
     def find(self, room: str, number: int) -> CollectedEpisode | None:
         """Return episode `number` of `room`; None while it has no file.
@@ -76,13 +77,10 @@ class SavedEpisodes:
         An episode that a restart of the recorder cut has several files; the one that knows the outcome counts.
         Raises Corrupt where a file is no episode.
         """
-        paths = set(self._paths(f"{room}-{number:04}-*")) - self._before
-        episodes = [read_collected(path, self._data_dir) for path in sorted(paths)]
+        found = {one.file_path for one in find_episodes(self._data_dir / "episodes", room, number)}
+        episodes = [read_collected(path, self._data_dir) for path in sorted(found - self._before)]
         ended = [episode for episode in episodes if episode.outcome is not EpisodeOutcome.UNSPECIFIED]
         return next(iter(ended or episodes), None)
-
-    def _paths(self, stem: str) -> Iterator[Path]:
-        return (self._data_dir / "episodes").glob(f"*/{stem}{SUFFIX}")
 
 
 def read_collected(path: Path, data_dir: Path) -> CollectedEpisode:

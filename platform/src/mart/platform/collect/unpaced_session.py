@@ -15,7 +15,8 @@ from mart.platform.collect.saved_episodes import CollectedEpisode, FindEpisode
 from mart.platform.inspect.rooms import statuses_of
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import MartError, Unavailable
-from mart.protocol.messages import EpisodeRequest, Event, RoomReply, raise_error
+from mart.protocol.messages import EpisodeRequest, Event, RoomReply
+from mart.runtime.ask import ask
 from mart.runtime.bus.base import Bus, Sample
 
 _UNSAVED_A_ROOM = 2  # one that is being made, one that is being verified
@@ -88,9 +89,7 @@ class UnpacedSession:
 
     def _ask(self, room: str, number: int) -> None:
         ready = EpisodeRequest.Ready(arm="arm0", ready=True, number=number)
-        payload = codec.encode(EpisodeRequest(ready=ready))
-        reply = self._bus.query(keys.episode(room), payload, _PATIENCE_S)
-        raise_error(codec.decode(RoomReply, reply).error)
+        ask(self._bus, keys.episode(room), EpisodeRequest(ready=ready), RoomReply, _PATIENCE_S)
 
     def _find_all(self) -> Iterator[CollectedEpisode]:
         for number, room in sorted(self._asked.copy().items()):

@@ -8,17 +8,17 @@ from functools import partial
 from typing import TypeVar
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.errors import MartError
 from mart.protocol.messages import EpisodeRequest, Event, RoomReply, SeatRequest, error_message
 from mart.runtime.bus import Bus, Closable, Request, Sample
 from mart.sim.room.room import Room
+from mart.sim.room.save_follower import SaveFollower
 from mart.sim.world import World
 from mart.sim.world.model_message import model_message
 
 R = TypeVar("R", SeatRequest, EpisodeRequest)
 
 MAX_REQUEST_BYTES = 4096
-_MAX_EVENT_BYTES = 64 * 1024
 
 
 class RoomServer:
@@ -47,7 +47,7 @@ class RoomServer:
             for what, shown in ((b"", world), (keys.DETAILED, looks or world))
         }
         self._open: list[Closable] = [
-            bus.subscribe(keys.event(name).key, self._on_event),
+            SaveFollower(bus, name, self._on_saved, garbled),
             bus.serve(keys.seat(name), self._on_seat_request),
             bus.serve(keys.episode(name), self._on_episode_request),
             bus.serve(keys.model(name), self._on_model_request),
@@ -68,14 +68,8 @@ class RoomServer:
         )
         self._submit(hear)
 
-    def _on_event(self, sample: Sample) -> None:
-        try:
-            event = codec.decode(Event, sample.payload, _MAX_EVENT_BYTES)
-        except InvalidInput:
-            self._garbled["event"] += 1
-            return
-        if event.WhichOneof("what") == "episode_saved":
-            self._submit(partial(self._room.episode_saved, event.episode_saved))
+    def _on_saved(self, saved: Event.EpisodeSaved) -> None:
+        self._submit(partial(self._room.episode_saved, saved))
 
     def _on_seat_request(self, request: Request) -> None:
         self._submit(partial(self._answer, request, SeatRequest, self._room.answer_seat))

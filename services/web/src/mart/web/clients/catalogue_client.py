@@ -5,7 +5,7 @@ from __future__ import annotations
 from mart.protocol import keys
 from mart.protocol.messages import CatalogueReply, CatalogueRequest
 from mart.protocol.vocabulary import ServiceKind
-from mart.runtime.ask_async import ask_async
+from mart.runtime.ask import ask_async
 from mart.web.clients.service_client import ServiceClient
 
 _TIMEOUT_S = 20.0  # a folder of many episodes is read when it is first asked for
@@ -26,5 +26,5 @@ class CatalogueClient(ServiceClient):
             request,
             CatalogueReply,
             timeout_s=_TIMEOUT_S,
-            max_reply_bytes=_MAX_REPLY_BYTES,
+            limit_bytes=_MAX_REPLY_BYTES,
         )

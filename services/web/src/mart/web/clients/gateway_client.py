@@ -7,7 +7,7 @@ from mart.protocol.gateway_choice import gateway_of
 from mart.protocol.messages import Answer, Offer, OpenSeat, OpenSeatReply
 from mart.protocol.tokens import SeatToken
 from mart.protocol.vocabulary import ServiceKind
-from mart.runtime.ask_async import ask_async
+from mart.runtime.ask import ask_async
 from mart.runtime.bus.aio import AsyncBus
 from mart.web.lobby.live_services import LiveServices
 

@@ -8,20 +8,15 @@ from collections import defaultdict
 
 from mart.protocol import clock
 from mart.protocol.errors import MartError
-from mart.protocol.messages import CatalogueRequest, Event, RecordedEpisode, outcome_from_word
-from mart.protocol.vocabulary import EpisodeOutcome, Verdict
+from mart.protocol.messages import CatalogueRequest
+from mart.runtime.awaited_saves import AwaitedSave, saved_event
 from mart.web.clients.catalogue_client import CatalogueClient
-from mart.web.lobby.awaited_saves import AwaitedSave
 from mart.web.lobby.lobby import Lobby
 
 _log = logging.getLogger(__name__)
 
 _LOOK_EVERY_S = 1.0
 _LISTED = 64
-_SLACK_S = (
-    60.0  # a file of the same number that ended earlier than this before the episode ran is another one's
-)
-_FOLDER = "episodes"  # an event names a file from the data folder on, the catalogue from this one on
 
 
 class MissedSaves:
@@ -52,25 +47,7 @@ class MissedSaves:
         request = CatalogueRequest(list=CatalogueRequest.List(room=room, count=_LISTED))
         listed = (await self._catalogue.ask(request)).listing.episodes
         for save in saves:
-            found = next((episode for episode in listed if _is_of(save, episode)), None)
-            if found is not None:
+            event = saved_event(save, listed)
+            if event is not None:
                 _log.info("%s: no event told that episode %d is saved", room, save.number)
-                self._lobby.see_event(_saved_event(found), clock.monotonic_s(), clock.wall_ns())
-
-
-def _is_of(save: AwaitedSave, episode: RecordedEpisode) -> bool:
-    ended_ns = episode.started_ns + (episode.simulated_s + _SLACK_S) * 1e9
-    return (episode.room, episode.number) == (save.room, save.number) and ended_ns >= save.seen_ns
-
-
-def _saved_event(episode: RecordedEpisode) -> Event:
-    saved = Event.EpisodeSaved(
-        number=episode.number,
-        path=f"{_FOLDER}/{episode.path}",
-        verified=episode.verdict == Verdict.VERIFIED,
-        verdict=episode.verdict,
-        size_bytes=episode.size_bytes,
-    )
-    if episode.outcome != EpisodeOutcome.UNSPECIFIED:
-        saved.outcome = outcome_from_word(episode.outcome)
-    return Event(room=episode.room, episode_saved=saved)
+                self._lobby.see_event(event, clock.monotonic_s(), clock.wall_ns())

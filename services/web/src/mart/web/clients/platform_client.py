@@ -5,7 +5,7 @@ from __future__ import annotations
 from mart.protocol import keys
 from mart.protocol.messages import RoomReply, RoomsRequest
 from mart.protocol.vocabulary import ServiceKind
-from mart.runtime.ask_async import ask_async
+from mart.runtime.ask import ask_async
 from mart.web.clients.service_client import ServiceClient
 
 _TIMEOUT_S = 45.0  # a sim that is stopped may take its time

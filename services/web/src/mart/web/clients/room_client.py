@@ -12,7 +12,7 @@ from mart.protocol.messages import (
     Seat,
     SeatRequest,
 )
-from mart.runtime.ask_async import ask_async
+from mart.runtime.ask import ask_async
 from mart.runtime.bus.aio import AsyncBus
 from mart.web.access.user_sessions import User
 from mart.web.lobby.lobby import Lobby

@@ -5,7 +5,7 @@ from __future__ import annotations
 from mart.protocol import keys
 from mart.protocol.messages import TrainerReply, TrainerRequest
 from mart.protocol.vocabulary import ServiceKind
-from mart.runtime.ask_async import ask_async
+from mart.runtime.ask import ask_async
 from mart.web.clients.service_client import ServiceClient
 
 _TIMEOUT_S = 10.0
@@ -26,5 +26,5 @@ class TrainerClient(ServiceClient):
             request,
             TrainerReply,
             timeout_s=_TIMEOUT_S,
-            max_reply_bytes=_MAX_REPLY_BYTES,
+            limit_bytes=_MAX_REPLY_BYTES,
         )

@@ -6,7 +6,7 @@ from mart.protocol import keys
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Event, RoomStatus
 from mart.protocol.vocabulary import ServiceKind
-from mart.web.lobby.awaited_saves import AwaitedSaves
+from mart.runtime.awaited_saves import AwaitedSaves
 from mart.web.lobby.listeners import LobbyListeners
 from mart.web.lobby.live_services import LiveServices, service_of
 from mart.web.lobby.room_json import Json, event_json, status_json

@@ -199,7 +199,7 @@ def promote(job: str, name: str, checkpoint: str, trainer: str, as_json: bool) -
 
 def _ask(trainer: str, request: TrainerRequest) -> TrainerReply:
     """Ask the trainer. Raises what it answers, and Unavailable where none does."""
-    from mart.protocol import keys
+    from mart.protocol import codec, keys
     from mart.protocol.errors import Unavailable
     from mart.protocol.messages import TrainerReply
     from mart.runtime.ask import ask
@@ -209,7 +209,14 @@ def _ask(trainer: str, request: TrainerRequest) -> TrainerReply:
     with ZenohBus.connect(Settings().router, wait_for_router=False) as bus:
         if not bus.alive(keys.alive(ServiceKind.TRAINER, trainer)):
             raise Unavailable(f"No trainer {trainer!r} is up; start it with `mart trainer --name {trainer}`.")
-        return ask(bus, keys.training(trainer), request, TrainerReply, _ASK_TIMEOUT_S)
+        return ask(
+            bus,
+            keys.training(trainer),
+            request,
+            TrainerReply,
+            _ASK_TIMEOUT_S,
+            limit_bytes=codec.MAX_MESSAGE_BYTES,
+        )
 
 
 def _print_jobs(reply: TrainerReply, *, as_json: bool) -> None:

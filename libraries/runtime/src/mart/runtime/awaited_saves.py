@@ -3,15 +3,28 @@
 from __future__ import annotations
 
 from collections import OrderedDict, deque
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from mart.protocol.messages import EPISODE_PHASE_ENDED, EPISODE_PHASE_RECORDING, RoomStatus
+from mart.protocol.messages import (
+    EPISODE_PHASE_ENDED,
+    EPISODE_PHASE_RECORDING,
+    Event,
+    RecordedEpisode,
+    RoomStatus,
+    outcome_from_word,
+)
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 
 ASKED_AFTER_S = 5.0  # most files are verified within this
 ASKED_EVERY_S = 5.0
 GIVEN_UP_AFTER_S = 300.0
 _MAX_AWAITED = 64
+_SLACK_S = (
+    60.0  # a file of the same number that ended earlier than this before the episode ran is another one's
+)
+_FOLDER = "episodes"  # an event names a file from the data folder on, the catalogue from this one on
 _MAX_REMEMBERED = 256
 
 
@@ -77,6 +90,28 @@ class AwaitedSaves:
             return
         self._waits.setdefault((save.room, save.number), _Wait(save, now_s, now_s + ASKED_AFTER_S))
         _bound(self._waits, _MAX_AWAITED)
+
+
+def saved_event(save: AwaitedSave, listed: Iterable[RecordedEpisode]) -> Event | None:
+    """Return the event that tells of an awaited file, made from what the catalogue lists; None while it is missing."""
+    for episode in listed:
+        if _is_of(save, episode):
+            saved = Event.EpisodeSaved(
+                number=episode.number,
+                path=f"{_FOLDER}/{episode.path}",
+                verified=episode.verdict == Verdict.VERIFIED,
+                verdict=episode.verdict,
+                size_bytes=episode.size_bytes,
+            )
+            if episode.outcome != EpisodeOutcome.UNSPECIFIED:
+                saved.outcome = outcome_from_word(episode.outcome)
+            return Event(room=episode.room, episode_saved=saved)
+    return None
+
+
+def _is_of(save: AwaitedSave, episode: RecordedEpisode) -> bool:
+    ended_ns = episode.started_ns + (episode.simulated_s + _SLACK_S) * 1e9
+    return (episode.room, episode.number) == (save.room, save.number) and ended_ns >= save.seen_ns
 
 
 def _bound(ordered: OrderedDict[Any, Any], most: int) -> None:

@@ -7,7 +7,7 @@ from mart.protocol.messages import (
     EpisodePhase,
     RoomStatus,
 )
-from mart.web.lobby.awaited_saves import ASKED_AFTER_S, ASKED_EVERY_S, GIVEN_UP_AFTER_S, AwaitedSaves
+from mart.runtime.awaited_saves import ASKED_AFTER_S, ASKED_EVERY_S, GIVEN_UP_AFTER_S, AwaitedSaves
 
 
 def seen(saves: AwaitedSaves, phase: EpisodePhase, number: int, now_s: float, room: str = "room-1") -> None:
