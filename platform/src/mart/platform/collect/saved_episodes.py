@@ -9,6 +9,7 @@ from typing import Any
 
 from mart.episodes import find_episodes
 from mart.episodes.reader import EpisodeFile
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.messages import Event
 from mart.protocol.recording import SUFFIX
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
@@ -95,7 +96,7 @@ def read_collected(path: Path, data_dir: Path) -> CollectedEpisode:
         outcome=EpisodeOutcome(episode.outcome),
         reason=episode.reason,
         ticks=episode.ticks,
-        simulated_s=cadence.sim_s,
+        simulated_s=episode.ticks / (episode.control_hz or DEFAULT_CONTROL_HZ),
         real_time_factor=cadence.real_time_factor,
         verdict=file.verification.verdict,
         latencies=tuple(

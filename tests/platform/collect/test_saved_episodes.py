@@ -1,0 +1,58 @@
+"""Episodes of a collection are found by their files: the new ones, by room and number."""
+
+from __future__ import annotations
+
+import shutil
+import tarfile
+from pathlib import Path
+
+import pytest
+
+from mart.episodes.reader import EpisodeFile
+from mart.platform.collect.saved_episodes import SavedEpisodes
+from mart.protocol.errors import Corrupt
+from mart.protocol.vocabulary import EpisodeOutcome
+
+FIXTURES = Path(__file__).parents[2] / "fixtures" / "episodes_0_1_0" / "episodes.tar.xz"
+
+
+@pytest.fixture
+def recorded(tmp_path: Path) -> Path:
+    """One recorded file, not yet in the data folder."""
+    with tarfile.open(FIXTURES) as archive:
+        archive.extractall(tmp_path / "unpacked", filter="data")
+    return next((tmp_path / "unpacked").rglob("*lockstep*.mcap"))
+
+
+def put(recorded: Path, data_dir: Path, name: str) -> Path:
+    path = data_dir / "episodes" / "2026-01-01" / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(recorded, path)
+    return path
+
+
+def test_an_episode_is_found_when_its_file_is_there(recorded: Path, tmp_path: Path) -> None:
+    written = EpisodeFile.open(recorded).episode
+    saved = SavedEpisodes(tmp_path)
+    assert saved.find(written.room, written.number) is None
+    put(recorded, tmp_path, f"{written.room}-{written.number:04}-cubes.mcap")
+    episode = saved.find(written.room, written.number)
+    assert episode is not None
+    assert (episode.number, episode.ticks, episode.verified) == (written.number, written.ticks, True)
+    assert episode.outcome is EpisodeOutcome(written.outcome)
+    assert saved.find(written.room, written.number + 1) is None
+
+
+def test_what_was_there_before_does_not_count(recorded: Path, tmp_path: Path) -> None:
+    written = EpisodeFile.open(recorded).episode
+    put(recorded, tmp_path, f"{written.room}-{written.number:04}-cubes.mcap")
+    assert SavedEpisodes(tmp_path).find(written.room, written.number) is None
+
+
+def test_a_file_that_is_no_episode_is_not_mistaken_for_one(recorded: Path, tmp_path: Path) -> None:
+    saved = SavedEpisodes(tmp_path)
+    put(recorded, tmp_path, "room-1-0099-cubes.mcap").write_bytes(b"no episode")
+    try:
+        assert saved.find("room-1", 99) is None
+    except Corrupt:
+        pytest.fail("a foreign file stands in the way of the collection")
