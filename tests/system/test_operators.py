@@ -10,14 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from mart.operators import Operator, SeatView, ToolTarget, drive_seats
+from mart.operators import Operator, OperatorKind, SeatView, ToolTarget, drive_seats
 from mart.protocol.errors import Conflict, InvalidInput, NotFound, Unavailable
 from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, OPERATOR_SCRIPT
 from tests.support.processes import running_router, running_service
 from tests.system.room_client import RoomClient
 
 ROOM = "room-1"
-EXAMPLE = Path(__file__).parents[2] / "examples" / "06_operator_of_your_own.py"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +68,7 @@ def goes_on(client: RoomClient) -> bool:
 
 def test_the_example_succeeds_beside_a_script(endpoint: str) -> None:
     done = subprocess.run(
-        [sys.executable, EXAMPLE, ROOM],
+        [sys.executable, EXAMPLES / "06_operator_of_your_own.py", ROOM],
         env={"MART_ROUTER": endpoint},
         capture_output=True,
         text=True,
@@ -77,6 +77,32 @@ def test_the_example_succeeds_beside_a_script(endpoint: str) -> None:
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert "success" in done.stdout
+
+
+def test_the_example_of_an_input_device_drives_as_a_person(endpoint: str, client: RoomClient) -> None:
+    client.assign("arm0", OPERATOR_SCRIPT)
+    with subprocess.Popen(
+        [sys.executable, EXAMPLES / "07_input_device.py", "arm1"],
+        env={"MART_ROUTER": endpoint},
+        stdin=subprocess.PIPE,
+        text=True,
+    ) as device:
+        assert device.stdin is not None
+        before = client.states.wait_for(lambda state: state.arms[1].source == OPERATOR_HUMAN).arms[1]
+        device.stdin.write("rrrrr")
+        device.stdin.flush()
+        client.states.wait_for(
+            lambda state: state.arms[1].tool_in_base.z > before.tool_in_base.z + 0.02, timeout_s=30.0
+        )
+        device.stdin.write("q")
+        device.stdin.close()
+        assert device.wait(30.0) == 0
+    client.statuses.wait_for(lambda status: status.seats[1].operator == OPERATOR_HOLD)
+
+
+def test_a_program_is_no_script(endpoint: str) -> None:
+    with pytest.raises(InvalidInput):
+        drive_seats(Failing(), ROOM, ["arm1"], kind=OperatorKind.SCRIPT, router=endpoint)
 
 
 @pytest.mark.parametrize(

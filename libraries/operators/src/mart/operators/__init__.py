@@ -10,5 +10,14 @@
 from mart.operators.client import drive_seats
 from mart.operators.operator import Operator, SeatView, ToolTarget, target_from_action
 from mart.operators.room_client import RoomClient
+from mart.protocol.vocabulary import OperatorKind
 
-__all__ = ["Operator", "RoomClient", "SeatView", "ToolTarget", "drive_seats", "target_from_action"]
+__all__ = [
+    "Operator",
+    "OperatorKind",
+    "RoomClient",
+    "SeatView",
+    "ToolTarget",
+    "drive_seats",
+    "target_from_action",
+]

@@ -7,11 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from mart.operators.room_client import RoomClient
 from mart.protocol.errors import MartError
-from mart.protocol.messages import RoomStatus, Seat
+from mart.protocol.messages import OPERATOR_POLICY, Operator, RoomStatus, Seat
 
 
 @contextlib.contextmanager
-def claimed_seats(room: RoomClient, arms: Sequence[str], holder_id: str, name: str) -> Iterator[ClaimedSeats]:
+def claimed_seats(
+    room: RoomClient, arms: Sequence[str], holder_id: str, name: str, operator: Operator = OPERATOR_POLICY
+) -> Iterator[ClaimedSeats]:
     """Hold these seats for the length of the block; all are left at its end, also one that a person has just now.
 
     Raises Conflict where somebody else sits there, NotFound for an unknown arm, Unavailable where there is no such
@@ -20,7 +22,7 @@ def claimed_seats(room: RoomClient, arms: Sequence[str], holder_id: str, name: s
     with contextlib.ExitStack() as stack:
         seats = []
         for arm in arms:
-            seats.append(room.claim(arm, holder_id, name))
+            seats.append(room.claim(arm, holder_id, name, operator))
             stack.callback(_leave, room, arm, holder_id)
         yield ClaimedSeats(holder_id, seats)
 

@@ -15,10 +15,11 @@ from mart.operators.operator import Operator
 from mart.operators.room_client import RoomClient
 from mart.operators.time_limit import TimeLimitedOperator
 from mart.protocol import clock
-from mart.protocol.errors import Conflict, Unavailable
-from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_POLICY, OPERATOR_SCRIPT, RoomStatus
+from mart.protocol.errors import Conflict, InvalidInput, Unavailable
+from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_SCRIPT, RoomStatus, operator_from_word
+from mart.protocol.messages import Operator as OperatorOnWire
 from mart.protocol.tasks import get_task
-from mart.protocol.vocabulary import EpisodeOutcome, ServiceKind
+from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind, ServiceKind
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.service import Service, announced, stop_requested
 from mart.runtime.settings import Settings
@@ -33,6 +34,7 @@ def drive_seats(
     arms: Sequence[str] = ("arm0",),
     *,
     name: str = "operator",
+    kind: OperatorKind = OperatorKind.POLICY,
     episodes: int | None = None,
     fill_with_scripts: bool = False,
     time_limit_s: float = 2.0,
@@ -41,15 +43,17 @@ def drive_seats(
 ) -> list[EpisodeOutcome]:
     """Take the seats of `arms` in `room` and let `operator` drive them, beside people, scripts and policies.
 
-    `name` is what others see. People may take over and hand back. With `episodes`, the operator says that it is ready
-    whenever the room practises, and the call returns the outcomes of that many; without, it drives until Ctrl-C, or
-    until `stop` is set, and returns the outcomes of what was recorded meanwhile. `fill_with_scripts` gives seats that
-    nobody holds to scripted experts. `router` is where the platform's router listens; None: MART_ROUTER, or this
-    machine.
+    `name` is what others see. `kind` is who drives: a policy, or a human whose input device the operator reads; files
+    and partners are told so. People may take over from a policy and hand back. With `episodes`, the operator says that
+    it is ready whenever the room practises, and the call returns the outcomes of that many; without, it drives until
+    Ctrl-C, or until `stop` is set, and returns the outcomes of what was recorded meanwhile. `fill_with_scripts` gives
+    seats that nobody holds to scripted experts. `router` is where the platform's router listens; None: MART_ROUTER, or
+    this machine.
 
-    Raises Conflict where somebody else sits there or the last seat was given to another; NotFound for an unknown arm;
+    Raises InvalidInput for another kind than policy and human, or where the operator fails or says what is no target;
+    Conflict where somebody else sits there or the last seat was given to another; NotFound for an unknown arm;
     Unavailable where room or router cannot be reached, or where the operator takes longer than `time_limit_s` seconds
-    for one tick; InvalidInput where it fails or says what is no target. The seats are left in every case.
+    for one tick. The seats are left in every case.
 
     >>> drive_seats(Riser(), arms=["arm1"], episodes=1)  # doctest: +SKIP
     [<EpisodeOutcome.SUCCESS: 'success'>]
@@ -60,8 +64,10 @@ def drive_seats(
         bus = stack.enter_context(ZenohBus.connect(router or Settings().router))
         stack.enter_context(announced(Service(ServiceKind.OPERATE, holder_id, bus, stop)))
         client = RoomClient(bus, room)
-        seats = stack.enter_context(claimed_seats(client, arms, holder_id, name))
-        selection = ProgramSeats(seats, name, _maker(TimeLimitedOperator(operator, time_limit_s), arms))
+        source = _source(kind)
+        seats = stack.enter_context(claimed_seats(client, arms, holder_id, name, source))
+        limited = TimeLimitedOperator(operator, time_limit_s)
+        selection = ProgramSeats(seats, name, _maker(limited, arms, source))
         session = _Session(client, arms[0], holder_id, episodes, fill_with_scripts)
         drive_claimed(SeatDriver(bus, room, selection), seats, room, stop, session.follow)
         return session.outcomes
@@ -151,9 +157,17 @@ class _Session:
                 self._client.ready(self._arm, self._holder_id)
 
 
-def _maker(operator: Operator, arms: Sequence[str]) -> Callable[[RoomStatus], Sequence[SeatCommander]]:
+def _source(kind: OperatorKind) -> OperatorOnWire:
+    if kind not in (OperatorKind.POLICY, OperatorKind.HUMAN):
+        raise InvalidInput(f"A program was to drive as {kind}; it may drive as policy or human.")
+    return operator_from_word(kind)
+
+
+def _maker(
+    operator: Operator, arms: Sequence[str], source: OperatorOnWire
+) -> Callable[[RoomStatus], Sequence[SeatCommander]]:
     def make(status: RoomStatus) -> Sequence[SeatCommander]:
         task = get_task(status.task, len(status.seats))
-        return [SeatCommander(operator, task, arms, OPERATOR_POLICY)]
+        return [SeatCommander(operator, task, arms, source)]
 
     return make
