@@ -85,7 +85,7 @@ def _shots(page: Page, is_over: Callable[[Page], bool]) -> Iterator[Shot]:
     """Yield what the browser shows, as often as it is wanted, until `is_over`; raises SystemExit where it never is."""
     session = page.context.new_cdp_session(page)
     arrived: list[dict[str, Any]] = []
-    session.on("Page.screencastFrame", arrived.append)
+    session.on("Page.screencastFrame", lambda shot: arrived.append(shot))
     session.send("Page.startScreencast", {"format": "png", "everyNthFrame": 1})
     deadline_s = clock.monotonic_s() + _TIMEOUT_S
     while not is_over(page):
