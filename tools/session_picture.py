@@ -85,7 +85,11 @@ def _shots(page: Page, is_over: Callable[[Page], bool]) -> Iterator[Shot]:
     """Yield what the browser shows, as often as it is wanted, until `is_over`; raises SystemExit where it never is."""
     session = page.context.new_cdp_session(page)
     arrived: list[dict[str, Any]] = []
-    session.on("Page.screencastFrame", lambda shot: arrived.append(shot))
+
+    def arrive(shot: dict[str, Any]) -> None:
+        arrived.append(shot)
+
+    session.on("Page.screencastFrame", arrive)
     session.send("Page.startScreencast", {"format": "png", "everyNthFrame": 1})
     deadline_s = clock.monotonic_s() + _TIMEOUT_S
     while not is_over(page):
