@@ -122,6 +122,10 @@ page-facts: $(VENV)/.tools ## Write what the pages know from the Python parts: l
 operator-picture: $(VENV)/.tools ## Take the picture of the operator's page anew, in a real browser
 	@$(BIN)/python tools/operator_picture.py
 
+.PHONY: session-picture
+session-picture: $(VENV)/.tools ## Take the README's moving picture anew: one episode, in a real browser
+	@$(BIN)/python tools/session_picture.py
+
 .PHONY: constraints
 constraints: ## Pin the newest versions of everything anew, from a real installation
 	@tools/pin $(PYTHON) $(PARTS)
@@ -133,7 +137,7 @@ clean: ## Remove everything that was built or recorded by tests; recorded episod
 
 .PHONY: help
 help: ## List the verbs
-	@awk -F ':.*## ' '/^##@/ { printf "\n%s\n", substr($$0, 5) } /^[a-z%-]+:.*## / { sub("%", "NAME", $$1); printf "  make %-13s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^##@/ { printf "\n%s\n", substr($$0, 5) } /^[a-z%-]+:.*## / { sub("%", "NAME", $$1); printf "  make %-16s %s\n", $$1, $$2 }' Makefile
 
 # What the verbs above stand on. A stamp is newer than all that it was made from, or it is made again.
 

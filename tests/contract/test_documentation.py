@@ -6,6 +6,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tarfile
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -21,6 +22,7 @@ _CONSOLE = re.compile(r"^```console\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _SPAN = re.compile(r"`((?:make|mart) [^`]+)`")
 _PYTHON = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"\]\((?!https?:|#)([^)#]+)")
+_EPISODES = ROOT / "tests" / "fixtures" / "episodes_0_1_0" / "episodes.tar.xz"
 _HEADING_OR_PLACEHOLDER = re.compile(r"…|[\[\]|{}<>]")
 
 
@@ -82,12 +84,21 @@ def test_the_readme_or_the_guides_name_every_verb_of_users() -> None:
 _RUNNABLE = [(path, block) for path in _DOCUMENTS for block in _PYTHON.findall(path.read_text())]
 
 
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which people have recorded: its `data/episodes` holds three."""
+    folder = tmp_path_factory.mktemp("recorded")
+    with tarfile.open(_EPISODES) as archive:
+        archive.extractall(folder / "data" / "episodes", filter="data")
+    return folder
+
+
 @pytest.mark.parametrize(
     ("path", "block"), _RUNNABLE, ids=lambda value: relative(value) if isinstance(value, Path) else ""
 )
-def test_python_examples_run(path: Path, block: str, tmp_path: Path) -> None:
+def test_python_examples_run(path: Path, block: str, recorded: Path) -> None:
     """Each `python` block by itself; a block that is a file of something larger says so: `python file=…`."""
-    subprocess.run([sys.executable, "-W", "error", "-c", block], cwd=tmp_path, check=True)
+    subprocess.run([sys.executable, "-W", "error", "-c", block], cwd=recorded, check=True)
 
 
 def test_links_lead_somewhere() -> None:

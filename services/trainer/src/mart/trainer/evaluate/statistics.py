@@ -40,7 +40,7 @@ class Rate:
 
 @dataclass(frozen=True)
 class Spread:
-    """Mean and population standard deviation (ddof 0): what the paper's ± is, see docs/how-to-judge-policies.md."""
+    """Mean and population standard deviation (ddof 0): what the paper's ± is, see docs/how-to-evaluate-policies.md."""
 
     mean: float
     deviation: float

@@ -4,7 +4,7 @@
 Fei-Fei and Savarese, ICRA 2021, arXiv:2012.06738.
 
 Its ± are population standard deviations over five seeds of the best checkpoint's success rate, 30 rollouts each, as far
-as the printed digits tell: see docs/how-to-judge-policies.md.
+as the printed digits tell: see docs/how-to-evaluate-policies.md.
 """
 
 from __future__ import annotations
