@@ -95,6 +95,10 @@ dist: $(VENV)/.build ## Build a wheel of every part into dist, and see that each
 	@rm -rf $(addsuffix /build,$(PARTS))
 	@$(BIN)/python tools/check_wheels.py dist
 
+.PHONY: try-dist
+try-dist: dist ## Install the wheels into a clean environment and use them there as a stranger would
+	@tools/try-wheels dist
+
 .PHONY: proto
 proto: $(VENV)/.tools ## Generate the Python code of the protobuf schemas
 	@$(call PROTOC,protocol/src)
