@@ -1,4 +1,4 @@
-"""The README's moving picture is small, moves for as long as an episode, and is taken evenly: `make session-picture`."""
+"""The moving picture of the README is small, moves for as long as an episode, and is taken evenly."""
 
 from __future__ import annotations
 
