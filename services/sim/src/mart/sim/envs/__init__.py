@@ -6,18 +6,11 @@ Importing this registers every task with Gymnasium: `gymnasium.make("mart/TwoArm
 
 from __future__ import annotations
 
-from mart.protocol.errors import Unavailable
+import gymnasium
+
 from mart.protocol.tasks import task_names
-
-try:
-    import gymnasium
-
-    from mart.sim.envs.joint import JointEnv
-    from mart.sim.envs.parallel import ArmsEnv
-except ImportError as error:
-    raise Unavailable(
-        f"The environments need what this installation lacks ({error}): pip install 'mart-sim[envs]'."
-    ) from error
+from mart.sim.envs.joint import JointEnv
+from mart.sim.envs.parallel import ArmsEnv
 
 __all__ = ["ArmsEnv", "JointEnv", "gymnasium_id"]
 
