@@ -12,7 +12,7 @@ import threading
 from collections.abc import Iterator, Sequence
 
 from mart.platform.collect.saved_episodes import CollectedEpisode, FindEpisode
-from mart.platform.inspect.rooms import statuses_of
+from mart.platform.run.room_statuses import statuses_of
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import EpisodeRequest, Event, RoomReply
