@@ -12,7 +12,7 @@ def test_the_picture_is_small_and_moves() -> None:
     with Image.open(session_picture.PICTURE) as picture:
         assert picture.size == session_picture.SIZE_PX
         frames = [frame.info["duration"] for frame in ImageSequence.Iterator(picture)]
-    assert len(frames) > 40
+    assert len(frames) > 20  # frames that show the same are one
     assert 6_000 < sum(frames) < 20_000
 
 
