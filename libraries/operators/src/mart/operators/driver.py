@@ -79,7 +79,7 @@ class _DrivenSeats:
 
 
 class SeatDriver(Generic[K]):
-    """Drive every seat that an selection names. What cannot drive is told to the room, and its seats are given up."""
+    """Drive every seat that a selection names. What cannot drive is told to the room, and its seats are given up."""
 
     def __init__(self, bus: Bus, room: str | None, selection: SeatSelection[K]) -> None:
         """Watch `room` alone; None: every room."""
