@@ -2,11 +2,8 @@ from __future__ import annotations
 
 import pytest
 
-from mart.platform.inspect.rooms import (
-    as_json,
-    in_words,
-    open_rooms,
-)
+from mart.platform.inspect.rooms import as_json, in_words
+from mart.platform.run.room_statuses import open_rooms
 from mart.protocol import keys
 from mart.protocol import messages as m
 from mart.protocol.codec import encode

@@ -164,11 +164,12 @@ def collect(
 def rooms(as_json: bool) -> None:
     """Show what is open, who sits where, the real-time factor, and who is being waited for."""
     from mart.platform.inspect import rooms as view
+    from mart.platform.run.room_statuses import open_rooms
     from mart.runtime.bus.zenoh_bus import ZenohBus
     from mart.runtime.settings import Settings
 
     with ZenohBus.connect(Settings().router, wait_for_router=False) as bus:
-        found = view.open_rooms(bus)
+        found = open_rooms(bus)
     text = "\n".join(map(view.in_words, found)) or "No room is open. `make run` opens one."
     print_result({"rooms": [view.as_json(status) for status in found]}, text, as_json)
 

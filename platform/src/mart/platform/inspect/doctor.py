@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from mart.platform.collect.browser import chromium_path
-from mart.platform.inspect.rooms import open_rooms
+from mart.platform.run.room_statuses import open_rooms
 from mart.protocol import keys
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import barrier_word
