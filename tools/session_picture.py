@@ -9,8 +9,9 @@ import base64
 import contextlib
 import io
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -31,10 +32,12 @@ SIZE_PX = (720, 450)
 RATE_HZ = 8.0
 MAX_BYTES = 3_000_000
 
-_PAGE_PX = {"width": 960, "height": 600}
-_QUALITY = 72  # of WebP, 0 to 100
+_PAGE_PX = {"width": 1120, "height": 700}
+_QUALITY = 84  # of WebP, 0 to 100
+_SAVED_S = 1.0  # for which the page is shown after it has told that the episode is saved
 _LAST_STAYS_S = 1.5  # before it begins again
 _TIMEOUT_S = 90.0
+_LOOK_EVERY_MS = 30
 
 Shot = tuple[float, Image.Image]  # seconds of the browser's clock, and what was shown then
 
@@ -52,9 +55,10 @@ def take_picture() -> None:
         people = stack.enter_context(EmulatedUsers(platform, skill="expert", seed=5).seated(arms))
         page = open_operator_page(browser, people[0].web_client, platform.url, options.room, arms[0])
         page.set_viewport_size(_PAGE_PX)  # type: ignore[arg-type]
+        _await_partners(page)
         for person in people:
             person.web_client.act(options.room, person.arm, "ready")
-        shots = list(_shots(page, _is_saved))
+        shots = sorted(_shots(page), key=itemgetter(0))
         page.context.close()
     write(list(evenly(shots, RATE_HZ)), PICTURE)
 
@@ -81,8 +85,22 @@ def write(frames: Sequence[Image.Image], path: Path) -> None:
         raise SystemExit(f"{path} has {path.stat().st_size} bytes; at most {MAX_BYTES} are wanted.")
 
 
-def _shots(page: Page, is_over: Callable[[Page], bool]) -> Iterator[Shot]:
-    """Yield what the browser shows, as often as it is wanted, until `is_over`; raises SystemExit where it never is."""
+def _await_partners(page: Page) -> None:
+    """Return when nobody has been waited for during a second."""
+    page.wait_for_function(
+        """() => {
+            if (!document.querySelector("#waiting").hidden) window.lateAt = performance.now();
+            return performance.now() - (window.lateAt ??= performance.now()) > 1000;
+        }""",
+        timeout=1000 * _TIMEOUT_S,
+    )
+
+
+def _shots(page: Page) -> Iterator[Shot]:
+    """Yield what the browser shows, as often as it is wanted, until the episode is saved and a moment longer.
+
+    Raises SystemExit where no episode is saved in time.
+    """
     session = page.context.new_cdp_session(page)
     arrived: list[dict[str, Any]] = []
 
@@ -90,20 +108,20 @@ def _shots(page: Page, is_over: Callable[[Page], bool]) -> Iterator[Shot]:
         arrived.append(shot)
 
     session.on("Page.screencastFrame", arrive)
-    session.send("Page.startScreencast", {"format": "png", "everyNthFrame": 1})
-    deadline_s = clock.monotonic_s() + _TIMEOUT_S
-    while not is_over(page):
-        if clock.monotonic_s() > deadline_s:
-            raise SystemExit(f"No episode was saved within {_TIMEOUT_S:g} s.")
-        page.wait_for_timeout(1000 / RATE_HZ / 2)
+    session.send("Page.startScreencast", {"format": "jpeg", "quality": 95})
+    until_s, saved = clock.monotonic_s() + _TIMEOUT_S, False
+    while clock.monotonic_s() < until_s:
+        if not saved and _is_saved(page):
+            until_s, saved = clock.monotonic_s() + _SAVED_S, True
+        page.wait_for_timeout(_LOOK_EVERY_MS)
         for shot in arrived:
-            yield (
-                float(shot["metadata"]["timestamp"]),
-                Image.open(io.BytesIO(base64.b64decode(shot["data"]))).convert("RGB"),
-            )
+            picture = Image.open(io.BytesIO(base64.b64decode(shot["data"])))
+            yield float(shot["metadata"]["timestamp"]), picture.convert("RGB")
             session.send("Page.screencastFrameAck", {"sessionId": shot["sessionId"]})
         arrived.clear()
     session.send("Page.stopScreencast")
+    if not saved:
+        raise SystemExit(f"No episode was saved within {_TIMEOUT_S:g} s.")
 
 
 def _is_saved(page: Page) -> bool:

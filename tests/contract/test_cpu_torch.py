@@ -42,12 +42,8 @@ class Machine:
             "UV_FAILS_AT": "never",
             **environment,
         }
-        words = [
-            ROOT / "tools" / "cpu-torch",
-            *options,
-            self.folder / "python",
-            self.folder / "constraints.txt",
-        ]
+        files = (self.folder / "python", self.folder / "constraints.txt")
+        words = [str(ROOT / "tools" / "cpu-torch"), *options, *map(str, files)]
         done = subprocess.run(words, env=settings, capture_output=True, text=True, check=True)
         return [line for line in record.read_text().splitlines() if " install " in line], done.stderr
 

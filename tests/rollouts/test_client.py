@@ -14,12 +14,14 @@ import pytest
 from mart.protocol import codec, keys
 from mart.protocol.batch_state import BatchState, pack
 from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound, Unavailable
-from mart.protocol.messages import RolloutReply, RolloutRequest, error_message
+from mart.protocol.messages import Model, RolloutReply, RolloutRequest, error_message
 from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import ServiceKind
 from mart.rollouts.client import RolloutClient
 from mart.runtime.bus import Bus, Request
+from mart.runtime.bus.memory import MemoryNetwork
 from mart.runtime.bus.zenoh_bus import ZenohBus
+from tests.support.deaf_bus import DeafBus
 
 TASK = get_task("two_arm_multi_cube_lifting")
 WAIT_S = 30.0
@@ -149,6 +151,16 @@ def test_without_replicas_nothing_is_reset(endpoint: str, bus: Bus) -> None:
         pytest.raises(Unavailable, match=r"'a' is up \(up: b\)"),
     ):
         client.reset(TASK.name, [1, 2])
+
+
+def test_a_replica_whose_coming_was_not_heard_is_found() -> None:
+    network = MemoryNetwork()
+    replica = network.connect()
+    replica.announce(keys.alive(ServiceKind.REPLICA, "a"))
+    described = codec.encode(RolloutReply(model=Model(task=TASK.name)))
+    replica.serve(keys.rollout("a"), lambda request: request.reply(described))
+    with RolloutClient(DeafBus(network), ["a"]) as client:
+        assert client.model(TASK.name).task == TASK.name
 
 
 def test_what_a_replica_forgot_is_gone_everywhere(endpoint: str, bus: Bus) -> None:

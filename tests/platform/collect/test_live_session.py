@@ -16,7 +16,7 @@ from mart.platform.collect.web_client import WebClient
 from mart.protocol import keys
 from mart.protocol import messages as m
 from mart.protocol.codec import encode
-from mart.protocol.errors import Unavailable
+from mart.protocol.errors import Conflict, Unavailable
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.runtime.bus.memory import MemoryNetwork
 
@@ -45,9 +45,9 @@ class Acted:
         self._status = self.bus.publisher(keys.status("room-1"))
         self._events = self.bus.publisher(keys.event("room-1"))
 
-    def say(self, phase: m.EpisodePhase, number: int, ticks: int = 0) -> None:
+    def say(self, phase: m.EpisodePhase, number: int, ticks: int = 0, seats: Sequence[m.Seat] = ()) -> None:
         episode = m.Episode(phase=phase, number=number, ticks=ticks)
-        self._status.put(encode(m.RoomStatus(room="room-1", episode=episode)))
+        self._status.put(encode(m.RoomStatus(room="room-1", episode=episode, seats=seats)))
 
     def tell(self, event: m.Event) -> None:
         self._events.put(encode(event))
@@ -115,6 +115,32 @@ def test_the_stages_of_the_seats_delays_come_from_their_reports() -> None:
     assert list(line["motion_to_photon"]) == ["arm0", "arm1"]
     assert line["motion_to_photon"]["arm1"]["stages_p50_ms"] == {"render": 9.0}
     assert (line["outcome"], line["verified"], line["real_time_factor"]) == ("success", True, 0.99)
+
+
+def test_readiness_that_a_room_has_forgotten_is_said_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mart.platform.collect.live_session._READY_AGAIN_S", 0.01)
+    acted = Acted()
+
+    class Person:
+        """The room forgets what is said first, and has gone on when it is said again."""
+
+        said = 0
+
+        def act(self, _room: str, _arm: str, _what: str) -> None:
+            self.said += 1
+            if self.said == 1:
+                acted.say(m.EPISODE_PHASE_PRACTICE, 3, seats=[m.Seat(arm="arm0"), m.Seat(arm="arm1")])
+            else:
+                acted.files[4] = EPISODE
+                acted.say(m.EPISODE_PHASE_PRACTICE, 4, seats=[m.Seat(arm="arm0")])
+                raise Conflict("It counts in practice only.")
+
+    with acted.session() as session:
+        acted.say(m.EPISODE_PHASE_PRACTICE, 3)
+        person = Person()
+        ana = EmulatedUser("arm0", "Ana", cast("WebClient", person))
+        assert session.run_episode([ana]) == EPISODE
+        assert person.said == 2
 
 
 def test_a_room_that_does_not_start_is_an_error_in_words(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
 
 import pytest
 
@@ -113,26 +114,33 @@ def rooms(bus: Bus, arrivals: threading.Semaphore) -> Iterator[dict[str, ActedRo
         }
 
 
-def session_of(bus: Bus, rooms: dict[str, ActedRoom], episodes: int) -> UnpacedSession:
-    return UnpacedSession(bus, ROOMS, episodes, lambda room, number: rooms[room].files.get(number))
+def session_of(bus: Bus, rooms: dict[str, ActedRoom], episodes: int, **more: float) -> UnpacedSession:
+    return UnpacedSession(bus, ROOMS, episodes, lambda room, number: rooms[room].files.get(number), **more)
 
 
 def collect(
-    bus: Bus, rooms: dict[str, ActedRoom], arrivals: threading.Semaphore, episodes: int, *, told: bool
+    bus: Bus,
+    rooms: dict[str, ActedRoom],
+    arrivals: threading.Semaphore,
+    episodes: int,
+    *,
+    told: bool,
+    lost: AbstractSet[int] = frozenset(),
+    **more: float,
 ) -> list[CollectedEpisode]:
-    """Everything that was asked for is saved at once."""
+    """Everything that was asked for is saved at once, except what is lost."""
     done = threading.Event()
 
     def save() -> None:
         while not done.is_set():
             if arrivals.acquire(timeout=0.1):
                 for room in rooms.values():
-                    for number in set(room.asked) - room.files.keys():
+                    for number in set(room.asked) - room.files.keys() - lost:
                         room.save(number, told=told)
 
     saver = threading.Thread(target=save)
     saver.start()
-    with contextlib.closing(session_of(bus, rooms, episodes)) as session:
+    with contextlib.closing(session_of(bus, rooms, episodes, **more)) as session:
         found = list(session.run())
     done.set()
     saver.join()
@@ -146,6 +154,16 @@ def test_numbers_are_given_out_once_over_all_rooms_and_files_count_whether_they_
     episodes = collect(bus, rooms, arrivals, 9, told=told)
     assert sorted(episode.number for episode in episodes) == list(range(6, 15))
     assert sorted(number for room in rooms.values() for number in room.asked) == list(range(6, 15))
+
+
+def test_an_episode_that_never_reached_the_recorder_is_replaced_by_another(
+    bus: Bus, rooms: dict[str, ActedRoom], arrivals: threading.Semaphore
+) -> None:
+    episodes = collect(bus, rooms, arrivals, 6, told=True, lost={6, 11}, lost_after_s=1.0)
+    numbers = sorted(episode.number for episode in episodes)
+    assert len(numbers) == len(set(numbers)) == 6
+    assert set(range(7, 11)) < set(numbers)
+    assert max(numbers) > 11
 
 
 def test_no_more_is_asked_for_than_can_be_saved(

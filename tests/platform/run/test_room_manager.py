@@ -17,9 +17,12 @@ from mart.platform.run.plan import (
 )
 from mart.platform.run.room_manager import (
     MAX_ROOMS,
+    SILENCE_S,
+    HeardStatuses,
     RoomManager,
 )
 from mart.platform.run.supervisor import Supervisor
+from mart.protocol import clock
 from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound
 from mart.protocol.messages import (
     EPISODE_PHASE_RECORDING,
@@ -52,12 +55,20 @@ def supervisor(options: PlatformOptions, tmp_path: Path) -> Supervisor:
 
 
 @pytest.fixture
-def statuses() -> dict[str, RoomStatus]:
-    return {"room-1": RoomStatus(room="room-1", seats=[Seat(arm="arm0", operator=OPERATOR_SCRIPT)])}
+def statuses() -> HeardStatuses:
+    heard = HeardStatuses()
+    heard.hear(status_of(), clock.monotonic_s())
+    return heard
+
+
+def status_of(*people: str) -> RoomStatus:
+    seats = [Seat(arm="arm0", operator=OPERATOR_SCRIPT)]
+    seats += [Seat(arm="arm1", operator=OPERATOR_HUMAN, name=name) for name in people]
+    return RoomStatus(room="room-1", seats=seats)
 
 
 @pytest.fixture
-def rooms(options: PlatformOptions, supervisor: Supervisor, statuses: dict[str, RoomStatus]) -> RoomManager:
+def rooms(options: PlatformOptions, supervisor: Supervisor, statuses: HeardStatuses) -> RoomManager:
     return RoomManager(options, supervisor, statuses)
 
 
@@ -133,7 +144,7 @@ def test_what_people_opened_comes_back(
     close(rooms, opened(rooms))
     before = {process.name for process in supervisor.processes}
     again = Noted(options, processes(options), options.data_dir / "socket")
-    RoomManager(options, again, {}).reopen()
+    RoomManager(options, again, HeardStatuses()).reopen()
     assert {process.name for process in again.processes} == before
     assert sim(again, "lab").command == sim(supervisor, "lab").command
 
@@ -143,7 +154,7 @@ def test_the_first_room_is_what_the_command_says(rooms: RoomManager, options: Pl
     opened(rooms, room="lab")
     first = replace(options, room="lab", task="three_arm_lift_wiping")
     supervisor = Noted(first, processes(first), options.data_dir / "socket")
-    RoomManager(first, supervisor, {}).reopen()
+    RoomManager(first, supervisor, HeardStatuses()).reopen()
     assert [process.id for process in supervisor.processes if process.kind == "sim"] == ["lab"]
     assert "three_arm_lift_wiping" in sim(supervisor, "lab").command
 
@@ -192,17 +203,27 @@ def test_rooms_are_bounded(rooms: RoomManager) -> None:
         opened(rooms)
 
 
-def test_a_room_with_people_or_a_recording_stays(rooms: RoomManager, statuses: dict[str, RoomStatus]) -> None:
-    statuses["room-1"].seats.add(arm="arm1", operator=OPERATOR_HUMAN, name="Ana")
+def test_a_room_with_people_or_a_recording_stays(rooms: RoomManager, statuses: HeardStatuses) -> None:
+    statuses.hear(status_of("Ana"), clock.monotonic_s())
     with pytest.raises(Conflict, match="Ana can still drive"):
         close(rooms, "room-1")
-    del statuses["room-1"].seats[1]
-    statuses["room-1"].episode.phase = EPISODE_PHASE_RECORDING
+    recording = status_of()
+    recording.episode.phase = EPISODE_PHASE_RECORDING
+    statuses.hear(recording, clock.monotonic_s())
     with pytest.raises(Conflict, match="being recorded"):
         close(rooms, "room-1")
     with pytest.raises(NotFound, match="room-9"):
         close(rooms, "room-9")
-    statuses.clear()  # a sim that never spoke
+    statuses.forget("room-1")  # a sim that never spoke
     close(rooms, "room-1")
     with pytest.raises(InvalidInput, match="An empty request"):
         rooms.answer(RoomsRequest())
+
+
+def test_a_room_whose_sim_is_gone_can_be_closed_though_people_sat_there(
+    rooms: RoomManager, statuses: HeardStatuses
+) -> None:
+    """Nobody says that they have left."""
+    statuses.hear(status_of("Ana"), clock.monotonic_s() - 2 * SILENCE_S)
+    close(rooms, "room-1")
+    assert rooms.names == []

@@ -13,6 +13,7 @@ import pytest
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec, keys, recording
 from mart.protocol.keys import Topic
+from mart.protocol.messages import RoomStatus
 from mart.recorder.catalogue.episode_catalogue import FILE_NAME
 from mart.recorder.record.inbox import Inbox
 from mart.runtime.bus import Request
@@ -76,6 +77,20 @@ def test_two_rooms_are_recorded_at_once(session: RecordingSession) -> None:
     session.close()
     rooms = [event.room for event in session.events if event.HasField("episode_saved")]
     assert sorted(rooms) == ["room-1", "room-2"]
+
+
+def test_rooms_that_were_closed_leave_their_places_to_others(
+    session: RecordingSession, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nobody says that a room was closed."""
+    monkeypatch.setattr("mart.recorder.record.recorder.SILENCE_S", 0.0)
+    for number in range(64):
+        status = RoomStatus(room=f"old-{number}", boot=1)
+        session.put(keys.status(status.room), codec.encode(status))
+    session.recorder.step(0.0)
+    session.episode()
+    (event,) = session.told("episode_saved")
+    assert event.episode_saved.verified
 
 
 def test_an_outcome_whose_event_was_lost_is_learned_from_the_status(session: RecordingSession) -> None:

@@ -19,6 +19,7 @@ from mart.recorder.verify.resimulation import compare, replica, stretches, verif
 from mart.runtime.bus.memory import MemoryNetwork
 from tests.recorder import synthetic
 from tests.recorder.files import write_part
+from tests.support.deaf_bus import DeafBus
 
 _ROOM = RoomRecord(
     room=synthetic.ROOM, task=synthetic.TASK, control_hz=20.0, model_sha256=synthetic.MODEL.sha256
@@ -120,6 +121,28 @@ def test_a_replica_that_is_away_leaves_the_file_unverified(tmp_path: Path) -> No
     said = verify(recorded(tmp_path, synthetic.states(30)), _ROOM, ask)
     assert said.verdict is Verdict.UNVERIFIED
     assert "No replica 'replica-1' is up" in said.detail
+
+
+def test_a_replica_of_which_the_router_knows_nothing_for_a_moment_is_awaited(tmp_path: Path) -> None:
+    class Restarted(DeafBus):
+        """A router that was started anew has not heard of the replica when it is asked for the second time."""
+
+        asked = 0
+
+        def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
+            self.asked += 1
+            return [] if self.asked == 2 else super().alive(alive_expression, timeout_s)
+
+    network = MemoryNetwork()
+    server = network.connect()
+    server.serve(
+        rollout("replica-1"), lambda request: request.reply(synthetic.rollout_reply(request.payload))
+    )
+    server.announce(alive(ServiceKind.REPLICA, "replica-1"))
+    ask = replica(Restarted(network), "replica-1")
+    for _ in range(2):
+        said = verify(recorded(tmp_path, synthetic.states(3)), _ROOM, ask)
+        assert said.verdict is Verdict.VERIFIED, said.detail
 
 
 def test_what_a_replica_refuses_is_said(tmp_path: Path) -> None:

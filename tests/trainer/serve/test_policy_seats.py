@@ -10,7 +10,7 @@ import pytest
 
 from mart.operators.driver import SeatDriver
 from mart.protocol import codec, keys
-from mart.protocol.errors import NotFound
+from mart.protocol.errors import NotFound, Unavailable
 from mart.protocol.messages import (
     OPERATOR_HOLD,
     OPERATOR_HUMAN,
@@ -144,3 +144,42 @@ def test_garbage_disturbs_nobody(stand: Stand) -> None:
         stand.driver.work()
     stand.room.publish()
     assert stand.show() == [("arm1", 2)]
+
+
+def test_a_room_that_did_not_hear_that_a_seat_is_left_is_told_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Deafened(MemoryBus):
+        """The first request is lost."""
+
+        asked = 0
+
+        def query(self, topic: keys.Topic, payload: bytes, timeout_s: float) -> bytes:
+            self.asked += 1
+            if self.asked == 1:
+                raise Unavailable("Nobody answered.")
+            return super().query(topic, payload, timeout_s)
+
+    monkeypatch.setattr("mart.operators.driver.LEAVE_AGAIN_S", 0.0)
+    with contextlib.closing(Stand(Deafened(MemoryNetwork()), {})) as stand:
+        stand.assign("arm1", "unknown")
+        stand.driver.work()
+        assert stand.room.seats["arm1"].operator == OPERATOR_POLICY
+        stand.room.publish()
+        stand.driver.work()
+        assert stand.room.seats["arm1"].operator == OPERATOR_HOLD
+        assert len([event for event in stand.events.all() if event.HasField("notice")]) == 1
+
+
+def test_a_room_that_was_closed_is_forgotten_and_one_that_comes_back_is_driven_again(
+    stand: Stand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("mart.operators.driver.FORGOTTEN_AFTER_S", 0.0)
+    stand.assign("arm1", "alone")
+    assert stand.show() == [("arm1", 2)]
+    stand.driver.work()
+    said = len(stand.commands)
+    for _ in range(4):
+        stand.driver.work()  # longer than a command is not repeated
+    assert len(stand.commands) == said
+    stand.room.publish()
+    assert stand.show() == [("arm1", 2)]
+    assert stand.loaded == ["alone", "alone"]

@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 
 from mart.operators.room_client import RoomClient
-from mart.protocol.errors import MartError
+from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import OPERATOR_POLICY, Operator, RoomStatus, Seat
 
 
@@ -22,7 +22,11 @@ def claimed_seats(
     with contextlib.ExitStack() as stack:
         seats = []
         for arm in arms:
-            seats.append(room.claim(arm, holder_id, name, operator))
+            try:
+                seats.append(room.claim(arm, holder_id, name, operator))
+            except Unavailable:
+                _leave(room, arm, holder_id)  # a room that was only late has given the seat all the same
+                raise
             stack.callback(_leave, room, arm, holder_id)
         yield ClaimedSeats(holder_id, seats)
 

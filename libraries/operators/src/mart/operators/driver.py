@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Generic, TypeVar
@@ -14,13 +15,16 @@ from mart.operators.commander import SeatCommander
 from mart.operators.room_client import RoomClient
 from mart.operators.room_watch import RoomWatch
 from mart.protocol import clock, codec, keys
-from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import OPERATOR_HOLD, Event, RoomStatus, State
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Bus, Publisher
 from mart.runtime.throttled_log import ThrottledLog
 
 REPEAT_S = 0.1  # while no new state comes: the barrier hears that the operator is still there
+LEAVE_AGAIN_S = 5.0
+FORGOTTEN_AFTER_S = 60.0  # a room that says nothing: nobody tells that one was closed
+_FROZEN_S = 5.0  # between two looks: rooms spoke meanwhile, and this process stood still
 
 _log = logging.getLogger(__name__)
 
@@ -50,6 +54,14 @@ class SeatSelection(ABC, Generic[K]):
 
 
 @dataclass
+class _FailedSeats:
+    """Seats that are left, with their epochs; `again_s`: when to ask once more, where the room still shows them."""
+
+    epochs: Mapping[str, int]
+    again_s: float
+
+
+@dataclass
 class _DrivenSeats:
     commanders: Sequence[SeatCommander]
     publishers: Mapping[str, Publisher]
@@ -67,17 +79,18 @@ class _DrivenSeats:
 
 
 class SeatDriver(Generic[K]):
-    """Drive every seat that an selection names. What cannot drive is told to the room, and its seats are given up."""
+    """Drive every seat that a selection names. What cannot drive is told to the room, and its seats are given up."""
 
     def __init__(self, bus: Bus, room: str | None, selection: SeatSelection[K]) -> None:
         """Watch `room` alone; None: every room."""
         self._bus, self._selection = bus, selection
         self._driven: dict[tuple[str, K], _DrivenSeats] = {}
-        self._failed: dict[tuple[str, K], Mapping[str, int]] = {}  # with the epochs that were given up
+        self._failed: dict[tuple[str, K], _FailedSeats] = {}
+        self._heard_s: dict[str, float] = {}  # by room
         self._watch = RoomWatch(bus, room)
         self._throttled_log = ThrottledLog(_log)
         self.failure: MartError | None = None  # the newest
-        self.heard_s = clock.monotonic_s()  # when a room last said how it is
+        self._looked_s = self.heard_s = clock.monotonic_s()  # when a room last said how it is
 
     def close(self) -> None:
         """Let go of the bus; the seats stay whose they are."""
@@ -88,15 +101,31 @@ class SeatDriver(Generic[K]):
     def work(self) -> Mapping[str, RoomStatus]:
         """Do what has come, or what is due when nothing comes for a moment; returns the newest status of each room."""
         statuses, states = self._watch.take(REPEAT_S / 2)
-        if statuses:
-            self.heard_s = clock.monotonic_s()
+        now_s = clock.monotonic_s()
+        self._note_heard(statuses, (*statuses, *states), now_s)
         for room, status in statuses.items():
             self._follow_seats(room, status)
         for room, state in states.items():
             self._show(room, state)
+        self._forget_silent(now_s)
         self._speak(clock.monotonic_s())
         self._throttled_log.report(self._watch.unusable, clock.monotonic_s())
         return statuses
+
+    def _note_heard(self, statuses: Collection[str], rooms: Collection[str], now_s: float) -> None:
+        frozen, self._looked_s = now_s - self._looked_s > _FROZEN_S, now_s
+        if statuses or frozen:
+            self.heard_s = now_s
+        self._heard_s.update(dict.fromkeys((*self._heard_s, *rooms) if frozen else rooms, now_s))
+
+    def _forget_silent(self, now_s: float) -> None:
+        silent = {room for room, heard_s in self._heard_s.items() if now_s - heard_s > FORGOTTEN_AFTER_S}
+        for place in [place for place in self._driven if place[0] in silent]:
+            self._driven.pop(place).close()
+        for place in [place for place in self._failed if place[0] in silent]:
+            del self._failed[place]
+        for room in silent:
+            del self._heard_s[room]
 
     def _follow_seats(self, room: str, status: RoomStatus) -> None:
         wanted = self._selection.assigned(room, status)
@@ -141,12 +170,14 @@ class SeatDriver(Generic[K]):
 
     def _guarded(self, place: tuple[str, K], epochs: Mapping[str, int], deed: Callable[[], None]) -> None:
         """What fails is told to the room, and its seats are left: people must not wait for it."""
-        if self._failed.get(place) == epochs:
+        failed = self._failed.get(place)
+        if failed is not None and failed.epochs == epochs:
+            if clock.monotonic_s() >= failed.again_s:
+                self._leave(place, epochs)
             return
         try:
             deed()
         except MartError as error:
-            self._failed[place] = epochs
             self.failure = error
             if place in self._driven:
                 self._driven.pop(place).close()
@@ -160,8 +191,16 @@ class SeatDriver(Generic[K]):
         _log.error("%s: %s", room, text)
         with contextlib.closing(self._bus.publisher(keys.event(room))) as publisher:
             publisher.put(codec.encode(Event(wall_ns=clock.wall_ns(), room=room, notice=notice)))
-        client = RoomClient(self._bus, room)
+        self._leave(place, epochs)
+
+    def _leave(self, place: tuple[str, K], epochs: Mapping[str, int]) -> None:
+        client = RoomClient(self._bus, place[0])
+        again_s = math.inf
         for arm in epochs:
-            # A room that is gone has no seats to leave; one that refuses has given the seat to somebody else.
-            with contextlib.suppress(MartError):
+            try:
                 client.assign(arm, OPERATOR_HOLD)
+            except Unavailable:  # where the room is not gone, it says itself that the seat is still held
+                again_s = clock.monotonic_s() + LEAVE_AGAIN_S
+            except MartError as error:
+                _log.info("%s has given %s to somebody else: %s", place[0], arm, error)
+        self._failed[place] = _FailedSeats(epochs, again_s)

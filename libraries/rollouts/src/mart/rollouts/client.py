@@ -24,11 +24,12 @@ from mart.protocol.errors import Conflict, InvalidInput, MartError, Unavailable
 from mart.protocol.messages import Model, RolloutReply, RolloutRequest, raise_error
 from mart.protocol.tasks import Task, get_task
 from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.alive_wait import await_alive
 from mart.runtime.bus import Bus
 
 __all__ = ["ACTION_SIZE", "BatchState", "RolloutClient"]
 
-_START_TIMEOUT_S = 2.0
+_START_TIMEOUT_S = 5.0
 _RESET_TIMEOUT_S, _RESET_TIMEOUT_PER_WORLD_S = 60.0, 0.1
 _STEP_TIMEOUT_S, _STEP_TIMEOUT_PER_WORLD_S = 30.0, 0.05
 _CLOSE_TIMEOUT_S = 2.0
@@ -153,17 +154,10 @@ class RolloutClient:
             self._busy.release()
 
     def _require_replicas(self) -> None:
-        """Waits a little: one that is just starting may be up for others already."""
-        up: set[str] = set()
-        complete = threading.Event()
-
-        def note(key: str, alive: bool) -> None:
-            (up.add if alive else up.discard)(keys.last_of(key))
-            if up.issuperset(self._replicas):
-                complete.set()
-
-        with contextlib.closing(self._bus.watch(keys.alive_of(ServiceKind.REPLICA), note)):
-            complete.wait(_START_TIMEOUT_S)
+        """Waits a little: a replica that is just starting may be up for others already, or the router is."""
+        awaited = {keys.alive(ServiceKind.REPLICA, replica) for replica in self._replicas}
+        found = await_alive(self._bus, keys.alive_of(ServiceKind.REPLICA), awaited, _START_TIMEOUT_S)
+        up = {keys.last_of(key) for key in found}
         for replica in self._replicas:
             if replica not in up:
                 raise Unavailable(

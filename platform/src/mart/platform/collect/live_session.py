@@ -6,6 +6,7 @@ only make it quick, and lend the stages of motion to photon.
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,7 +15,7 @@ from mart.platform.collect.emulated_users import EmulatedUser
 from mart.platform.collect.saved_episodes import CollectedEpisode, FindEpisode
 from mart.protocol import clock, keys
 from mart.protocol.codec import decode
-from mart.protocol.errors import Unavailable
+from mart.protocol.errors import Conflict, Unavailable
 from mart.protocol.messages import (
     EPISODE_PHASE_COUNTDOWN,
     EPISODE_PHASE_PRACTICE,
@@ -29,6 +30,7 @@ _STILL_S = 120.0  # without a sign of an episode that goes on
 _SAVE_TIMEOUT_S = 60.0
 _CUT_S = 10.0  # an episode that a restart has cut may have another file that knows its outcome
 _LOOK_EVERY_S = 0.5
+_READY_AGAIN_S = 2.0
 
 
 class LiveSession:
@@ -54,7 +56,7 @@ class LiveSession:
             self._latencies.clear()
         for person in people:
             person.web_client.act(self._room, person.arm, "ready")
-        return self._await_file(number)
+        return self._await_file(number, people)
 
     def close(self) -> None:
         """Stop listening to the room."""
@@ -72,8 +74,9 @@ class LiveSession:
             assert self._status is not None
             return self._status.episode.number
 
-    def _await_file(self, number: int) -> CollectedEpisode:
+    def _await_file(self, number: int, people: Sequence[EmulatedUser]) -> CollectedEpisode:
         seen, since_s = (False, -1), clock.monotonic_s()
+        ready_s = since_s + _READY_AGAIN_S
         found: CollectedEpisode | None = None
         while True:
             with self._news:
@@ -89,7 +92,24 @@ class LiveSession:
                 found.outcome is not EpisodeOutcome.UNSPECIFIED or now_s - since_s > _CUT_S
             ):
                 return _with_stages(found, latencies)
+            if now_s >= ready_s:
+                ready_s = now_s + _READY_AGAIN_S
+                self._repeat_ready(number, people, status)
             self._require_patience(number, over=seen[0], waited_s=now_s - since_s)
+
+    def _repeat_ready(self, number: int, people: Sequence[EmulatedUser], status: RoomStatus | None) -> None:
+        """Say it for those who are unready: a change of seats makes it void, and a sim that is restarted forgets."""
+        if (
+            status is None
+            or status.episode.number >= number
+            or status.episode.phase != EPISODE_PHASE_PRACTICE
+        ):
+            return
+        unready = {seat.arm for seat in status.seats if not seat.ready}
+        for person in people:
+            if person.arm in unready:
+                with contextlib.suppress(Conflict, Unavailable):  # the room moved on; the next status tells
+                    person.web_client.act(self._room, person.arm, "ready")
 
     def _require_patience(self, number: int, *, over: bool, waited_s: float) -> None:
         if over and waited_s > _SAVE_TIMEOUT_S:

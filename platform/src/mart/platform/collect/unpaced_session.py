@@ -2,11 +2,15 @@
 
 Every room is asked for one episode after another, but only while few are unsaved: recording and verifying set the pace,
 so nothing is lost. Numbers are given out over all rooms, and a number decides an episode's seed, so the same episodes
-are made by however many rooms there are. An episode counts when its file is there; events only make it quick.
+are made by however many rooms there are. An episode counts when its file is there; events only make it quick. What a
+room says may be lost on its way to the recorder, as when the router is started anew: in the place of an episode that no
+file tells of, another one is asked for.
 """
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 import queue
 import threading
 from collections.abc import Iterator, Sequence
@@ -21,6 +25,7 @@ from mart.runtime.bus.base import Bus, Sample
 
 _UNSAVED_A_ROOM = 2  # one that is being made, one that is being verified
 _PATIENCE_S = 120.0  # a room answers between two episodes
+_LOST_AFTER_S = 60.0  # without any file
 _LOOK_EVERY_S = 0.5
 
 
@@ -35,14 +40,29 @@ def _newest_number(bus: Bus, rooms: Sequence[str]) -> int:
 
 
 class UnpacedSession:
-    """Make `episodes` in `rooms`. `find` looks for the file of an episode."""
+    """Make `episodes` in `rooms`. `find` looks for the file of an episode.
 
-    def __init__(self, bus: Bus, rooms: Sequence[str], episodes: int, find: FindEpisode) -> None:
+    Where none is saved for `lost_after_s`, those that rooms were asked for are replaced, once each.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        rooms: Sequence[str],
+        episodes: int,
+        find: FindEpisode,
+        lost_after_s: float = _LOST_AFTER_S,
+    ) -> None:
         self._bus, self._episodes, self._find = bus, episodes, find
+        self._lost_after_s = lost_after_s
         first = 1 + _newest_number(bus, rooms)
-        self._numbers = iter(range(first, first + episodes))
+        self._numbers: queue.SimpleQueue[int] = queue.SimpleQueue()
+        for number in range(first, first + episodes):
+            self._numbers.put(number)
+        self._later_numbers = itertools.count(first + episodes)
         self._unsaved = threading.Semaphore(_UNSAVED_A_ROOM * len(rooms))
         self._asked: dict[int, str] = {}  # number → room, of what has no file yet
+        self._replaced: set[int] = set()
         self._stopped = threading.Event()
         self._heard: queue.SimpleQueue[Event | MartError] = queue.SimpleQueue()
         self._subscription = bus.subscribe(keys.EVERY_EVENT, self._on_event)
@@ -62,6 +82,8 @@ class UnpacedSession:
                 saved, newest_s = saved + 1, clock.monotonic_s()
                 self._unsaved.release()
                 yield episode
+            if clock.monotonic_s() - newest_s > self._lost_after_s:
+                self._replace_lost()
             if clock.monotonic_s() - newest_s > _PATIENCE_S:
                 raise Unavailable(
                     f"No episode was saved for {_PATIENCE_S:g} s; the services' logs are beside the episodes."
@@ -79,13 +101,19 @@ class UnpacedSession:
 
     def _ask_all(self, room: str) -> None:
         try:
-            while not self._stopped.is_set() and (number := next(self._numbers, None)) is not None:
-                self._unsaved.acquire()
-                if not self._stopped.is_set():
-                    self._asked[number] = room
+            while self._unsaved.acquire() and not self._stopped.is_set():
+                with contextlib.suppress(queue.Empty):  # all are given out, unless one is lost
+                    number = self._numbers.get_nowait()
                     self._ask(room, number)
+                    self._asked[number] = room
         except MartError as error:
             self._heard.put(error)
+
+    def _replace_lost(self) -> None:
+        for number in self._asked.copy().keys() - self._replaced:
+            self._replaced.add(number)
+            self._numbers.put(next(self._later_numbers))
+            self._unsaved.release()
 
     def _ask(self, room: str, number: int) -> None:
         ready = EpisodeRequest.Ready(arm="arm0", ready=True, number=number)

@@ -16,7 +16,7 @@ from mart.platform.run.plan import (
 )
 from mart.platform.run.running import Platform
 from mart.platform.run.supervisor import Supervisor
-from mart.protocol import codec, keys
+from mart.protocol import clock, codec, keys
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, require_control_hz
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput, MartError, NotFound
 from mart.protocol.messages import (
@@ -37,17 +37,36 @@ _log = logging.getLogger(__name__)
 NAME = "platform-1"
 MAX_ROOMS = 8
 MAX_EPISODES = 10_000
+SILENCE_S = 60.0  # a sim that is started anew takes a moment, and remembers who sat where
 _MAX_REQUEST_BYTES = 1024
 _MAX_STATUS_BYTES = 64 * 1024
 _MAX_WAITING = 16
 
 
-class RoomManager:
-    """Which rooms run here. `statuses`: the newest of each room, by name. Raises MartError for what cannot be."""
+class HeardStatuses:
+    """The newest status of each room. One that has been silent for a minute says nothing any more: its sim is gone."""
 
-    def __init__(
-        self, options: PlatformOptions, supervisor: Supervisor, statuses: dict[str, RoomStatus]
-    ) -> None:
+    def __init__(self) -> None:
+        self._heard: dict[str, tuple[RoomStatus, float]] = {}
+
+    def hear(self, status: RoomStatus, now_s: float) -> None:
+        """Keep `status` as its room's newest; `now_s`: monotonic seconds."""
+        self._heard[status.room] = status, now_s
+
+    def newest(self, room: str, now_s: float) -> RoomStatus:
+        """Return what a room said last; an empty status where it says nothing."""
+        status, heard_s = self._heard.get(room, (RoomStatus(), now_s))
+        return status if now_s - heard_s <= SILENCE_S else RoomStatus()
+
+    def forget(self, room: str) -> None:
+        """Forget a room that was closed."""
+        self._heard.pop(room, None)
+
+
+class RoomManager:
+    """Which rooms run here. `statuses`: what each room said last. Raises MartError for what cannot be."""
+
+    def __init__(self, options: PlatformOptions, supervisor: Supervisor, statuses: HeardStatuses) -> None:
         self._options, self._supervisor, self._statuses = options, supervisor, statuses
         self._path = options.data_dir / "rooms.jsonl"
         self._kept: dict[str, RoomsRequest.Open] = {}
@@ -122,7 +141,7 @@ class RoomManager:
     def _close(self, name: str) -> None:
         if name not in self.names:
             raise NotFound.named("room", name, self.names)
-        status = self._statuses.get(name, RoomStatus())
+        status = self._statuses.newest(name, clock.monotonic_s())
         people = [seat.name for seat in status.seats if seat.operator == OPERATOR_HUMAN]
         if people:
             raise Conflict(
@@ -133,7 +152,7 @@ class RoomManager:
         self._supervisor.remove(
             next(one.name for one in self._supervisor.processes if one.id == name and one.kind == "sim")
         )
-        self._statuses.pop(name, None)
+        self._statuses.forget(name)
         self._kept.pop(name, None)
         self._keep()
         _log.info("%s is closed", name)
@@ -147,7 +166,7 @@ def opening_rooms(platform: Platform) -> Iterator[None]:
     """
     assert platform.supervisor is not None
     inbox: queue.Queue[Request | None] = queue.Queue(_MAX_WAITING)
-    statuses: dict[str, RoomStatus] = {}
+    statuses = HeardStatuses()
     rooms = RoomManager(platform.options, platform.supervisor, statuses)
     rooms.reopen()
 
@@ -155,7 +174,7 @@ def opening_rooms(platform: Platform) -> Iterator[None]:
         with contextlib.suppress(InvalidInput):  # the rooms' own service tells of it
             status = codec.decode(RoomStatus, sample.payload, _MAX_STATUS_BYTES)
             if status.room in rooms.names:
-                statuses[status.room] = status
+                statuses.hear(status, clock.monotonic_s())
 
     def take(request: Request) -> None:
         with contextlib.suppress(queue.Full):  # whoever asks hears nothing in time, and asks again

@@ -9,7 +9,6 @@ import signal
 import socket
 import subprocess
 import tempfile
-import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,13 +26,13 @@ from mart.platform.run.supervisor import (
 )
 from mart.protocol import clock, keys
 from mart.protocol.errors import Conflict, Unavailable
+from mart.runtime.alive_wait import await_alive
 from mart.runtime.bus.base import Bus
 from mart.runtime.bus.zenoh_bus import ZenohBus
 
 _log = logging.getLogger(__name__)
 
 _START_TIMEOUT_S = 90.0
-_ASK_EVERY_S = 2.0
 
 
 @dataclass(frozen=True)
@@ -127,22 +126,9 @@ def _connected(endpoint: str, supervisord: subprocess.Popen[bytes]) -> Iterator[
 
 def _await_alive(bus: Bus, options: PlatformOptions, plan: tuple[Process, ...]) -> None:
     awaited = {keys.alive(process.kind, process.id) for process in plan if process.awaited}
-    present: set[str] = set()
-    complete = threading.Event()
-
-    def on_token(key: str, alive: bool) -> None:
-        (present.add if alive else present.discard)(key)
-        if awaited <= present:
-            complete.set()
-
-    with contextlib.closing(bus.watch(keys.EVERY_ALIVE, on_token)):
-        deadline_s = clock.monotonic_s() + _START_TIMEOUT_S
-        while not complete.wait(_ASK_EVERY_S):
-            for key in bus.alive(keys.EVERY_ALIVE):  # news of a token may be lost
-                on_token(key, True)
-            if clock.monotonic_s() > deadline_s and not complete.is_set():
-                missing = ", ".join(sorted(awaited - present))
-                raise Unavailable(
-                    f"Not up after {_START_TIMEOUT_S:g} s: {missing}. Their logs are in {logs_dir(options)}."
-                )
+    missing = awaited - await_alive(bus, keys.EVERY_ALIVE, awaited, _START_TIMEOUT_S)
+    if missing:
+        raise Unavailable(
+            f"Not up after {_START_TIMEOUT_S:g} s: {', '.join(sorted(missing))}. Their logs are in {logs_dir(options)}."
+        )
     _log.info("All services are up")

@@ -14,6 +14,7 @@ from mart.recorder.record.finalize_worker import FinalizeWorker, TidyFolder
 from mart.recorder.record.inbox import Inbox, InboxBatch
 from mart.recorder.record.room_models import RoomModels
 from mart.recorder.record.room_recording import RecordingTools, RoomRecording
+from mart.recorder.record.room_tracker import SILENCE_S
 from mart.runtime.bus import Bus
 
 _STEP_S = 0.05
@@ -54,7 +55,7 @@ class Recorder:
         self._report_losses(batch)
         for arrival in batch.arrivals:
             try:
-                self._recording(arrival.room).take(arrival, now_s)
+                self._recording(arrival.room, now_s).take(arrival, now_s)
             except InvalidInput as error:
                 self._unusable.add(arrival, error, now_s)
         for room in self._rooms.values():
@@ -66,13 +67,23 @@ class Recorder:
             room.finish("the recorder was stopped")
         self._tools.finalizer.close()
 
-    def _recording(self, name: str) -> RoomRecording:
+    def _recording(self, name: str, now_s: float) -> RoomRecording:
         if name not in self._rooms:
             keys.state(name)  # raises InvalidInput for a name that no room can have
+            if len(self._rooms) >= _MAX_ROOMS:
+                self._forget_silent(now_s)
             if len(self._rooms) >= _MAX_ROOMS:
                 raise InvalidInput(f"Room {name!r} is one too many; at most {_MAX_ROOMS} are recorded.")
             self._rooms[name] = RoomRecording(name, self._tools)
         return self._rooms[name]
+
+    def _forget_silent(self, now_s: float) -> None:
+        """Leave rooms that have ended: nobody tells of a room that it was closed."""
+        self._rooms = {
+            name: room
+            for name, room in self._rooms.items()
+            if room.file is not None or now_s - room.heard_s <= SILENCE_S
+        }
 
     def _report_losses(self, batch: InboxBatch) -> None:
         if not batch.lost_frames and not batch.lost_messages:

@@ -42,6 +42,7 @@ class RoomRecording:
 
     def __init__(self, room: str, tools: RecordingTools) -> None:
         self.file: EpisodeWriter | None = None
+        self.heard_s = 0.0
         self._room = room
         self._tools = tools
         self._tracker = RoomTracker(room)
@@ -50,6 +51,7 @@ class RoomRecording:
 
     def take(self, arrival: BusArrival, now_s: float) -> None:
         """Write what has arrived, if it belongs into a file. Raises InvalidInput for what cannot be used."""
+        self.heard_s = now_s
         self._apply(self._decide(decode_arrival(arrival), arrival, now_s))
 
     def advance(self, now_s: float) -> None:

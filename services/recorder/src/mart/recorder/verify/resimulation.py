@@ -20,12 +20,14 @@ from mart.protocol.errors import Corrupt, MartError, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest, State, raise_error
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.vocabulary import ServiceKind, Verdict
+from mart.runtime.alive_wait import await_alive
 from mart.runtime.bus import Bus
 
 DIGEST_BYTES = 16
 _STRETCH_TICKS = 2000
 _TIMEOUT_S = 20.0
 _TIMEOUT_PER_TICK_S = 0.02
+_PATIENCE_S = 5.0
 
 Resimulate = Callable[[RolloutRequest.Resimulate], bytes]
 
@@ -150,11 +152,19 @@ def _judge(file: EpisodeFile, room: RoomRecord, resimulate: Resimulate) -> tuple
     return Verdict.VERIFIED, f"{checked} ticks re-simulated bit for bit."
 
 
-def replica(bus: Bus, name: str) -> Resimulate:
-    """Ask the replica called `name`. Raises Unavailable, at once where there is none, or where it does not answer."""
+def replica(bus: Bus, name: str, patience_s: float = _PATIENCE_S) -> Resimulate:
+    """Ask the replica called `name`. Raises Unavailable, at once where there was none, or where it does not answer.
+
+    One that was there is awaited for `patience_s`: a router that is started anew forgets for about 2 s who is alive.
+    """
+    token = keys.alive(ServiceKind.REPLICA, name)
+    was_up = False
 
     def resimulate(request: RolloutRequest.Resimulate) -> bytes:
-        if not bus.alive(keys.alive(ServiceKind.REPLICA, name)):
+        nonlocal was_up
+        is_up = token in await_alive(bus, token, {token}, patience_s) if was_up else bool(bus.alive(token))
+        was_up = is_up
+        if not is_up:
             raise Unavailable(f"No replica {name!r} is up; start one with `mart replica --name {name}`.")
         ticks = len(request.actions) // (8 * ACTION_SIZE * max(request.arms, 1))
         payload = codec.encode(RolloutRequest(resimulate=request))

@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import subprocess
 import tempfile
-import threading
 from collections.abc import Iterator, Sequence
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -17,6 +16,7 @@ from mart.protocol import clock, keys
 from mart.protocol.errors import Unavailable
 from mart.protocol.vocabulary import ServiceKind
 from mart.rollouts.client import RolloutClient
+from mart.runtime.alive_wait import await_alive
 from mart.runtime.bus.base import Bus
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.child_process import MART, start_child, stop_child
@@ -24,6 +24,7 @@ from mart.runtime.ports import free_port
 from mart.runtime.settings import Settings
 
 _START_TIMEOUT_S = 60.0
+_LOOK_EVERY_S = 1.0  # whether its process has ended
 _NAME = "replica-1"
 
 
@@ -70,17 +71,11 @@ def _private() -> Iterator[tuple[Bus, Sequence[str]]]:
 @contextlib.contextmanager
 def _connected(endpoint: str, replica: subprocess.Popen[bytes], log: Path) -> Iterator[Bus]:
     """Give the bus as soon as the replica's token is there."""
-    up = threading.Event()
+    token = keys.alive(ServiceKind.REPLICA, _NAME)
     deadline_s = clock.monotonic_s() + _START_TIMEOUT_S
     with ZenohBus.connect(endpoint) as bus:
-        watch = bus.watch(
-            keys.alive(ServiceKind.REPLICA, _NAME), lambda _key, alive: up.set() if alive else None
-        )
-        with contextlib.closing(watch):
-            while not up.wait(0.5):
-                if replica.poll() is not None or clock.monotonic_s() > deadline_s:
-                    words = log.read_text(errors="replace").strip().rpartition("\n")[2]
-                    raise Unavailable(
-                        f"The replica for rollouts did not start: {words or 'it says nothing'}."
-                    )
+        while token not in await_alive(bus, token, {token}, _LOOK_EVERY_S):
+            if replica.poll() is not None or clock.monotonic_s() > deadline_s:
+                words = log.read_text(errors="replace").strip().rpartition("\n")[2]
+                raise Unavailable(f"The replica for rollouts did not start: {words or 'it says nothing'}.")
         yield bus

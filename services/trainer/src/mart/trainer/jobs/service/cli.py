@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 _trainer = click.option("--trainer", default="trainer-1", show_default=True, help="Which trainer service.")
 _job = click.argument("job")
 _LOOK_EVERY_S = 1.0
+_SILENCE_S = 60.0  # of a trainer, while a sweep is waited for
 _ASK_TIMEOUT_S = 30.0
 
 
@@ -115,16 +116,24 @@ def list_jobs(sweep: str, trainer: str, as_json: bool) -> None:
 @_trainer
 @json_option
 def wait(sweep: str, trainer: str, as_json: bool) -> None:
-    """Wait until every job of a sweep is over. Exits with 1 where one failed or was cancelled."""
+    """Wait until every job of a sweep is over. Exits with 1 where one failed or was cancelled.
+
+    A trainer that is away for less than a minute is asked again.
+    """
     from mart.protocol import clock
-    from mart.protocol.errors import NotFound
+    from mart.protocol.errors import NotFound, Unavailable
     from mart.protocol.messages import JOB_STATE_DONE, JOB_STATE_QUEUED, JOB_STATE_RUNNING, TrainerRequest
 
     wanted = TrainerRequest(list=TrainerRequest.List(sweep=sweep))
     reply = _ask(trainer, wanted)
+    heard_s = clock.monotonic_s()
     while any(job.state in (JOB_STATE_QUEUED, JOB_STATE_RUNNING) for job in reply.jobs):
         clock.sleep_s(_LOOK_EVERY_S)
-        reply = _ask(trainer, wanted)
+        try:
+            reply, heard_s = _ask(trainer, wanted), clock.monotonic_s()
+        except Unavailable:  # router and trainer may be started anew in the hours that a sweep takes
+            if clock.monotonic_s() - heard_s > _SILENCE_S:
+                raise
     if not reply.jobs:
         raise NotFound(f"There is no sweep {sweep!r} at {trainer}; `mart jobs list` shows them.")
     _print_jobs(reply, as_json=as_json)

@@ -1,29 +1,39 @@
-"""Show in the API pages what pydantic's data classes are made from, as is shown of dataclasses: a griffe extension."""
+"""Griffe extension of the documentation site: examples and pydantic's data classes look as they should in API pages."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
 import griffe
 
+_EXAMPLE = re.compile(r"^>>> .*(?:\n(?!\n).+)*", re.MULTILINE)  # with what follows it, to the next empty line
+_FLAGS = re.compile(r" *# doctest: .*$", re.MULTILINE)
 
-class PydanticSignatures(griffe.Extension):
-    """Give every class that derives from BaseModel directly the signature that pydantic gives it."""
+
+class SiteDocstrings(griffe.Extension):
+    """Fence examples, and show pydantic's data classes with what they are made from."""
 
     def on_package(self, *, pkg: griffe.Module, **_: Any) -> None:
         """Griffe calls this when a package is loaded."""
-        for model in _classes(pkg):
-            if "BaseModel" in map(str, model.bases) and "__init__" not in model.members:
-                model.set_member("__init__", _init_of(model))
+        for one in _objects(pkg):
+            if one.docstring is not None:
+                one.docstring.value = fenced(one.docstring.value)
+            if isinstance(one, griffe.Class) and "BaseModel" in map(str, one.bases):
+                one.members.setdefault("__init__", _init_of(one))
 
 
-def _classes(inside: griffe.Object) -> Iterator[griffe.Class]:
+def fenced(docstring: str) -> str:
+    """Put every example of a docstring, from `>>>` to an empty line, into a fence: Markdown takes it for a quote."""
+    return _EXAMPLE.sub(lambda match: f"```pycon\n{_FLAGS.sub('', match[0])}\n```", docstring)
+
+
+def _objects(inside: griffe.Object) -> Iterator[griffe.Object]:
+    yield inside
     for member in list(inside.members.values()):
-        if isinstance(member, griffe.Class):
-            yield member
-        if isinstance(member, griffe.Module | griffe.Class):
-            yield from _classes(member)
+        if isinstance(member, griffe.Object):
+            yield from _objects(member)
 
 
 def _init_of(model: griffe.Class) -> griffe.Function:

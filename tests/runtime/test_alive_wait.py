@@ -1,0 +1,49 @@
+"""Waiting for services, whether their coming is told of or not."""
+
+from __future__ import annotations
+
+from mart.protocol import keys
+from mart.protocol.errors import Unavailable
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.alive_wait import await_alive
+from mart.runtime.bus.memory import MemoryNetwork
+from tests.support.deaf_bus import DeafBus
+
+REPLICA = keys.alive(ServiceKind.REPLICA, "a")
+EVERY_REPLICA = keys.alive_of(ServiceKind.REPLICA)
+WAIT_S = 30.0
+
+
+def test_who_is_there_is_found_at_once() -> None:
+    bus = MemoryNetwork().connect()
+    bus.announce(REPLICA)
+    assert await_alive(bus, EVERY_REPLICA, {REPLICA}, WAIT_S) == {REPLICA}
+
+
+def test_who_came_unheard_is_found() -> None:
+    network = MemoryNetwork()
+    network.connect().announce(REPLICA)
+    assert await_alive(DeafBus(network), EVERY_REPLICA, {REPLICA}, WAIT_S) == {REPLICA}
+
+
+def test_who_is_missing_is_not_waited_for_for_ever() -> None:
+    bus = MemoryNetwork().connect()
+    bus.announce(REPLICA)
+    assert await_alive(bus, EVERY_REPLICA, {keys.alive(ServiceKind.REPLICA, "b")}, 0.1) == {REPLICA}
+
+
+def test_a_router_that_does_not_answer_is_asked_again() -> None:
+    class Forgetful(DeafBus):
+        """The router is away when it is asked for the first time."""
+
+        asked = 0
+
+        def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
+            self.asked += 1
+            if self.asked == 1:
+                raise Unavailable("The router is away.")
+            return super().alive(alive_expression, timeout_s)
+
+    network = MemoryNetwork()
+    network.connect().announce(REPLICA)
+    assert await_alive(Forgetful(network), EVERY_REPLICA, {REPLICA}, WAIT_S) == {REPLICA}

@@ -1,0 +1,18 @@
+"""A bus on which the words of tokens that come and go are lost; who asks is answered."""
+
+from __future__ import annotations
+
+from mart.protocol import keys
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus.base import AliveHandler, Closable
+from mart.runtime.bus.memory import MemoryBus
+
+_NOBODY = keys.alive(ServiceKind.ROUTER, "nobody")
+
+
+class DeafBus(MemoryBus):
+    """Tell no watcher of anything."""
+
+    def watch(self, alive_expression: str, handler: AliveHandler) -> Closable:
+        """Watch a token that nobody holds instead."""
+        return super().watch(_NOBODY, handler)
