@@ -12,6 +12,9 @@ WORKDIR /src
 COPY constraints.txt ./
 ARG BUILD_REQUIREMENTS=""
 RUN pip install pip setuptools wheel ${BUILD_REQUIREMENTS}
+ARG CPU_TORCH=""
+COPY tools/cpu-torch ./
+RUN [ -z "${CPU_TORCH}" ] || ./cpu-torch --always python constraints.txt
 # What the part needs changes less often than the part, so it is a layer of its own.
 COPY protocol/pyproject.toml protocol/
 COPY libraries/runtime/pyproject.toml libraries/runtime/

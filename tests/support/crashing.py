@@ -14,13 +14,18 @@ from mart.platform.run.running import Platform
 
 def kill_service(platform: Platform, command: str) -> None:
     """kill -9 of `mart {command} …`; the supervisor is left to notice."""
-    os.kill(_service_pid(platform, command), signal.SIGKILL)
+    kill_service_of(platform.options.data_dir, command)
+
+
+def kill_service_of(data_dir: Path, command: str) -> None:
+    """kill -9 of `mart {command} …` of the platform with this data folder."""
+    os.kill(_service_pid(data_dir, command), signal.SIGKILL)
 
 
 @contextlib.contextmanager
 def frozen_service(platform: Platform, command: str) -> Iterator[None]:
     """`mart {command} …` does nothing for the length of the block, and its connections stay open."""
-    pid = _service_pid(platform, command)
+    pid = _service_pid(platform.options.data_dir, command)
     os.kill(pid, signal.SIGSTOP)
     try:
         yield
@@ -35,8 +40,8 @@ def kill_seat_process(platform: Platform, arm: str) -> None:
     os.kill(int(served[-1]), signal.SIGKILL)
 
 
-def _service_pid(platform: Platform, command: str) -> int:
-    supervisor = int((platform.options.data_dir / "run" / "supervisord.pid").read_text())
+def _service_pid(data_dir: Path, command: str) -> int:
+    supervisor = int((data_dir / "run" / "supervisord.pid").read_text())
     (pid,) = (child for child in _children(supervisor) if command in _words(child)[:3])
     return pid
 
