@@ -80,3 +80,10 @@ def test_an_image_holds_the_libraries_that_its_part_needs_and_no_others(name: st
 
     libraries = needed(arguments["PART"]) - {"protocol"}
     assert {word.removeprefix("./") for word in arguments.get("LIBRARIES", "").split()} == libraries
+
+
+@pytest.mark.parametrize("name", _BUILDS)
+def test_an_image_that_holds_pytorch_asks_for_its_cpu_build(name: str) -> None:
+    arguments = _BUILDS[name]["args"]
+    needed = {Requirement(text).name for text in projects()[arguments["PART"]]["dependencies"]}
+    assert ("torch" in needed) == ("CPU_TORCH" in arguments)

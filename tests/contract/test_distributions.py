@@ -60,6 +60,10 @@ def test_cuda_stays_out() -> None:
     assert {name for name in _pins() if name.startswith(("nvidia", "cuda", "triton"))} == set()
 
 
+def test_pytorch_and_what_finds_its_cpu_build_are_pinned() -> None:
+    assert {"torch", "uv"} <= set(_pins())
+
+
 def test_pins_name_versions_and_never_places() -> None:
     text = (ROOT / "constraints.txt").read_text()
     assert "://" not in text
