@@ -55,8 +55,9 @@ def test_what_was_there_before_does_not_count(recorded: Path, tmp_path: Path) ->
 def test_of_several_files_of_an_episode_the_one_that_knows_the_outcome_counts(tmp_path: Path) -> None:
     saved = SavedEpisodes(tmp_path)
     root = tmp_path / "episodes"
-    cut, episode, facts = write_part(root, synthetic.states(3), is_over=False)
-    finalize(cut, episode, facts, root, by_toy_replica, repaired=False)
+    for _ in range(2):
+        cut, episode, facts = write_part(root, synthetic.states(3), is_over=False)
+        finalize(cut, episode, facts, root, by_toy_replica, repaired=False)
     first = saved.find(synthetic.ROOM, 1)
     assert first is not None
     assert first.outcome is EpisodeOutcome.UNSPECIFIED
