@@ -8,8 +8,9 @@ import pytest
 
 from mart.episodes import EpisodeFilter, LabelKind, find_episodes, labels, list_episodes
 from mart.protocol.errors import Corrupt, NotFound
+from mart.recorder.record.finalize import finalize
 from tests.recorder import synthetic
-from tests.recorder.files import write_episode, write_part
+from tests.recorder.files import by_toy_replica, write_episode, write_part
 
 
 @pytest.fixture
@@ -27,6 +28,12 @@ def test_a_folder_a_file_and_several_are_listed_once_each(root: Path) -> None:
     assert [one.number for one in list_episodes([root, first, first.parent])] == [1, 2, 12]
     assert list_episodes(first)[0].path == first.relative_to(root).as_posix()
     assert list_episodes([]) == []
+
+
+def test_the_oldest_comes_first_whatever_files_are_called(root: Path) -> None:
+    file, episode, facts = write_part(root, synthetic.states(3, number=0, first_tick=100))
+    finalize(file, episode, facts, root, by_toy_replica, repaired=False)
+    assert [one.number for one in list_episodes(root)] == [1, 2, 12, 0]
 
 
 def test_a_path_keeps_its_spelling(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,6 +19,12 @@ def test_a_seat_keeps_its_gateway_when_others_come_and_go(gateways: list[str], a
             assert gateway_of([g for g in gateways if g != other], "room-1", arm) == chosen
 
 
+def test_arms_of_a_room_are_spread_and_every_version_reckons_alike() -> None:
+    gateways = ["gateway-1", "gateway-2"]
+    chosen = [gateway_of(gateways, "room-2", arm) for arm in ("arm0", "arm1", "arm2", "arm3")]
+    assert chosen == ["gateway-1", "gateway-2", "gateway-1", "gateway-2"]
+
+
 def test_without_a_gateway_the_mend_is_named() -> None:
     with pytest.raises(Unavailable, match="mart gateway"):
         gateway_of([], "room-1", "arm0")

@@ -29,7 +29,7 @@ def test_a_model_comes_back_as_it_was_sent(world: World) -> None:
 
 def test_a_model_that_does_not_match_its_digest_is_refused(world: World) -> None:
     with pytest.raises(Corrupt, match="a test"):
-        load(world.model_bytes() + b"\0", world.model_sha256)
+        load(world.model_bytes(), "0" * 64)  # it could be loaded
 
 
 def test_a_model_that_cannot_be_loaded_is_refused(world: World) -> None:

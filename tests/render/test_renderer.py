@@ -60,6 +60,18 @@ def test_a_picture_belongs_to_the_caller_and_may_be_drawn_into_an_array(
     assert (out != first).any()
 
 
+def test_a_camera_that_follows_a_thing_is_where_the_state_has_it() -> None:
+    ball = '<geom type="sphere" size="0.2" rgba="0 1 0 1"/><joint name="slide" type="slide" axis="1 0 0"/>'
+    following = '<camera name="front" mode="trackcom" pos="0 -2 0" euler="90 0 0"/>'
+    light = '<visual><headlight ambient="1 1 1" diffuse="0 0 0" specular="0 0 0"/></visual>'
+    model = mujoco.MjModel.from_xml_string(
+        f"<mujoco>{light}<worldbody><body>{ball}{following}</body></worldbody></mujoco>"
+    )
+    with closing(Renderer(model, "front", *SIZE)) as renderer:
+        for slide_m in (0.0, 0.5):
+            assert where(renderer.draw(state_of(model, slide_m)), 1) == pytest.approx((0.5, 0.5), abs=0.02)
+
+
 def test_renderers_of_one_thread_do_not_disturb_each_other(model: mujoco.MjModel) -> None:
     state = state_of(model)
     with ExitStack() as stack:

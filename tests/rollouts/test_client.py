@@ -38,6 +38,7 @@ class ToyReplica:
 
     def __init__(self, endpoint: str, name: str) -> None:
         self.sessions: dict[str, np.ndarray] = {}
+        self.step_numbers: list[int] = []
         self.at_a_step = threading.Event()
         self.may_step = threading.Event()
         self.may_step.set()
@@ -75,6 +76,7 @@ class ToyReplica:
         if request.HasField("close"):
             del self.sessions[session]
             return RolloutReply(session=session)
+        self.step_numbers.append(request.step.number)
         self.at_a_step.set()
         self.may_step.wait(WAIT_S)
         times = self.sessions[session]
@@ -125,6 +127,15 @@ def test_a_batch_is_spread_and_comes_back_in_order(endpoint: str, bus: Bus) -> N
         some = client.step(told([0.5] * 7), running)
         assert (some.sim_time_s - stepped.sim_time_s).tolist() == pytest.approx([0, 0, 0, 0.5, 0, 0, 0])
         assert list(some.observations) == [observation.name for observation in TASK.observations]
+
+
+def test_steps_are_numbered_from_one_in_every_episode(endpoint: str, bus: Bus) -> None:
+    with toys(endpoint, bus, "a") as (replica,), RolloutClient(bus, ["a"]) as client:
+        for _ in range(2):
+            client.reset(TASK.name, [1])
+            client.step(told([0.0]))
+            client.step(told([0.0]))
+    assert replica.step_numbers == [1, 2, 1, 2]
 
 
 def test_with_fewer_worlds_than_replicas_some_have_none(endpoint: str, bus: Bus) -> None:

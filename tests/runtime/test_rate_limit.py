@@ -36,3 +36,13 @@ def test_memory_is_bounded() -> None:
         limits.count(str(number), 0.0)
     assert limits.wait_s("0", 1.0) == 0.0
     assert limits.wait_s("4999", 1.0) > 0.0
+
+
+def test_the_key_that_was_not_used_for_longest_is_forgotten_first() -> None:
+    limits = KeyedRateLimit(2, window_s=1e9)
+    limits.count("used again", 0.0)
+    for number in range(4095):
+        limits.count(str(number), 0.0)
+    limits.count("used again", 1.0)
+    limits.count("one too many", 2.0)
+    assert limits.wait_s("used again", 3.0) > 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import cast
 
 import pytest
@@ -41,6 +42,7 @@ class Acted:
     def __init__(self) -> None:
         self.network = MemoryNetwork()
         self.files: dict[int, CollectedEpisode] = {}
+        self.was_found = threading.Event()
         self.bus = self.network.connect()
         self._status = self.bus.publisher(keys.status("room-1"))
         self._events = self.bus.publisher(keys.event("room-1"))
@@ -52,13 +54,17 @@ class Acted:
     def tell(self, event: m.Event) -> None:
         self._events.put(encode(event))
 
+    def find(self, _room: str, number: int) -> CollectedEpisode | None:
+        found = self.files.get(number)
+        if found is not None:
+            self.was_found.set()
+        return found
+
     @contextlib.contextmanager
     def session(self) -> Iterator[LiveSession]:
         bus = self.network.connect()
-        with contextlib.closing(
-            LiveSession(bus, "room-1", lambda _room, number: self.files.get(number))
-        ) as s:
-            yield s
+        with contextlib.closing(LiveSession(bus, "room-1", self.find)) as session:
+            yield session
 
 
 class Ready:
@@ -91,6 +97,22 @@ def test_an_episode_counts_when_its_file_is_there_though_nobody_said_a_word() ->
             acted,
             session,
             [lambda: acted.files.update({4: EPISODE}), lambda: acted.say(m.EPISODE_PHASE_PRACTICE, 4)],
+        )
+    assert episode == EPISODE
+
+
+def test_a_file_that_does_not_know_the_outcome_waits_for_another_that_does() -> None:
+    acted = Acted()
+    with acted.session() as session:
+        episode = play(
+            acted,
+            session,
+            [
+                lambda: acted.files.update({4: replace(EPISODE, outcome=EpisodeOutcome.UNSPECIFIED)}),
+                lambda: acted.say(m.EPISODE_PHASE_PRACTICE, 4),
+                lambda: acted.was_found.wait(30.0),
+                lambda: acted.files.update({4: EPISODE}),
+            ],
         )
     assert episode == EPISODE
 
@@ -141,6 +163,12 @@ def test_readiness_that_a_room_has_forgotten_is_said_again(monkeypatch: pytest.M
         ana = EmulatedUser("arm0", "Ana", cast("WebClient", person))
         assert session.run_episode([ana]) == EPISODE
         assert person.said == 2
+
+
+def test_without_a_page_there_is_no_motion_to_photon() -> None:
+    line = replace(EPISODE, latencies=()).as_json()
+    assert (line["motion_to_photon_p50_ms"], line["motion_to_photon_p95_ms"]) == (None, None)
+    assert line["motion_to_photon"] == {}
 
 
 def test_a_room_that_does_not_start_is_an_error_in_words(monkeypatch: pytest.MonkeyPatch) -> None:

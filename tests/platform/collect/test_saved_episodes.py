@@ -12,6 +12,9 @@ from mart.episodes.reader import EpisodeFile
 from mart.platform.collect.saved_episodes import SavedEpisodes
 from mart.protocol.errors import Corrupt
 from mart.protocol.vocabulary import EpisodeOutcome
+from mart.recorder.record.finalize import finalize
+from tests.recorder import synthetic
+from tests.recorder.files import by_toy_replica, write_episode, write_part
 
 FIXTURES = Path(__file__).parents[2] / "fixtures" / "episodes_0_1_0" / "episodes.tar.xz"
 
@@ -47,6 +50,21 @@ def test_what_was_there_before_does_not_count(recorded: Path, tmp_path: Path) ->
     written = EpisodeFile.open(recorded).episode
     put(recorded, tmp_path, f"{written.room}-{written.number:04}-cubes.mcap")
     assert SavedEpisodes(tmp_path).find(written.room, written.number) is None
+
+
+def test_of_several_files_of_an_episode_the_one_that_knows_the_outcome_counts(tmp_path: Path) -> None:
+    saved = SavedEpisodes(tmp_path)
+    root = tmp_path / "episodes"
+    for _ in range(2):
+        cut, episode, facts = write_part(root, synthetic.states(3), is_over=False)
+        finalize(cut, episode, facts, root, by_toy_replica, repaired=False)
+    first = saved.find(synthetic.ROOM, 1)
+    assert first is not None
+    assert first.outcome is EpisodeOutcome.UNSPECIFIED
+    write_episode(root, ticks=3)
+    second = saved.find(synthetic.ROOM, 1)
+    assert second is not None
+    assert second.outcome is EpisodeOutcome.SUCCESS
 
 
 def test_a_file_that_is_no_episode_is_not_mistaken_for_one(recorded: Path, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import random
 import tracemalloc
 from collections import Counter
@@ -16,7 +17,7 @@ from mcap.opcode import Opcode
 from mart.episodes.mcap_entries import video_entry
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec, recording
-from mart.protocol.errors import Unavailable
+from mart.protocol.errors import NotFound, Unavailable
 from mart.protocol.vocabulary import Verdict
 from mart.recorder.repair.repair import RepairResult, repair_all
 from mart.recorder.repair.salvage import Salvage, SalvagedMessage
@@ -86,6 +87,24 @@ def test_nothing_is_lost_when_the_crash_came_after_the_last_flush(tmp_path: Path
     assert file.verification.verdict is Verdict.VERIFIED
     assert file.model() == synthetic.MJB
     assert ticks(one.saved.path) == list(range(_TICKS + 1))
+
+
+def test_a_model_with_a_spoilt_byte_is_left_out(tmp_path: Path, left: Left) -> None:
+    at = left.data.index(synthetic.MJB)
+    leftover(tmp_path, left.data[:at] + bytes([left.data[at] ^ 1]) + left.data[at + 1 :])
+    one = repaired(tmp_path)
+    assert one.saved is not None
+    assert ticks(one.saved.path) == list(range(_TICKS + 1))
+    with pytest.raises(NotFound):
+        EpisodeFile.open(one.saved.path).model()
+
+
+def test_what_somebody_else_repairs_is_left_alone(tmp_path: Path, left: Left) -> None:
+    part = leftover(tmp_path, left.data)
+    with part.open("rb") as elsewhere:
+        fcntl.flock(elsewhere, fcntl.LOCK_SH)
+        assert list(repair_all(tmp_path, by_toy_replica)) == []
+    assert repaired(tmp_path).saved is not None
 
 
 def test_an_outcome_that_was_not_written_is_that_of_the_last_state(tmp_path: Path) -> None:

@@ -246,6 +246,14 @@ def test_sessions_are_bounded_and_idle_ones_make_room(server: RolloutServer) -> 
     close(server, kept, later_s)
 
 
+def test_a_session_that_is_used_is_kept(server: RolloutServer) -> None:
+    session = reset(server, (1,)).session
+    numbered = RolloutRequest.Step(session=session, actions=some_actions(1)[0][:1].tobytes())
+    for later_s in (0.6 * IDLE_S, 1.2 * IDLE_S, 1.8 * IDLE_S):
+        server.answer(RolloutRequest(step=numbered), later_s)
+    close(server, session, 1.8 * IDLE_S)
+
+
 def test_worlds_are_bounded_over_all_sessions(server: RolloutServer, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mart.sim.rollout.rollout_server.MAX_WORLDS", 4)
     held = reset(server)

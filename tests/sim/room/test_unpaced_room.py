@@ -8,6 +8,7 @@ from functools import partial
 
 import pytest
 
+from mart.operators.driver import REPEAT_S
 from mart.protocol import clock, codec, keys
 from mart.protocol.messages import (
     OPERATOR_SCRIPT,
@@ -88,6 +89,14 @@ def test_an_episode_is_driven_through_the_barrier_by_commands_like_anybodys(worl
     assert len(used) == 2 * len(ticks)
     assert all(arm.source == OPERATOR_SCRIPT and arm.fresh for state in ticks for arm in state.arms)
     assert not harness.room.rejected
+
+
+def test_scripts_are_heard_ten_times_a_second_while_the_world_stands_still(world: World) -> None:
+    harness = RoomHarness(world, time_limit_s=0.2)
+    harness.play(1)
+    begun = harness.said.index(harness.event("episode_started"))
+    heard = [said for said in harness.said[:begun] if isinstance(said, Command) and said.arm == "arm0"]
+    assert len(heard) == pytest.approx(COUNTDOWN_S / REPEAT_S, abs=2)
 
 
 def test_who_asks_before_an_episode_is_over_gets_the_next_one(world: World) -> None:

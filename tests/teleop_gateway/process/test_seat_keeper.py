@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Awaitable, Callable
 
 import pytest
@@ -122,6 +123,29 @@ def test_a_process_that_dies_is_told_of_and_followed_by_another(on_machine: Call
         assert later is not first
         assert [notice.notice.level for notice in machine.notices] == ["warning"] * 3
 
+    on_machine(body)
+
+
+@pytest.mark.parametrize(("crash_loop_s", "waits"), [(0.0, 0), (math.inf, 1)])
+def test_only_after_a_process_that_died_young_is_there_a_wait(
+    on_machine: Callable[[Body], None], monkeypatch: pytest.MonkeyPatch, crash_loop_s: float, waits: int
+) -> None:
+    waited_s: list[float] = []
+
+    async def sleep(delay_s: float) -> None:
+        waited_s.append(delay_s)
+
+    async def body(machine: Machine) -> None:
+        machine.keeper.keep(Seats({SEAT}))
+        (first,) = await machine.serves(Seats({SEAT}))
+        monkeypatch.setattr(asyncio, "sleep", sleep)
+        first.die(-9)
+        while not machine.serving or machine.serving == [first]:
+            machine.changed.clear()
+            await machine.changed.wait()
+        assert len(waited_s) == waits
+
+    monkeypatch.setattr(seat_keeper, "_CRASH_LOOP_S", crash_loop_s)
     on_machine(body)
 
 

@@ -81,6 +81,11 @@ def test_every_quality_draws_without_a_gpu_and_tells_the_tick(
     assert picture[: quality.view_height_px].std() > 10
 
 
+def test_one_light_casts_shadows_where_shadows_are_wanted(model_message: Model) -> None:
+    assert load_room_model(model_message, FULL).light_castshadow.tolist() == [True, False]
+    assert load_room_model(model_message, FAST).light_castshadow.tolist() == [False, False]
+
+
 @pytest.mark.slow
 def test_full_quality_casts_shadows_and_smooths_edges(model_message: Model, world: World) -> None:
     """At the same size, so that nothing else differs."""

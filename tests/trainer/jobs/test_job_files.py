@@ -12,7 +12,7 @@ import pytest
 from mart.protocol.errors import Corrupt
 from mart.trainer.evaluate.config import EvaluationSpec
 from mart.trainer.jobs.job import Job, JobSpec, JobState
-from mart.trainer.jobs.job_files import load_spec, save_spec
+from mart.trainer.jobs.job_files import load_spec, save_spec, say_why, why_ended
 from mart.trainer.jobs.table import JobTable
 from mart.trainer.train.spec import TrainingSpec
 
@@ -51,6 +51,15 @@ def test_a_spec_is_kept_under_its_old_names(tmp_path: Path) -> None:
     save_spec(tmp_path, SPEC)
     assert json.loads((tmp_path / "job.json").read_text()) == {"request": REQUEST, "judging": JUDGING}
     assert load_spec(tmp_path) == SPEC
+
+
+def test_why_an_attempt_ended_is_told_until_the_next_one(tmp_path: Path) -> None:
+    save_spec(tmp_path, SPEC)
+    say_why(tmp_path, "The disk is full.")
+    assert why_ended(tmp_path, 1) == "The disk is full."
+    assert "SIGKILL" in why_ended(tmp_path, -9)
+    save_spec(tmp_path, SPEC)
+    assert "exit status 1" in why_ended(tmp_path, 1)
 
 
 def test_a_damaged_spec_is_refused(tmp_path: Path) -> None:

@@ -183,3 +183,15 @@ def test_a_room_that_was_closed_is_forgotten_and_one_that_comes_back_is_driven_a
     stand.room.publish()
     assert stand.show() == [("arm1", 2)]
     assert stand.loaded == ["alone", "alone"]
+
+
+def test_a_driver_that_stood_still_itself_forgets_no_room(
+    stand: Stand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("mart.operators.driver.FORGOTTEN_AFTER_S", 0.0)
+    monkeypatch.setattr("mart.operators.driver._FROZEN_S", 0.0)
+    stand.assign("arm1", "alone")
+    stand.show()
+    stand.driver.work()
+    assert stand.show() == [("arm1", 2)]
+    assert stand.loaded == ["alone"]

@@ -53,6 +53,13 @@ async def test_after_five_wrong_codes_even_the_right_one_has_to_wait(enter: Ente
     assert locked.json()["error"]["code"] == "TooMany"
 
 
+async def test_the_right_code_makes_wrong_ones_before_it_forgotten(enter: Enter) -> None:
+    browser = await enter()
+    codes = (*["WRONG-99"] * 4, JOIN_CODE, *["WRONG-99"] * 5, JOIN_CODE)
+    answers = [await browser.post("/api/join", json={"code": code, "name": "X"}) for code in codes]
+    assert [answer.status_code for answer in answers] == [*[403] * 4, 200, *[403] * 5, 429]
+
+
 async def test_the_lock_is_for_one_address_only(enter: Enter) -> None:
     guesser = await enter()
     for _ in range(6):

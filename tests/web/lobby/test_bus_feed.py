@@ -8,7 +8,8 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from mart.protocol import clock, keys
+from mart.protocol import clock, codec, keys
+from mart.protocol.messages import RoomStatus
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import AliveHandler, Closable
@@ -52,6 +53,18 @@ async def test_a_room_whose_coming_was_never_told_is_not_stale_for_ever(
     for _ in range(2):
         await feed.ask_who_is_alive()
     assert lobby.room_json("room-1", "", clock.monotonic_s())["stale"]
+
+
+async def test_what_a_room_says_under_anothers_name_is_not_used(
+    forgetful: tuple[MemoryBus, Lobby, LobbyFeed], caplog: pytest.LogCaptureFixture
+) -> None:
+    bus, lobby, _ = forgetful
+    with contextlib.closing(bus.publisher(keys.status("room-2"))) as publisher:
+        publisher.put(codec.encode(RoomStatus(room="room-1")))
+        publisher.put(codec.encode(RoomStatus(room="room-2")))
+    await asyncio.sleep(0)
+    assert lobby.rooms.names(clock.monotonic_s()) == ["room-2"]
+    assert "mart/room-2/status" in caplog.text
 
 
 async def test_a_gateway_whose_going_was_never_told_serves_nobody(

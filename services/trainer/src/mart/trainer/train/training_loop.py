@@ -47,6 +47,12 @@ def training_phases(networks: Networks, sizes: Hyperparameters, *, has_base: boo
     return found
 
 
+def learning_rate(sizes: Hyperparameters, part: float) -> float:
+    """Return the rate after this part of a phase's updates, 0 … 1: with the schedule `cosine` it falls to 0."""
+    falls = sizes.schedule == "cosine"
+    return sizes.learning_rate * (0.5 * (1 + math.cos(math.pi * part)) if falls else 1.0)
+
+
 class TrainingLoop:
     """Train networks on windows, phase by phase. `updates` counts those that were made, over all phases."""
 
@@ -93,7 +99,7 @@ class TrainingLoop:
         self._optimizer.zero_grad(set_to_none=True)
         losses.total.backward()
         for group in self._optimizer.param_groups:
-            group["lr"] = self._learning_rate(done / phase.updates)
+            group["lr"] = learning_rate(self._sizes, done / phase.updates)
         self._optimizer.step()
         self.updates += 1
         if self._ema is not None:
@@ -168,8 +174,3 @@ class TrainingLoop:
             index, key = name.split(".", 1)
             moments.setdefault(int(index), {})[key] = value
         self._optimizer.load_state_dict(state | {"state": moments})
-
-    def _learning_rate(self, part: float) -> float:
-        """Return the rate after this part of the phase's updates, 0 … 1."""
-        falls = self._sizes.schedule == "cosine"
-        return self._sizes.learning_rate * (0.5 * (1 + math.cos(math.pi * part)) if falls else 1.0)

@@ -1,0 +1,25 @@
+from __future__ import annotations
+
+import pytest
+
+from mart.protocol.control_rate import (
+    DEFAULT_CONTROL_HZ,
+    MAX_CONTROL_HZ,
+    MIN_CONTROL_HZ,
+    OFFERED_CONTROL_HZ,
+    require_control_hz,
+)
+from mart.protocol.errors import InvalidInput
+
+
+@pytest.mark.parametrize(
+    "control_hz", [MIN_CONTROL_HZ, DEFAULT_CONTROL_HZ, *OFFERED_CONTROL_HZ, MAX_CONTROL_HZ]
+)
+def test_a_rate_within_the_bounds_is_returned(control_hz: float) -> None:
+    assert require_control_hz(control_hz) == control_hz
+
+
+@pytest.mark.parametrize("control_hz", [-20.0, 0.0, 4.999, 100.001, float("inf"), float("nan")])
+def test_any_other_rate_is_refused(control_hz: float) -> None:
+    with pytest.raises(InvalidInput):
+        require_control_hz(control_hz)

@@ -1,0 +1,131 @@
+"""Who stays connected to a seat: no peer that has fallen silent, and none that drove before it changed hands."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Set as AbstractSet
+from typing import Any, cast
+
+import pytest
+
+from mart.protocol.messages import RoomStatus
+from mart.protocol.tokens import Role
+from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.bus.memory import MemoryNetwork
+from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.webrtc import peers as module
+from mart.teleop_gateway.webrtc.peer import Peer
+from mart.teleop_gateway.webrtc.peers import SILENT_S, Peers
+from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
+
+
+class StubPeer:
+    """A peer without a connection, last heard at 0 s."""
+
+    codec = track = None
+
+    def __init__(self, role: Role, _listener: object, _ice_servers: object) -> None:
+        self.role = role
+        self.heard_s = 0.0
+
+    async def answer(self, offer_sdp: str) -> str:
+        return offer_sdp
+
+    async def close(self) -> None:
+        """Nothing is open."""
+
+    def send_status(self, text: str) -> None:
+        """Nobody hears it."""
+
+
+class Leavers:
+    """Keeps the roles of those that left."""
+
+    def __init__(self) -> None:
+        self.left: list[Role] = []
+
+    def on_joined(self, peer: Peer) -> None:
+        peer.heard_s = {Role.BROWSER: 100.0, Role.PHONE: 90.0, Role.VIEWER: 89.0}[peer.role]
+
+    def on_left(self, peer: Peer) -> None:
+        self.left.append(peer.role)
+
+    def on_watched(self, codecs: AbstractSet[Codec]) -> None:
+        """Nobody watches."""
+
+    def on_pose(self, peer: Peer, payload: bytes) -> None:
+        """Nobody drives."""
+
+    def on_status(self, peer: Peer, text: str) -> None:
+        """Nobody speaks."""
+
+    def on_keyframe_wanted(self, codec: Codec) -> None:
+        """Nobody watches."""
+
+
+async def seated() -> tuple[Peers, Leavers]:
+    """A browser that was heard at 100 s, a phone at 90 s, and a viewer at 89 s."""
+    peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), ())
+    leavers = Leavers()
+    peers.attach(leavers)
+    for role in (Role.BROWSER, Role.PHONE, Role.VIEWER):
+        await peers.answer(role, "")
+    return peers, leavers
+
+
+@pytest.fixture(autouse=True)
+def _without_connections(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "Peer", StubPeer)
+
+
+@pytest.mark.parametrize(
+    ("now_s", "gone"),
+    [
+        (89.0 + SILENT_S, []),
+        (90.0 + SILENT_S, [Role.VIEWER]),
+        (100.0 + SILENT_S, [Role.PHONE, Role.VIEWER]),
+        (101.0 + SILENT_S, [Role.BROWSER, Role.PHONE, Role.VIEWER]),
+    ],
+)
+def test_those_that_were_silent_for_too_long_are_dropped(now_s: float, gone: list[Role]) -> None:
+    async def body() -> None:
+        peers, leavers = await seated()
+        peers.drop_silent(now_s)
+        assert leavers.left == gone
+        assert {peer.role for peer in peers} == set(Role) - set(gone)
+
+    asyncio.run(body())
+
+
+def test_a_seat_that_changes_hands_keeps_its_viewers() -> None:
+    async def body() -> None:
+        peers, leavers = await seated()
+        peers.drop_driving()
+        assert leavers.left == [Role.BROWSER, Role.PHONE]
+        assert [peer.role for peer in peers] == [Role.VIEWER]
+
+    asyncio.run(body())
+
+
+def test_who_is_told_how_things_stand_is_also_looked_after() -> None:
+    class Counting:
+        def __init__(self) -> None:
+            self.looked = asyncio.Event()
+
+        def drop_silent(self, now_s: float) -> None:
+            assert now_s > 0.0
+            self.looked.set()
+
+    class Undriven:
+        driving = None
+
+    async def body() -> None:
+        peers = Counting()
+        anything = cast("Any", None)
+        broadcaster = StatusBroadcaster(cast("Any", peers), cast("Any", Undriven()), anything, anything)
+        broadcaster.status = RoomStatus(room="room-1")
+        telling = asyncio.create_task(broadcaster.run())
+        await asyncio.wait_for(peers.looked.wait(), 20.0)
+        telling.cancel()
+
+    asyncio.run(body())
