@@ -132,6 +132,7 @@ class Saying(Operator):
         {"arm0": POSE},
         {"arm0": ToolTarget(POSE, gripper=7.0)},
         {"arm0": ToolTarget(POSE, gripper=float("nan"))},
+        {"arm0": ToolTarget(POSE, gripper="shut")},  # type: ignore[arg-type]  # that is the point
         {"arm0": ToolTarget("up")},  # type: ignore[arg-type]  # that is the point
         ZeroDivisionError("division by zero"),
     ],
@@ -141,6 +142,15 @@ def test_rubbish_is_refused_and_nothing_is_said(said: object) -> None:
     with pytest.raises(InvalidInput):
         commander.observe(state_of(1))
     assert commander.commands(0) == []
+
+
+def test_an_operator_that_fails_to_begin_is_told_in_a_sentence() -> None:
+    class Forgetful(Riser):
+        def begin(self, episode: int) -> None:
+            raise KeyError("plan")
+
+    with pytest.raises(InvalidInput):
+        commander_of(Forgetful()).observe(state_of(1))
 
 
 def test_a_pose_that_is_none_cannot_be_made() -> None:

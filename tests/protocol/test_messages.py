@@ -33,6 +33,7 @@ def test_every_golden_message_still_exists() -> None:
     assert sorted(GOLDEN) == KINDS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 @settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large], max_examples=25)
 @given(data=st.data())

@@ -134,6 +134,7 @@ def test_a_repaired_file_holds_what_an_undisturbed_one_holds(tmp_path: Path, lef
     assert contents(one.saved.path) == contents(undisturbed.path)
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(where=st.integers(0, 10**6), beside=st.none() | st.sampled_from([-1, 0, 1, 5, 9, 30]))
 def test_a_cut_anywhere_keeps_every_whole_chunk(
@@ -167,6 +168,7 @@ def test_a_cut_anywhere_keeps_every_whole_chunk(
         assert record.complete == (record.outcome == "success")
 
 
+@pytest.mark.slow
 @settings(max_examples=80)
 @given(where=st.integers(0, 10**6), spoilt=st.binary(min_size=1, max_size=20))
 @example(where=26, spoilt=b"\x00\x00\x00\x00\x00\x02")  # an index whose first byte says footer

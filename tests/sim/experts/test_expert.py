@@ -94,6 +94,7 @@ def test_in_a_trial_skill_decides_how_many_succeed(
     assert (max(one.attempts for one in ended) > 1) == (skill != "expert")
 
 
+@pytest.mark.slow
 def test_the_same_seed_wants_the_same(worlds: dict[int, World]) -> None:
     assert perform(worlds[2], 1, "novice") == perform(worlds[2], 1, "novice")
 
@@ -143,6 +144,7 @@ def test_an_expert_lets_go_of_the_clutch_now_and_then(worlds: dict[int, World]) 
     assert intents[-1].engaged
 
 
+@pytest.mark.slow
 @given(st.sampled_from(skill_names()), st.integers(0, 2**32 - 1), st.sampled_from([0.05, 1 / 60]))
 def test_while_the_clutch_is_let_go_nothing_is_asked_to_move(
     worlds: dict[int, World], skill: str, seed: int, tick_s: float

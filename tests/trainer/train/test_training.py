@@ -53,6 +53,7 @@ def same(one: dict[str, Tensor], other: dict[str, Tensor]) -> bool:
     return one.keys() == other.keys() and all(torch.equal(one[name], other[name]) for name in one)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["r-HBC", "rd-HBC", "d-Flow", "none/joint/joint/mlp/gmm"])
 @pytest.mark.parametrize("ema", [None, 0.9])
 def test_stopped_and_resumed_is_the_same_bit_for_bit(

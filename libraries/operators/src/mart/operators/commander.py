@@ -7,7 +7,8 @@ operator is still there.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import SupportsFloat
 
 import numpy as np
 
@@ -74,7 +75,7 @@ class SeatCommander:
             raise Corrupt(f"A state without {', '.join(missing)} came, which is driven here.")
         view = self._view(state, arms)
         if not self._begun or self._world_was_reset(state, arms[self.arms[0]]):
-            self._operator.begin(state.episode)
+            _guarded(lambda: self._operator.begin(state.episode))
             self._begun = True
         self._newest = newest
         for arm, target in _targets_of(self._operator, view).items():
@@ -135,14 +136,19 @@ def _observations(state: State, shapes: Mapping[str, tuple[int, ...]]) -> dict[s
         raise Corrupt(f"A state came without what an operator should see: {error}.") from error
 
 
-def _targets_of(operator: Operator, view: SeatView) -> dict[str, ToolTarget]:
-    """The operator's targets, checked: it may be anybody's code."""
+def _guarded(call: Callable[[], object]) -> object:
+    """Call an operator, which may be anybody's code: whatever it raises becomes a sentence."""
     try:
-        said = operator.act(view)
+        return call()
     except MartError:
         raise
     except Exception as error:
         raise InvalidInput(f"The operator failed: {type(error).__name__}: {error}") from error
+
+
+def _targets_of(operator: Operator, view: SeatView) -> dict[str, ToolTarget]:
+    """The operator's targets, checked: it may be anybody's code."""
+    said = _guarded(lambda: operator.act(view))
     if not isinstance(said, Mapping):
         raise InvalidInput(
             f"The operator gave {type(said).__name__}; give a dictionary from arm to ToolTarget."
@@ -155,7 +161,7 @@ def _checked(arm: str, target: object) -> ToolTarget:
         raise InvalidInput(
             f"The operator gave {type(target).__name__} for {arm}; give a ToolTarget with a Pose."
         )
-    gripper = float(target.gripper)
-    if not 0.0 <= gripper <= 1.0:
-        raise InvalidInput(f"The operator gave gripper {gripper} for {arm}; give 0 (open) to 1 (closed).")
-    return ToolTarget(target.pose_tool_in_base, gripper, bool(target.engaged))
+    gripper: object = target.gripper  # whatever the annotation says, it is anybody's code that filled it
+    if not (isinstance(gripper, SupportsFloat) and 0.0 <= float(gripper) <= 1.0):
+        raise InvalidInput(f"The operator gave gripper {gripper!r} for {arm}; give 0 (open) to 1 (closed).")
+    return ToolTarget(target.pose_tool_in_base, float(gripper), bool(target.engaged))
