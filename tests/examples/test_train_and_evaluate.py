@@ -15,7 +15,10 @@ from tests.trainer import recorded
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
-pytestmark = pytest.mark.timeout(300)  # importing torch takes its time on a busy machine
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.timeout(300),  # importing torch takes its time on a busy machine
+]
 
 
 def run(example: str, *arguments: object, data_dir: Path) -> str:

@@ -126,6 +126,7 @@ def test_a_machine_that_cannot_draw_says_so(
         Renderer(model, "front", *SIZE)
 
 
+@pytest.mark.slow
 def test_no_viewpoint_of_a_task_shows_the_sky() -> None:
     """That is why it is never drawn; it would be black here, and the floor of every task is lighter than that."""
     world = World.build("three_arm_lift_wiping")

@@ -153,7 +153,8 @@ def test_a_reset_and_a_close_let_go_of_worlds(endpoint: str, bus: Bus) -> None:
         assert not replica.sessions
 
 
-def test_without_replicas_nothing_is_reset(endpoint: str, bus: Bus) -> None:
+def test_without_replicas_nothing_is_reset(endpoint: str, bus: Bus, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mart.rollouts.client._START_TIMEOUT_S", 1.5)
     with RolloutClient(bus, ["a"]) as client, pytest.raises(Unavailable, match=r"mart replica --name a"):
         client.reset(TASK.name, [1])
     with (

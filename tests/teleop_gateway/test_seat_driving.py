@@ -78,7 +78,8 @@ def test_hostile_frames_are_dropped_counted_and_told(on_seat: OnSeat) -> None:
                 assert told["rejected"].keys() - expected.keys() <= {
                     "sequence"
                 }  # the replayed one, if it has come
-                assert len(commands) <= 1
+                # What was under way still arrives; sixty frames a second would make fifteen and more meanwhile.
+                assert len(commands) <= 5
 
     on_seat(body)
 
