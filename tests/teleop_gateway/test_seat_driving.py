@@ -25,7 +25,9 @@ def test_a_hand_moves_the_arm(on_seat: OnSeat) -> None:
     async def body(seat: SeatUnderTest) -> None:
         async with connected(seat.exchange(Role.BROWSER)) as browser:
             with seat.commands() as commands:
-                await browser.drive(1, 0.3)
+                # Beginning to draw stops this process for a moment, in which frames would run out of time.
+                async with in_background(browser.drive(1)):
+                    await browser.wait_told(lambda told: told.get("fps", 0.0) > 0.0)
                 before = seat.room.world.tool_pose_in_base("arm0")
                 await browser.drive(1, 0.3, clutch=True)
                 pressed = commands.all()[-1]
@@ -112,7 +114,8 @@ def test_silence_is_told_soon(on_seat: OnSeat) -> None:
                 assert (
                     LOST_AFTER_S / 2 < lasted_s < 2.0
                 )  # a busy machine is late, and late in looking at the clock
-                assert len(commands) <= 1
+                # Of frames on their way; a seat that went on by itself would give 60 a second.
+                assert len(commands) <= 3
 
     on_seat(body)
 
