@@ -115,7 +115,7 @@ def test_silence_is_told_soon(on_seat: OnSeat) -> None:
                     LOST_AFTER_S / 2 < lasted_s < 2.0
                 )  # a busy machine is late, and late in looking at the clock
                 # Of frames on their way; a seat that went on by itself would give 60 a second.
-                assert len(commands) <= 3
+                assert len(commands) <= 5
 
     on_seat(body)
 
