@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
@@ -22,6 +23,8 @@ from mart.protocol.messages import (
 from mart.sim.room.barrier import FREED_AFTER_S, PAUSED_AFTER_S, STALLED_AFTER_S, Barrier
 from mart.sim.room.pacing import CATCH_UP_TICKS
 from tests.sim.room.commands import received
+
+pytestmark = pytest.mark.slow
 
 ARMS = ("arm0", "arm1", "arm2")
 PERIOD_S = 0.05

@@ -34,6 +34,8 @@ from mart.trainer.train.training import train
 from tests.trainer.conftest import Recorded
 from tests.trainer.recorded import TASK
 
+pytestmark = pytest.mark.slow
+
 SEEDS = (1, 2, 3)  # of the recorded episodes
 
 
@@ -136,7 +138,6 @@ def run(episodes: Recorded, tmp_path_factory: pytest.TempPathFactory) -> RunDire
     return RunDirectory(folder)
 
 
-@pytest.mark.slow
 def test_a_run_is_judged_once(client: RolloutClient, run: RunDirectory) -> None:
     evaluator = Evaluator(client, EvalConfig(episodes=2, score_episodes=3, time_limit_s=1.0, kept=2))
     said: list[Evaluation] = []
