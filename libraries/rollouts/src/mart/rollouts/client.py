@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from mart.protocol import codec, keys
 from mart.protocol.batch_state import ACTION_SIZE, BatchState, Flags, join, pack_actions, unpack
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.errors import Conflict, InvalidInput, MartError, Unavailable
 from mart.protocol.messages import Model, RolloutReply, RolloutRequest, raise_error
 from mart.protocol.tasks import Task, get_task
@@ -71,7 +72,7 @@ class RolloutClient:
         self,
         task: str,
         seeds: Sequence[int],
-        control_hz: float = 20.0,
+        control_hz: float = DEFAULT_CONTROL_HZ,
         arms: int | None = None,
         *,
         integration_states: bool = False,
@@ -125,7 +126,7 @@ class RolloutClient:
             self._steps += 1
             return self._unpack(task, replies)
 
-    def model(self, task: str, control_hz: float = 20.0, arms: int | None = None) -> Model:
+    def model(self, task: str, control_hz: float = DEFAULT_CONTROL_HZ, arms: int | None = None) -> Model:
         """What such worlds are compiled to. Raises as `reset`; worlds that there are stay as they are."""
         describe = RolloutRequest.Describe(task=task, control_hz=control_hz, arms=arms or 0)
         with self._alone():

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.vocabulary import ServiceKind
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ class PlatformOptions:
     public_host: str = ""
     room: str = "room-1"
     task: str = DEFAULT_TASK
-    control_hz: float = 20.0
+    control_hz: float = DEFAULT_CONTROL_HZ
     seed: int | None = None
     skill: str | None = None
     episodes: int | None = None

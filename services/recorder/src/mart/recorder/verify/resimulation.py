@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from hashlib import blake2b
 
 import numpy as np
 
@@ -19,11 +18,11 @@ from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Corrupt, MartError, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest, State, raise_error
 from mart.protocol.recording import RoomRecord, VerificationRecord
+from mart.protocol.state_digest import DIGEST_BYTES, state_digest
 from mart.protocol.vocabulary import ServiceKind, Verdict
 from mart.runtime.alive_wait import await_alive
 from mart.runtime.bus import Bus
 
-DIGEST_BYTES = 16
 _STRETCH_TICKS = 2000
 _TIMEOUT_S = 20.0
 _TIMEOUT_PER_TICK_S = 0.02
@@ -50,7 +49,7 @@ class Stretch:
     def add(self, state: State) -> None:
         """Add the state that follows."""
         self.actions.append([number for arm in state.arms for number in arm.action])
-        self.digests.append(blake2b(state.integration_state, digest_size=DIGEST_BYTES).digest())
+        self.digests.append(state_digest(state.integration_state))
 
     def request(self, room: RoomRecord) -> RolloutRequest.Resimulate:
         """Return what a replica is asked. Raises Corrupt where an action is not of seven finite numbers an arm."""
