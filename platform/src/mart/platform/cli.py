@@ -126,7 +126,7 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
 @_CONTROL_HZ_OPTION
 @click.option("--lockstep", is_flag=True, help="As fast as the machine allows, without phones and video.")
 @click.option("--out", default=Path("data/collected"), show_default=True, type=click.Path(path_type=Path))
-@json_option
+@click.option("--json", "as_json", is_flag=True, help="Print lines of JSON: each episode, then the summary.")
 def collect(
     *,
     task: str,
