@@ -8,8 +8,9 @@ from typing import Generic, TypeVar
 
 from google.protobuf.message import Message
 
-from mart.protocol import clock, codec
+from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
+from mart.protocol.received import decode_received
 from mart.runtime.bus.base import Sample
 from mart.runtime.rate_limit import RateLimit
 
@@ -29,7 +30,7 @@ class DecodingSubscriber(Generic[M]):
 
     def __call__(self, sample: Sample) -> None:
         try:
-            self._take(codec.decode(self._kind, sample.payload))
+            self._take(decode_received(self._kind, sample.payload))
         except InvalidInput as error:
             self.garbage += 1
             if self._log_limit.allows(clock.monotonic_s()):

@@ -7,10 +7,11 @@ import logging
 from collections.abc import Callable
 from collections.abc import Set as AbstractSet
 
-from mart.protocol import codec, keys
+from mart.protocol import keys
 from mart.protocol.errors import MartError
 from mart.protocol.keys import DETAILED
 from mart.protocol.messages import Model, State
+from mart.protocol.received import decode_received
 from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.video.encoder import Codec
@@ -90,7 +91,7 @@ class ViewManager:
         while True:
             try:
                 answer = await self._bus.query(keys.model(self._seat.room), self._wanted(), _QUERY_TIMEOUT_S)
-                message = codec.decode(Model, answer)
+                message = decode_received(Model, answer)
                 if message.sha256 != self._sha256:
                     await self._use(message)
             except MartError as error:
