@@ -277,7 +277,7 @@ def test_an_empty_request_is_invalid(episode: EpisodeStateMachine, seats: SeatTa
 @pytest.mark.parametrize("number", [2**32 - 1, MAX_NUMBER, MAX_NUMBER_LEAP + 4])
 def test_a_number_that_leaves_none_is_refused(seats: SeatTable, number: int) -> None:
     course = EpisodeStateMachine(room_seed=1, horizon_ticks=10, number=3)
-    asked = EpisodeRequest(ready=EpisodeRequest.Ready(arm="arm0", holder_id="h0", ready=True, number=number))
+    asked = EpisodeRequest(ready=EpisodeRequest.Ready(arm="arm0", holder_id="ana", ready=True, number=number))
     with pytest.raises(InvalidInput, match="open another room"):
         course.answer(asked, seats, 0.0)
     assert course.number == 3

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 from google.protobuf.descriptor import Descriptor, FieldDescriptor
 from google.protobuf.message import Message
 
-from mart.protocol import codec
+from mart.protocol import codec, keys
 from mart.protocol.errors import InvalidInput
 
 M = TypeVar("M", bound=Message)
@@ -47,6 +47,13 @@ def decode_received(kind: type[M], payload: bytes, limit_bytes: int = codec.MAX_
     if objection is not None:
         raise InvalidInput(f"A {kind.DESCRIPTOR.name} was given whose {objection}.")
     return message
+
+
+def require_room(message: Message, key: str) -> None:
+    """Raise InvalidInput where a message that names its room came under the key of another."""
+    room = getattr(message, "room", None)
+    if room is not None and room != keys.room_of(key):
+        raise InvalidInput(f"A message of room {room[:64]!r} was sent under {key}.")
 
 
 def _objection(message: Message, plan: _Plan) -> str | None:

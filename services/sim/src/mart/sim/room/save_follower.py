@@ -85,6 +85,8 @@ class SaveFollower:
                 self._ask()
             except MartError as error:
                 _log.info("Whether episodes are saved is not known yet: %s", error)
+            except Exception:  # noqa: BLE001 - logged whole; the next look may find what this one did not
+                _log.exception("Whether episodes are saved could not be asked")
 
     def _ask(self) -> None:
         with self._lock:

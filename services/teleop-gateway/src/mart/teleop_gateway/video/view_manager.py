@@ -23,6 +23,7 @@ _log = logging.getLogger(__name__)
 
 _QUERY_TIMEOUT_S = 5.0
 _RETRY_S = 0.5
+_RETRY_AFTER_FAILURE_S = 5.0
 
 
 class ViewManager:
@@ -97,6 +98,9 @@ class ViewManager:
             except MartError as error:
                 _log.warning("No picture of %s yet: %s", self._seat.room, error)
                 await asyncio.sleep(_RETRY_S)
+            except Exception:  # noqa: BLE001 - logged whole; a room without a picture is asked again
+                _log.exception("No picture of %s yet: its model could not be used", self._seat.room)
+                await asyncio.sleep(_RETRY_AFTER_FAILURE_S)
             else:
                 return
 
