@@ -136,6 +136,7 @@ declare namespace Api {
     token: string;
     role: PeerRole;
     epoch: number;
+    ice_servers: RTCIceServer[];
   }
 
   interface Pairing {
