@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from mart.platform.run import supervisor as module
 from mart.platform.run.plan import PlatformOptions, Process
 from mart.platform.run.supervisor import Supervisor
 from mart.protocol import clock
@@ -24,7 +23,7 @@ def test_a_supervisor_that_does_not_answer_is_waited_for_only_so_long(
     def hang(*_: object, timeout: float, **__: object) -> None:
         raise subprocess.TimeoutExpired("supervisorctl", timeout)
 
-    monkeypatch.setattr(module.subprocess, "run", hang)
+    monkeypatch.setattr("mart.platform.run.supervisor.subprocess.run", hang)
     supervisor = Supervisor(PlatformOptions(tmp_path), (), tmp_path / "socket")
     with pytest.raises(Unavailable, match="did not answer"):
         supervisor.add(Process(("sim", "--room", "lab"), ServiceKind.SIM, "lab"))
