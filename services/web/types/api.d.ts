@@ -56,6 +56,9 @@ declare namespace Api {
     elapsed_s: number;
     outcome: Messages.Outcome | "unspecified";
     reason: string;
+    ended_by: string;
+    ended_by_name: string;
+    ended_by_arm: string;
   }
 
   interface Subtask {
@@ -67,6 +70,17 @@ declare namespace Api {
   interface Plan {
     episodes: number;
     good: number;
+  }
+
+  interface LastEnded {
+    number: number;
+    outcome: Messages.Outcome | "unspecified";
+    reason: string;
+    ended_by: string;
+    ended_by_name: string;
+    ended_by_arm: string;
+    subtasks_done: number;
+    subtasks: number;
   }
 
   interface Room {
@@ -87,6 +101,8 @@ declare namespace Api {
     episodes_saved: number;
     episodes_good: number;
     plan: Plan | null;
+    last_ended: LastEnded | null;
+    unrecorded: string;
     still: number;
   }
 

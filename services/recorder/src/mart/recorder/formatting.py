@@ -9,6 +9,7 @@ from typing import Any
 
 from mart.episodes.datasets import NamedDataSet
 from mart.episodes.labelled_episode import LabelledEpisode
+from mart.protocol.vocabulary import EpisodeEndedBy
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.repair.repair import RepairResult
 from mart.recorder.verify.resimulation import ComparedStretch
@@ -38,14 +39,26 @@ def _cells(path: str, row: LabelledEpisode) -> tuple[str, ...]:
         return (path, "–", "–", "–", "–", "–", row.error)
     marks = {
         "incomplete": not row.complete,
+        f"{row.missing_commands} commands missing": row.missing_commands,
         "repaired": row.repaired,
         "paused": row.interrupted,
         "dropped": row.dropped,
     }
-    remarks = [word for word, holds in marks.items() if holds] + ([row.note] if row.note else [])
+    remarks = [ending(row)] if ending(row) else []
+    remarks += [word for word, holds in marks.items() if holds] + ([row.note] if row.note else [])
     pace = "–" if row.real_time_factor is None else f"{row.real_time_factor:.3f}"
     drivers = ", ".join(f"{arm} {who}" for arm, who in row.operators.items())
     return (path, row.outcome, row.verdict, str(row.ticks), pace, drivers, "; ".join(remarks))
+
+
+def ending(row: LabelledEpisode) -> str:
+    """Return who ended an episode and how much of its task was done, where that does not go without saying."""
+    parts = (
+        [f"said by {row.ended_by_name or 'an operator'}"] if row.ended_by == EpisodeEndedBy.OPERATOR else []
+    )
+    if row.subtasks is not None and row.subtasks_done is not None and row.subtasks_done < row.subtasks:
+        parts.append(f"{row.subtasks_done} of {row.subtasks} steps")
+    return ", ".join(parts)
 
 
 def details(result: Mapping[str, Any]) -> str:

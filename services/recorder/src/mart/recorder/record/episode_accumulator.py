@@ -17,6 +17,9 @@ import numpy as np
 from mart.protocol.messages import (
     BARRIER_PHASE_PAUSED,
     BARRIER_PHASE_STOPPED,
+    ENDED_BY_TASK,
+    ENDED_BY_TIME,
+    ENDED_BY_UNSPECIFIED,
     EPISODE_PHASE_ENDED,
     EPISODE_PHASE_PRACTICE,
     EPISODE_PHASE_RECORDING,
@@ -24,10 +27,13 @@ from mart.protocol.messages import (
     OUTCOME_SUCCESS,
     OUTCOME_UNSPECIFIED,
     ArmState,
+    EndedBy,
+    Episode,
     Event,
     Outcome,
     RoomStatus,
     State,
+    ended_by_word,
     operator_word,
     outcome_word,
 )
@@ -37,11 +43,19 @@ from mart.recorder.record.room_facts import RoomFacts
 
 @dataclass(frozen=True)
 class EpisodeEnding:
-    """Say how an episode ended, and with which tick of its room."""
+    """Say how an episode ended, with which tick of its room, and who or what ended it."""
 
     outcome: Outcome
     reason: str
     last_tick: int
+    ended_by: EndedBy = ENDED_BY_UNSPECIFIED
+    ended_by_name: str = ""
+    ended_by_arm: str = ""
+
+    @classmethod
+    def of(cls, said: Event.EpisodeEnded | Episode, last_tick: int) -> EpisodeEnding:
+        """Return what a room has said, in an event or in its status."""
+        return cls(said.outcome, said.reason, last_tick, said.ended_by, said.ended_by_name, said.ended_by_arm)
 
 
 class EpisodeAccumulator:
@@ -111,8 +125,7 @@ class EpisodeAccumulator:
         if event.HasField("episode_started") and event.episode_started.number == self.number:
             self.started, self.seed = event.episode_started, event.episode_started.seed
         elif event.HasField("episode_ended") and event.episode_ended.number == self.number:
-            said = event.episode_ended
-            self.ended = EpisodeEnding(said.outcome, said.reason, said.last_tick)
+            self.ended = EpisodeEnding.of(event.episode_ended, event.episode_ended.last_tick)
         elif event.HasField("barrier_changed"):
             self.interrupted |= event.barrier_changed.phase in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED)
         elif event.HasField("latency") and _is_usable(event.latency) and event.latency.arm in self.arms:
@@ -121,7 +134,12 @@ class EpisodeAccumulator:
     def add_status(self, status: RoomStatus) -> None:
         """Learn what a room's status says of this episode; being repeated, it makes up for an event that was lost."""
         said = status.episode
-        if status.boot != self.boot or said.number != self.number:
+        if status.boot != self.boot:
+            return
+        last = status.last_ended
+        if last.number == self.number and self.ended is None and last.outcome != OUTCOME_UNSPECIFIED:
+            self.ended = EpisodeEnding.of(last, last.last_tick)
+        if said.number != self.number:
             return
         if said.phase not in (EPISODE_PHASE_RECORDING, EPISODE_PHASE_ENDED):
             return
@@ -129,7 +147,7 @@ class EpisodeAccumulator:
         self.seed = said.seed if self.seed is None else self.seed
         if said.phase == EPISODE_PHASE_ENDED and self.ended is None and said.outcome != OUTCOME_UNSPECIFIED:
             last_tick = self._first.tick - self._first.episode_tick + said.ticks
-            self.ended = EpisodeEnding(said.outcome, said.reason, last_tick)
+            self.ended = EpisodeEnding.of(said, last_tick)
 
     def is_past(self, status: RoomStatus) -> bool:
         """Tell whether the room has gone on: it practises again after this episode, or is at a later one."""
@@ -146,6 +164,7 @@ class EpisodeAccumulator:
     def record(self, facts: RoomFacts, repaired: bool = False) -> EpisodeRecord:
         """Return the record `mart.episode`. repaired: whether it is put together from what a crash had left."""
         started, ended = self.started, self.ended
+        subtasks = [subtask.done for subtask in self._last.progress.subtasks]
         return EpisodeRecord(
             room=self.room,
             number=self.number,
@@ -163,6 +182,11 @@ class EpisodeAccumulator:
             last_tick=self._last.tick,
             outcome=outcome_word(ended.outcome if ended else OUTCOME_UNSPECIFIED),
             reason=ended.reason if ended else self.unfinished_reason,
+            ended_by=ended_by_word(ended.ended_by) if ended else None,
+            ended_by_name=(ended and ended.ended_by_name) or None,
+            ended_by_arm=(ended and ended.ended_by_arm) or None,
+            subtasks_done=sum(subtasks) if subtasks else None,
+            subtasks=len(subtasks) or None,
             interrupted=self.interrupted,
             complete=self.has_all and not self.missing_ticks and self._first.episode_tick == 0,
             repaired=repaired,
@@ -200,12 +224,12 @@ class EpisodeAccumulator:
 def _ending_of(last: State, started: Event.EpisodeStarted | None) -> EpisodeEnding | None:
     """Return the ending that a last state implies: a room ends an episode at the tick on which its task is decided."""
     if last.progress.success:
-        return EpisodeEnding(OUTCOME_SUCCESS, "the task is done", last.tick)
+        return EpisodeEnding(OUTCOME_SUCCESS, "the task is done", last.tick, ENDED_BY_TASK)
     if last.progress.failed:
-        return EpisodeEnding(OUTCOME_FAILURE, last.progress.failed, last.tick)
+        return EpisodeEnding(OUTCOME_FAILURE, last.progress.failed, last.tick, ENDED_BY_TASK)
     limit_ticks = round(started.time_limit_s * started.control_hz) if started is not None else 0
     if limit_ticks and last.episode_tick >= limit_ticks:
-        return EpisodeEnding(OUTCOME_FAILURE, "time is up", last.tick)
+        return EpisodeEnding(OUTCOME_FAILURE, "time is up", last.tick, ENDED_BY_TIME)
     return None
 
 
