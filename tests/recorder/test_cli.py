@@ -54,6 +54,19 @@ def test_list_tells_a_success_that_was_only_said(mart: Mart) -> None:
     assert (shown["ended_by"], shown["subtasks_done"], shown["subtasks"]) == ("operator", 0, 3)
 
 
+def test_check_counts_what_a_file_lacks(mart: Mart, path: Path) -> None:
+    assert mart("episodes", "check", path) == f"{path}: whole.\n"
+    states = synthetic.states(5)
+    states[-1].arms[0].sequence = 99
+    file, episode, facts = write_part(mart.episodes_dir, [*synthetic.without(states, 3)])
+    saved = finalize(file, episode, facts, mart.episodes_dir, by_toy_replica, repaired=False)
+    lacking = mart.json("episodes", "check", saved.path, code=1)["episodes"]
+    assert [(one["missing_ticks"], one["missing_commands"], one["whole"]) for one in lacking] == [
+        (1, 2, False)
+    ]
+    assert "2 commands missing" in mart("episodes", "list", saved.path)
+
+
 def test_without_episodes_it_says_so(mart: Mart) -> None:
     assert mart("episodes", "list") == "There are no episodes.\n"
     assert mart.json("episodes", "list") == {"episodes": []}
@@ -63,6 +76,15 @@ def test_show_tells_all(mart: Mart, path: Path) -> None:
     metadata = mart.json("episodes", "show", path)["metadata"]
     assert metadata["mart.episode"]["room"] == synthetic.ROOM
     assert "waited_for_arm1_s" in mart("episodes", "show", path)
+
+
+def test_show_says_how_the_model_stands(mart: Mart, path: Path) -> None:
+    assert "intact" in mart.json("episodes", "show", path)["model"]
+    data = bytearray(path.read_bytes())
+    data[data.index(synthetic.MJB)] ^= 1
+    path.write_bytes(data)
+    assert "does not match its checksum" in mart.json("episodes", "show", path)["model"]
+    assert mart.json("episodes", "list", path)["episodes"][0]["error"] is None
 
 
 def test_labels_are_laid_over_and_the_file_is_untouched(mart: Mart, path: Path) -> None:

@@ -75,7 +75,7 @@ def show(path: Path, as_json: bool) -> None:
 
     file = open_episode(path)
     (listed,) = described([path])
-    result = {**formatting.listed(listed), "metadata": file.metadata}
+    result = {**formatting.listed(listed), "model": formatting.model(file), "metadata": file.metadata}
     print_result(result, formatting.details(result), as_json)
 
 
@@ -101,6 +101,20 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     lines = [f"{entry['path']}: {entry['verdict']}. {entry['detail']}" for entry in found]
     print_result({"episodes": found}, "\n".join(lines) or "There are no episodes.", as_json)
     return 0 if all(entry["verdict"] == Verdict.VERIFIED for entry in found) else 1
+
+
+@episodes.command()
+@_paths
+@json_option
+def check(paths: tuple[Path, ...], as_json: bool) -> int:
+    """Read episodes whole, without a replica: is every byte sound, and are all ticks and commands there?"""
+    from mart.episodes.folder import episode_files
+    from mart.recorder import formatting
+    from mart.recorder.verify.file_check import check_file
+
+    found = [check_file(path) for path in episode_files(_given(paths))]
+    print_result(*formatting.checked(found), as_json)
+    return 0 if all(one.is_whole for one in found) else 1
 
 
 @episodes.command()

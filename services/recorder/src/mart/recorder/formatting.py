@@ -9,9 +9,12 @@ from typing import Any
 
 from mart.episodes.datasets import NamedDataSet
 from mart.episodes.labelled_episode import LabelledEpisode
+from mart.episodes.reader import EpisodeFile
+from mart.protocol.errors import Corrupt, NotFound
 from mart.protocol.vocabulary import EpisodeEndedBy
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.repair.repair import RepairResult
+from mart.recorder.verify.file_check import FileCheck
 from mart.recorder.verify.resimulation import ComparedStretch
 
 _COLUMNS = ("path", "outcome", "verdict", "ticks", "real time", "operators", "")
@@ -61,6 +64,16 @@ def ending(row: LabelledEpisode) -> str:
     return ", ".join(parts)
 
 
+def model(file: EpisodeFile) -> str:
+    """Say how the compiled model in a file stands: intact, none, or why it cannot be used."""
+    try:
+        return f"intact, {len(file.model())} bytes"
+    except NotFound:
+        return "none"
+    except Corrupt as error:
+        return str(error)
+
+
 def details(result: Mapping[str, Any]) -> str:
     """Return nested facts as text, two spaces a level."""
     return "\n".join(_lines(result, ""))
@@ -92,6 +105,31 @@ def _agreement(stretch: ComparedStretch) -> str:
         return "the same, bit for bit"
     ticks = ", ".join(map(str, stretch.different[:10])) + (", …" if len(stretch.different) > 10 else "")
     return f"{len(stretch.different)} differ: {ticks}"
+
+
+def checked(files: Sequence[FileCheck]) -> tuple[dict[str, Any], str]:
+    """Return what `check` found, as JSON and in words."""
+    told = [
+        {
+            "path": str(one.path),
+            "whole": one.is_whole,
+            "missing_ticks": one.missing_ticks,
+            "missing_commands": one.missing_commands,
+            "error": one.error,
+        }
+        for one in files
+    ]
+    lines = [f"{one.path}: {_lacks(one)}." for one in files]
+    whole = sum(one.is_whole for one in files)
+    lines += [f"{whole} of {len(files)} are whole."] if len(files) > 1 else []
+    return {"episodes": told}, "\n".join(lines) or "There are no episodes."
+
+
+def _lacks(one: FileCheck) -> str:
+    if one.error is not None:
+        return one.error.rstrip(".")
+    missing = {"ticks": one.missing_ticks, "commands": one.missing_commands}
+    return ", ".join(f"{count} {what} are missing" for what, count in missing.items() if count) or "whole"
 
 
 def repaired(repaired: Sequence[RepairResult]) -> tuple[dict[str, Any], str]:
