@@ -72,15 +72,21 @@ declare namespace Api {
     good: number;
   }
 
-  interface LastEnded {
+  interface SavedFile {
+    path: string;
+    verified: boolean;
+    verdict: string;
+    size_bytes: number;
+    outcome: Messages.Outcome | "unspecified";
+  }
+
+  interface LastEpisode {
     number: number;
     outcome: Messages.Outcome | "unspecified";
     reason: string;
-    ended_by: string;
-    ended_by_name: string;
-    ended_by_arm: string;
-    subtasks_done: number;
-    subtasks: number;
+    since_s: number;
+    epochs: Record<string, number>;
+    saved: SavedFile | null;
   }
 
   interface Room {
@@ -101,9 +107,9 @@ declare namespace Api {
     episodes_saved: number;
     episodes_good: number;
     plan: Plan | null;
-    last_ended: LastEnded | null;
     unrecorded: string;
     still: number;
+    last_episode: LastEpisode | null;
   }
 
   type EpisodeAction = "ready" | "unready" | "success" | "failure" | "discard" | "reset";
@@ -125,16 +131,11 @@ declare namespace Api {
     cue: Messages.Cue;
   }
 
-  interface EpisodeSaved {
+  interface EpisodeSaved extends SavedFile {
     id: number;
     room: string;
     kind: "episode_saved";
     number: number;
-    path: string;
-    verified: boolean;
-    verdict: string;
-    size_bytes: number;
-    outcome: Messages.Outcome | "unspecified";
   }
 
   type RoomEvent = Notice | CueGiven | EpisodeSaved;

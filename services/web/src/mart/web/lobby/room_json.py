@@ -86,25 +86,7 @@ def status_json(status: RoomStatus, holder_id: str) -> Json:
         "episodes_saved": status.episodes_saved,
         "episodes_good": status.episodes_good,
         "plan": _plan_json(status),
-        "last_ended": _last_ended_json(status),
         "unrecorded": status.unrecorded,
-    }
-
-
-def _last_ended_json(status: RoomStatus) -> Json | None:
-    """Return how the newest episode ended, None before any has; it stays when the room practises again."""
-    if not status.HasField("last_ended"):
-        return None
-    ended = status.last_ended
-    return {
-        "number": ended.number,
-        "outcome": outcome_word(ended.outcome),
-        "reason": ended.reason,
-        "ended_by": ended_by_word(ended.ended_by) or "",
-        "ended_by_name": ended.ended_by_name,
-        "ended_by_arm": ended.ended_by_arm,
-        "subtasks_done": ended.subtasks_done,
-        "subtasks": ended.subtasks,
     }
 
 
