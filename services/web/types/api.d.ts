@@ -153,6 +153,7 @@ declare namespace Api {
     token: string;
     role: PeerRole;
     epoch: number;
+    ice_servers: RTCIceServer[];
   }
 
   interface Pairing {
