@@ -149,9 +149,8 @@ def test_an_operator_ends_an_episode(
     episode: EpisodeStateMachine, seats: SeatTable, outcome: Outcome
 ) -> None:
     record(episode, seats)
-    assert episode.answer(finish("ben", outcome), seats, 4.0) == (
-        EndEpisode(1, outcome, 0, "said by Ben", EpisodeEnder(ENDED_BY_OPERATOR, "Ben", "arm1")),
-    )
+    (ended,) = episode.answer(finish("ben", outcome), seats, 4.0)
+    assert ended == EndEpisode(1, outcome, 0, "said by Ben", EpisodeEnder(ENDED_BY_OPERATOR, "Ben", "arm1"))
 
 
 def test_what_ended_does_not_end_again(episode: EpisodeStateMachine, seats: SeatTable) -> None:
@@ -228,9 +227,8 @@ def test_a_recording_that_everyone_left_is_discarded(episode: EpisodeStateMachin
     record(episode, seats)
     seats.release("arm0", "ana")
     seats.release("arm1", "ben")
-    assert episode.seats_changed(seats, 4.0) == (
-        EndEpisode(1, OUTCOME_DISCARDED, 0, "everyone left", EpisodeEnder(ENDED_BY_ABSENCE)),
-    )
+    (ended,) = episode.seats_changed(seats, 4.0)
+    assert ended == EndEpisode(1, OUTCOME_DISCARDED, 0, "everyone left", EpisodeEnder(ENDED_BY_ABSENCE))
 
 
 def test_readiness_counts_in_practice_only(episode: EpisodeStateMachine, seats: SeatTable) -> None:
@@ -248,9 +246,8 @@ def test_a_reset_in_practice_gives_another_world(episode: EpisodeStateMachine, s
 def test_a_reset_discards_a_recording(episode: EpisodeStateMachine, seats: SeatTable) -> None:
     record(episode, seats)
     ended, again = episode.answer(reset("ana"), seats, 4.0)
-    assert ended == EndEpisode(
-        1, OUTCOME_DISCARDED, 0, "reset by Ana", EpisodeEnder(ENDED_BY_OPERATOR, "Ana", "arm0")
-    )
+    by_ana = EpisodeEnder(ENDED_BY_OPERATOR, "Ana", "arm0")
+    assert ended == EndEpisode(1, OUTCOME_DISCARDED, 0, "reset by Ana", by_ana)
     assert isinstance(again, ResetWorld)
 
 
@@ -260,10 +257,9 @@ def test_without_people_anybody_may_start_and_finish(episode: EpisodeStateMachin
     seats.claim("arm1", "policy-1", "BC-RNN", OPERATOR_POLICY)
     assert len(episode.answer(ready("arm0", ""), seats, 0.0)) == 1
     episode.advance(everyone_present=True, now_s=COUNTDOWN_S)
-    ender = EpisodeEnder(ENDED_BY_OPERATOR)
-    assert episode.answer(finish("", OUTCOME_SUCCESS), seats, 4.0) == (
-        EndEpisode(1, OUTCOME_SUCCESS, 0, "said by an operator", ender),
-    )
+    (ended,) = episode.answer(finish("", OUTCOME_SUCCESS), seats, 4.0)
+    by_somebody = EpisodeEnder(ENDED_BY_OPERATOR)
+    assert ended == EndEpisode(1, OUTCOME_SUCCESS, 0, "said by an operator", by_somebody)
 
 
 def test_nothing_is_recorded_while_nobody_drives(episode: EpisodeStateMachine) -> None:
