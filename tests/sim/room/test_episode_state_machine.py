@@ -26,11 +26,9 @@ from mart.protocol.messages import (
     EpisodeRequest,
     Outcome,
 )
-from mart.protocol.received import MAX_NUMBER
 from mart.sim.room.episode_state_machine import (
     COUNTDOWN_S,
     ENDED_S,
-    MAX_NUMBER_LEAP,
     BeginEpisode,
     Effect,
     EndEpisode,
@@ -281,15 +279,6 @@ def test_an_interruption_marks_the_episode_it_meets(episode: EpisodeStateMachine
 def test_an_empty_request_is_invalid(episode: EpisodeStateMachine, seats: SeatTable) -> None:
     with pytest.raises(InvalidInput):
         episode.answer(EpisodeRequest(), seats, 0.0)
-
-
-@pytest.mark.parametrize("number", [2**32 - 1, MAX_NUMBER, MAX_NUMBER_LEAP + 4])
-def test_a_number_that_leaves_none_is_refused(seats: SeatTable, number: int) -> None:
-    course = EpisodeStateMachine(room_seed=1, horizon_ticks=10, number=3)
-    asked = EpisodeRequest(ready=EpisodeRequest.Ready(arm="arm0", holder_id="ana", ready=True, number=number))
-    with pytest.raises(InvalidInput, match="open another room"):
-        course.answer(asked, seats, 0.0)
-    assert course.number == 3
 
 
 def test_numbers_go_on_after_a_restart(seats: SeatTable) -> None:
