@@ -74,4 +74,4 @@ def test_a_file_that_cannot_be_read_is_listed_with_the_reason(root: Path) -> Non
     (root / "2026-09-21" / "broken.mcap").write_bytes(b"broken")
     broken = next(row for row in list_folder(root) if row.path.endswith("broken.mcap"))
     assert broken.error is not None
-    assert "is damaged" in broken.error
+    assert "is no MCAP file" in broken.error

@@ -8,6 +8,8 @@ Python and absent from the file.
 
 from __future__ import annotations
 
+import hashlib
+import json
 import re
 from collections.abc import Mapping
 from typing import Any, ClassVar, Self
@@ -26,9 +28,13 @@ EVENT = "/event"
 TRANSFORMS = "/tf"
 MODEL_ATTACHMENT = "model.mjb"
 
-# What one part of the file may take: a reader refuses more, so that a hostile file cannot fill the memory.
+# What a file and its parts may take: a reader refuses more, so that a hostile file cannot fill the memory.
 MAX_CHUNK_BYTES = 64 * 1024 * 1024
 MAX_RECORD_BYTES = 256 * 1024 * 1024
+MAX_METADATA_BYTES = 1024 * 1024  # of one record, and of eight at most in all
+MAX_UNPACKED_TIMES = 200  # of a file's size; episodes have 1 to 4, a world at rest 27
+MIN_UNPACKED_BYTES = 4 * 1024 * 1024
+MAX_MESSAGES = 4_000_000  # an hour of four arms at 100 ticks a second has 3,500,000
 
 
 def command_topic(arm: str) -> str:
@@ -198,6 +204,13 @@ class OperatorsRecord(BaseModel):
 
 
 VERSIONS = "mart.versions"  # distribution → version of the software that wrote the file
+CHECKSUMS = "mart.checksums"  # metadata record → SHA-256 of what it says: the format itself has none for them
+
+
+def metadata_checksum(strings: Mapping[str, str]) -> str:
+    """Return the SHA-256 of what a metadata record says, in hexadecimal digits, whatever the order of its keys."""
+    said = json.dumps(sorted(strings.items()), ensure_ascii=True, separators=(",", ":"))
+    return hashlib.sha256(said.encode()).hexdigest()
 
 
 def _text(value: object) -> str:
