@@ -7,7 +7,6 @@ import shutil
 import time
 import tracemalloc
 from collections import Counter
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -162,7 +161,7 @@ def test_what_is_no_episode_is_called_what_it_is(data: bytes, name: str, tmp_pat
 
 
 @pytest.fixture
-def odd(tmp_path: Path, source: Path) -> Iterator[Path]:
+def odd(tmp_path: Path, source: Path) -> Path:
     """A folder with one good file among odd ones."""
     shutil.copy(source, tmp_path / "good.mcap")
     (tmp_path / "dangling.mcap").symlink_to("nowhere")

@@ -95,7 +95,7 @@ def _unpacked(chunk: Chunk, budget: UnpackingBudget) -> bytes:
     if len(data) != said:
         raise ValueError(f"a chunk holds {len(data)} bytes and says {said}")
     if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
-        raise ValueError("the checksum of a chunk is not that of its bytes")
+        raise ValueError("a chunk does not match its checksum")
     return data
 
 

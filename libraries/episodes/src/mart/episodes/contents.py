@@ -10,10 +10,10 @@ from collections.abc import Iterator, Mapping
 
 from mcap.exceptions import EndOfFile
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, Chunk, Message, Metadata, MetadataIndex
+from mcap.records import Attachment, Channel, Chunk, DataEnd, Message, Metadata, MetadataIndex
 
 from mart.episodes.chunks import UnpackingBudget, unpack
-from mart.episodes.scan import BoundedFile, FoundRecord, parse, walk
+from mart.episodes.scan import BoundedFile, FoundRecord, crc_of, parse, walk
 from mart.episodes.summary import FileSummary, read_summary
 from mart.protocol.recording import CHECKSUMS, MAX_METADATA_BYTES, metadata_checksum
 
@@ -78,6 +78,22 @@ def read_attachments(file: BoundedFile, finished: bool) -> Iterator[Attachment]:
             record = parse(file, place)
             assert isinstance(record, Attachment)
             yield record
+
+
+def require_intact_data(file: BoundedFile) -> None:
+    """Check all that stands before the summary of a finished file, heads and metadata too, by its one checksum.
+
+    Raises one of `SYMPTOMS` where it does not match, or where the end of the data is not marked; a checksum of 0 means
+    that the writer gave none.
+    """
+    for place in walk(file):
+        if place.opcode == Opcode.DATA_END:
+            end = parse(file, place)
+            assert isinstance(end, DataEnd)
+            if end.data_section_crc and crc_of(file, 0, place.at) != end.data_section_crc:
+                raise ValueError("its data section does not match its checksum")
+            return
+    raise ValueError("the end of its data section is not marked")
 
 
 def _of_messages(file: BoundedFile, finished: bool) -> Iterator[Channel | Message]:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 from typing import TypeVar
 
 from mart.episodes.arrays import EpisodeData, arrays_for_task, arrays_from_states
-from mart.episodes.contents import read_attachments, read_messages, read_metadata
+from mart.episodes.contents import read_attachments, read_messages, read_metadata, require_intact_data
 from mart.episodes.foreign import foreign_kind
 from mart.episodes.scan import BoundedFile, corruption
 from mart.episodes.summary import read_summary
@@ -143,12 +145,21 @@ class EpisodeFile:
                     )
 
     def model(self) -> bytes:
-        """Return the compiled MuJoCo model (MJB). Raises NotFound where the file has none and Corrupt if damaged."""
+        """Return the compiled MuJoCo model (MJB), of which both its checksum and the room's SHA-256 are found right.
+
+        Raises NotFound where the file has none and Corrupt where it is another than the recorded one.
+        """
         with BoundedFile(self.path) as file, corruption(self.path):
             for attachment in read_attachments(file, is_finished(self.path)):
                 if attachment.name == MODEL_ATTACHMENT:
+                    self._require_recorded(attachment.data)
                     return attachment.data
         raise NotFound(f"{self.path} holds no {MODEL_ATTACHMENT}.")
+
+    def check_model(self) -> None:
+        """Raise Corrupt where the file holds another model than the recorded one; one without any is as good."""
+        with contextlib.suppress(NotFound):
+            self.model()
 
     def check(self, expected_messages: int | None = None) -> None:
         """Read all of the file, every checksum included, attachments' too.
@@ -158,12 +169,19 @@ class EpisodeFile:
         found = sum(1 for _ in self.messages())
         with BoundedFile(self.path) as file, corruption(self.path):
             statistics = read_summary(file).statistics
+            require_intact_data(file)
             for _ in read_attachments(file, finished=True):
                 pass
+        EpisodeFile.open(self.path).check_model()
         counted = statistics.message_count if statistics else None
         if found != counted or expected_messages not in (None, found):
             expected = counted if expected_messages is None else expected_messages
             raise Corrupt(f"{self.path} holds {found} messages; it should hold {expected}.")
+
+    def _require_recorded(self, mjb: bytes) -> None:
+        said = self.metadata.get(RoomRecord.NAME, {}).get("model_sha256")
+        if said is not None and sha256(mjb).hexdigest() != said:
+            raise ValueError(f"its {MODEL_ATTACHMENT} is not the model whose SHA-256 it names")
 
     def _read(self, record: type[R]) -> R:
         strings = self.metadata.get(record.NAME)

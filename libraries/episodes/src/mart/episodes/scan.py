@@ -42,6 +42,7 @@ from mart.protocol.recording import MAX_RECORD_BYTES
 MAGIC = b"\x89MCAP0\r\n"
 RECORD_HEAD = struct.Struct("<BQ")  # opcode and length
 _CRC_BYTES = 4
+_PIECE_BYTES = 1024 * 1024
 
 # What the mcap package raises on bytes that are no MCAP, found by feeding it damaged files.
 SYMPTOMS = (
@@ -162,11 +163,21 @@ def parsed(opcode: int, content: bytes) -> McapRecord:
     """
     if opcode == Opcode.MESSAGE:
         return Message.read(ReadDataStream(_Exact(content)), len(content))
-    if opcode == Opcode.ATTACHMENT:
+    record = _PARSED[opcode](ReadDataStream(_Exact(content)))
+    if isinstance(record, Attachment):
         said = int.from_bytes(content[-_CRC_BYTES:], "little")
         if said and zlib.crc32(memoryview(content)[:-_CRC_BYTES]) != said:
-            raise ValueError("the checksum of an attachment is not that of its bytes")
-    return _PARSED[opcode](ReadDataStream(_Exact(content)))
+            raise ValueError(f"its attachment {record.name[:64]!r} does not match its checksum")
+    return record
+
+
+def crc_of(file: BoundedFile, start: int, end: int) -> int:
+    """Return the CRC-32 of the bytes from `start` to before `end`. Raises EndOfFile where the file has fewer."""
+    crc, at = 0, start
+    while at < end:
+        piece = file.piece(at, min(_PIECE_BYTES, end - at))
+        crc, at = zlib.crc32(piece, crc), at + len(piece)
+    return crc
 
 
 class _Exact(io.BytesIO):

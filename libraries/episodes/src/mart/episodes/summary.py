@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import dataclass, field
 
 from mcap.exceptions import EndOfFile
 from mcap.opcode import Opcode
 from mcap.records import Channel, Footer, MetadataIndex, Schema, Statistics
 
-from mart.episodes.scan import MAGIC, RECORD_HEAD, BoundedFile, FoundRecord, parse, walk
+from mart.episodes.scan import MAGIC, RECORD_HEAD, BoundedFile, FoundRecord, crc_of, parse, walk
 
 _FOOTER_BYTES = 20
 _CRC_BYTES = 4
-_PIECE_BYTES = 1024 * 1024
 _WANTED = (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.STATISTICS, Opcode.METADATA_INDEX)
 
 
@@ -39,23 +37,12 @@ def read_summary(file: BoundedFile) -> FileSummary:
     head = file.piece(footer_at, RECORD_HEAD.size)
     if not isinstance(footer, Footer) or head != RECORD_HEAD.pack(Opcode.FOOTER, _FOOTER_BYTES):
         raise EndOfFile("it is cut off: there is no footer at its end")
-    if footer.summary_start == 0:
-        return FileSummary()
-    if not len(MAGIC) <= footer.summary_start <= footer_at:
-        raise ValueError(f"its summary is said to begin at byte {footer.summary_start}")
-    _check(file, footer, footer_at)
-    return _read(file, footer.summary_start, footer_at)
-
-
-def _check(file: BoundedFile, footer: Footer, footer_at: int) -> None:
-    if not footer.summary_crc:
-        return
-    crc, at, end = 0, footer.summary_start, footer_at + RECORD_HEAD.size + _FOOTER_BYTES - _CRC_BYTES
-    while at < end:
-        piece = file.piece(at, min(_PIECE_BYTES, end - at))
-        crc, at = zlib.crc32(piece, crc), at + len(piece)
-    if crc != footer.summary_crc:
-        raise ValueError("the checksum of its summary is not that of its bytes")
+    start, end = footer.summary_start or footer_at, footer_at + RECORD_HEAD.size + _FOOTER_BYTES - _CRC_BYTES
+    if not len(MAGIC) <= start <= footer_at:
+        raise ValueError(f"its summary is said to begin at byte {start}")
+    if footer.summary_crc and crc_of(file, start, end) != footer.summary_crc:
+        raise ValueError("its summary does not match its checksum")
+    return _read(file, start, footer_at)
 
 
 def _read(file: BoundedFile, start: int, end: int) -> FileSummary:

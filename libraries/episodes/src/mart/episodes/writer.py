@@ -9,11 +9,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from google.protobuf.message import Message
-from mcap.data_stream import RecordBuilder
-from mcap.records import Channel, McapRecord, Schema
 from mcap.well_known import MessageEncoding
 from mcap.writer import CompressionType, Writer
-from mcap_protobuf.schema import build_file_descriptor_set, register_schema
+from mcap_protobuf.schema import register_schema
 
 from mart.episodes.mcap_entries import McapEntry
 from mart.protocol.messages import Model
@@ -40,18 +38,16 @@ class EpisodeWriter:
         self._lock = opening.open("rb")
         fcntl.flock(self._lock, fcntl.LOCK_EX)
         opening.rename(path)
-        self._mcap = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
+        self._mcap = Writer(
+            self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True
+        )
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
         self._checksums: dict[str, str] = {}
         self._mcap.start(profile=PROFILE)
 
     def add(self, entry: McapEntry) -> None:
-        """Append one message; its topic and schema are described in the file when they first come.
-
-        They are described twice: in the chunk, whose checksum covers them, and before it, so that a damaged chunk does
-        not take along what tells later messages apart.
-        """
+        """Append one message; its topic and schema are described in the file when they first come."""
         channel = self._channels.get(entry.topic)
         if channel is None:
             channel = self._channel(entry.topic, entry.schema)
@@ -104,25 +100,13 @@ class EpisodeWriter:
         self._lock.close()
 
     def _channel(self, topic: str, schema: type[Message]) -> int:
-        name, encoding = schema.DESCRIPTOR.full_name, MessageEncoding.Protobuf
-        described: list[McapRecord] = []
+        name = schema.DESCRIPTOR.full_name
         if name not in self._schemas:
-            schema_id = self._schemas[name] = register_schema(self._mcap, schema)
-            described.append(
-                Schema(schema_id, build_file_descriptor_set(schema).SerializeToString(), encoding, name)
-            )
-        channel_id = self._mcap.register_channel(topic, encoding, self._schemas[name])
-        described.append(Channel(channel_id, topic, encoding, {}, self._schemas[name]))
-        self._channels[topic] = channel_id
-        self._write_between_chunks(described)
-        return channel_id
-
-    def _write_between_chunks(self, records: list[McapRecord]) -> None:
-        """Write records where the last whole one ends: what the writer of the `mcap` package gathers comes after."""
-        builder = RecordBuilder()
-        for record in records:
-            record.write(builder)
-        self._file.write(builder.end())  # type: ignore[no-untyped-call]
+            self._schemas[name] = register_schema(self._mcap, schema)
+        self._channels[topic] = self._mcap.register_channel(
+            topic, MessageEncoding.Protobuf, self._schemas[name]
+        )
+        return self._channels[topic]
 
     def discard(self) -> None:
         """Take the file away: there was nothing to record."""

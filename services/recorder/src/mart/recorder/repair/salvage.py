@@ -126,20 +126,21 @@ class Salvage:
 def _intact(file: BoundedFile, place: FoundRecord) -> McapRecord | None:
     """Return what a record says, None for one that is not needed. Raises one of `SYMPTOMS` for a damaged one.
 
-    A length inside of it can be spoilt too, and so can its own: it must be as long as its content takes, and what
-    follows must be the beginning of another.
+    A length inside of it can be spoilt too, and so can its own: it must be as long as its content takes; where that is
+    not known, what follows must be the beginning of another.
     """
+    if place.opcode in _PARSED:
+        record = parse(file, place)
+        if _size_of(record) != place.end - place.at:
+            raise ValueError("a record is not as long as its content")
+        return record
     if place.opcode == Opcode.MESSAGE_INDEX:
         head = file.piece(place.at + RECORD_HEAD.size, _INDEX_HEAD_BYTES)
         if int.from_bytes(head[2:], "little") != place.size_bytes - _INDEX_HEAD_BYTES:
             raise ValueError("an index is not as long as its entries")
-    _require_another(file, place.end)
-    if place.opcode not in _PARSED:
-        return None
-    record = parse(file, place)
-    if place.opcode != Opcode.CHUNK and _size_of(record) != place.end - place.at:
-        raise ValueError("a record is not as long as its content")
-    return record
+    else:
+        _require_another(file, place.end)
+    return None
 
 
 def _require_another(file: BoundedFile, at: int) -> None:
