@@ -72,7 +72,7 @@ class FoundRecord(NamedTuple):
 
     @property
     def end(self) -> int:
-        """Where the next record begins."""
+        """Tell where the next record begins."""
         return self.at + RECORD_HEAD.size + self.size_bytes
 
 
