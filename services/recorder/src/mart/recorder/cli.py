@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mart.protocol import clock
-from mart.protocol.errors import InvalidInput, Unavailable
+from mart.protocol.errors import Forbidden, InvalidInput, Unavailable
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
 from mart.recorder.settings import RecorderSettings
@@ -234,7 +234,7 @@ def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> It
     settings = _settings(replica)
     try:
         bus = ZenohBus.connect(settings.router, wait_for_router=False)
-    except Unavailable as error:
+    except (Unavailable, Forbidden) as error:
         if not wherever_possible:
             raise
         yield verification.nobody(error)

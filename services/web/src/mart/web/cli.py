@@ -29,7 +29,9 @@ def web(as_json: bool, **options: Any) -> None:
         port = listener.getsockname()[1]
         name = next(iter(settings.public_names), settings.web_host)
         url = f"https://{in_url(name)}:{port}/"
-        print_result({"url": url, "join_code": join_code}, f"Lobby {url}  join code {join_code}", as_json)
+        # The code itself is for whoever asks for it: what is printed here ends in a log.
+        text = f"Lobby {url}  join code in {settings.join_code_path}"
+        print_result({"url": url, "join_code": join_code}, text, as_json)
         run_async(
             settings, ServiceKind.WEB, "web", lambda service: serve(settings, service, listener, join_code)
         )
