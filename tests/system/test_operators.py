@@ -63,7 +63,7 @@ def goes_on(client: RoomClient) -> bool:
     tick = client.states.wait_for(lambda _: True).tick
     client.states.wait_for(lambda state: state.tick > tick + 10)
     status = client.statuses.wait_for(lambda status: status.seats[1].operator == OPERATOR_HOLD)
-    return all(seat.arm != "arm1" or not seat.holder_id for seat in status.seats)
+    return all(seat.arm != "arm1" or not seat.holder_tag for seat in status.seats)
 
 
 def test_the_example_succeeds_beside_a_script(endpoint: str) -> None:

@@ -6,6 +6,7 @@ import contextlib
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import MartError
+from mart.protocol.holders import holder_tag
 from mart.protocol.messages import (
     BARRIER_PHASE_RUNNING,
     EpisodeRequest,
@@ -78,7 +79,7 @@ class Room:
             arm=seat.arm,
             operator=seat.operator,
             epoch=seat.epoch,
-            holder_id=seat.holder_id,
+            holder_tag=holder_tag("1", seat.arm, seat.epoch, seat.holder_id),
             name=seat.name,
             ready=self.course.is_ready(seat.arm),
             policy=seat.driver.policy,

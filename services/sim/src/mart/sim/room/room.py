@@ -261,7 +261,7 @@ class Room:
 
     def _seat_message(self, seat: SeatHolder) -> Seat:
         newest = self._barrier.newest(seat.arm) if seat.operator != OPERATOR_HOLD else None
-        return room_messages.seat(seat, self._episode.is_ready(seat.arm), newest)
+        return room_messages.seat(seat, self._episode.is_ready(seat.arm), newest, f"{self._boot_ns:x}")
 
     def _remember(self, record: SavedRoom) -> None:
         """Keep the record over a restart; a disk that is full must not stop the world."""

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.protocol.holders import holder_tag
 from mart.protocol.messages import (
     BarrierPhase,
     Episode,
@@ -75,13 +76,13 @@ def progress(progress: TaskProgress) -> Fields:
     }
 
 
-def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None) -> Seat:
-    """Return the message of a seat; `newest`: the newest command of its operator."""
+def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None, salt: str) -> Seat:
+    """Return the message of a seat; `newest`: the newest command of its operator, `salt`: of its holder's tag."""
     return Seat(
         arm=holder.arm,
         operator=holder.operator,
         epoch=holder.epoch,
-        holder_id=holder.holder_id,
+        holder_tag=holder_tag(salt, holder.arm, holder.epoch, holder.holder_id),
         name=holder.name,
         ready=ready,
         engaged=newest is not None and newest.command.engaged,

@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, Forbidden
+from mart.protocol.holders import is_held_by
 from mart.protocol.messages import OPERATOR_HOLD, Seat
 from mart.protocol.tokens import Role, SeatToken, sign, verify
 from mart.web.access.pairing_codes import LIFETIME_S, PairingGrant
@@ -48,7 +49,7 @@ class SdpOffer(BaseModel):
 async def token(room: str, arm: str, app: App, user: JoinedUser) -> Json:
     """Send a token for a seat: its holder's drives, anybody else's watches."""
     seat = _seat(app, room, arm)
-    role = Role.BROWSER if seat.holder_id == user.holder_id else Role.VIEWER
+    role = Role.BROWSER if is_held_by(seat, user.holder_id) else Role.VIEWER
     signed = _sign(
         app, SeatToken(room, arm, seat.epoch, role, user.holder_id, now_unix_s() + _BROWSER_TOKEN_S)
     )
@@ -107,7 +108,7 @@ async def phone_token(room: str, arm: str, app: App, authorization: Authorizatio
     if paired.role is not Role.PHONE:
         raise Forbidden(f"The token of a {paired.role} was given; only a phone's is renewed here.")
     seat = _seat(app, room, arm)
-    if seat.holder_id != paired.holder_id:
+    if not is_held_by(seat, paired.holder_id):
         driver = "Nobody" if seat.operator == OPERATOR_HOLD else seat.name or "A script"
         raise Conflict(
             f"{driver} drives {arm} now; this phone goes on when the person who paired it takes the seat again."
@@ -151,7 +152,7 @@ def _seat(app: AppState, room: str, arm: str) -> Seat:
 
 def _own_seat(app: AppState, room: str, arm: str, user: User) -> Seat:
     seat = _seat(app, room, arm)
-    if seat.holder_id != user.holder_id:
+    if not is_held_by(seat, user.holder_id):
         raise Forbidden(f"{arm} in {room} is not your seat; only its holder can pair a phone with it.")
     return seat
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mart.protocol import clock, keys
+from mart.protocol.holders import is_held_by
 from mart.protocol.messages import (
     OPERATOR_HUMAN,
     EpisodeRequest,
@@ -71,7 +72,7 @@ class RoomRequester:
     def _speaker(self, room: str, user: User) -> str:
         """Whoever holds no seat speaks as anybody: the sim hears them where no human drives."""
         seats = self._lobby.rooms.status(room, clock.monotonic_s()).seats
-        return user.holder_id if any(seat.holder_id == user.holder_id for seat in seats) else ""
+        return user.holder_id if any(is_held_by(seat, user.holder_id) for seat in seats) else ""
 
     async def _ask_seat(self, room: str, arm: str, request: SeatRequest) -> Seat:
         self._lobby.rooms.seat(room, arm, clock.monotonic_s())
