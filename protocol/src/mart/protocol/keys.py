@@ -72,6 +72,11 @@ def event(room: str) -> Topic:
     return Topic(_key(room, "event"), Priority.NORMAL, must_arrive=True)
 
 
+def recording(room: str) -> Topic:
+    """Return where a recorder says what it has kept of the episode that goes on."""
+    return Topic(_key(room, "recording"), Priority.NORMAL)
+
+
 def video(room: str, camera: str) -> Topic:
     return Topic(_key(room, "view", camera, "video"), Priority.LOW)
 

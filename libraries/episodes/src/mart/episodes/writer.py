@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
 import os
 from collections.abc import Mapping
@@ -37,7 +38,7 @@ class EpisodeWriter:
         self._file = opening.open("wb")
         self._lock = opening.open("rb")
         fcntl.flock(self._lock, fcntl.LOCK_EX)
-        opening.rename(path)
+        _name(opening, path)
         self._mcap = Writer(
             self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True
         )
@@ -72,6 +73,11 @@ class EpisodeWriter:
         self._mcap.flush()  # type: ignore[no-untyped-call]
         os.fsync(self._file.fileno())
 
+    def require_there(self) -> None:
+        """Raise FileNotFoundError where somebody has deleted the file: what is written would be lost."""
+        if not os.fstat(self._file.fileno()).st_nlink:
+            raise FileNotFoundError(errno.ENOENT, "its file was deleted", str(self.path))
+
     def finish(self) -> None:
         """Write the summary and close the file, which stays locked."""
         self._mcap.finish()  # type: ignore[no-untyped-call]
@@ -80,9 +86,13 @@ class EpisodeWriter:
         self._file.close()
 
     def move_to(self, path: Path) -> None:
-        """Give the finished file its name, for good also across a power cut."""
+        """Give the finished file its name, for good also across a power cut.
+
+        Raises FileExistsError where the name is taken: nothing is ever overwritten.
+        """
         path.parent.mkdir(parents=True, exist_ok=True)
-        self.path = self.path.rename(path)
+        _name(self.path, path)
+        self.path = path
         folder = os.open(path.parent, os.O_RDONLY)
         try:
             os.fsync(folder)
@@ -109,3 +119,16 @@ class EpisodeWriter:
         """Take the file away: there was nothing to record."""
         self.abandon()
         self.path.unlink()
+
+
+def _name(draft: Path, path: Path) -> None:
+    """Give a file its name in one step. Raises FileExistsError where something has it already."""
+    try:
+        path.hardlink_to(draft)
+    except FileExistsError:
+        raise
+    except OSError:  # a file system without links: take the name first
+        path.touch(exist_ok=False)
+        draft.rename(path)
+    else:
+        draft.unlink()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import re
 from collections.abc import Callable, Mapping
@@ -68,8 +69,15 @@ def finalize(
     file.add_record(VERSIONS, versions())
     file.finish()
     EpisodeFile(file.path, {}).check(file.messages)
-    file.move_to(free_path(root, record))
+    move_to_free_path(file, root, record)
     return SavedEpisode(file.path, record, cadence, verification, file.path.stat().st_size)
+
+
+def move_to_free_path(file: EpisodeWriter, root: Path, record: EpisodeRecord) -> None:
+    """Give a finished file the first name that is free, also where others take names at the same time."""
+    while True:
+        with contextlib.suppress(FileExistsError):
+            return file.move_to(free_path(root, record))
 
 
 def part_path(root: Path, episode: EpisodeAccumulator, facts: RoomFacts) -> Path:

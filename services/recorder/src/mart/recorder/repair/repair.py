@@ -68,6 +68,9 @@ def _repair(part: Path, root: Path, verify: VerifyFile) -> RepairResult:
         return _adopt(part, root) or _mend(part, root, verify)
     except (MartError, OSError) as error:
         return RepairResult(part, None, f"It stays as it is: {error}")
+    except Exception as error:  # noqa: BLE001 - one odd file must not keep the others from being repaired
+        _log.error("Repairing %s failed", part, exc_info=error)
+        return RepairResult(part, None, _set_aside(part, f"{type(error).__name__}: {error}"))
 
 
 def _adopt(part: Path, root: Path) -> RepairResult | None:
@@ -104,6 +107,15 @@ def _mend(part: Path, root: Path, verify: VerifyFile) -> RepairResult:
     lost = f"; {salvage.damaged} damaged places" if salvage.damaged else ""
     lost += f", {salvage.orphans} messages without their channel" if salvage.orphans else ""
     return RepairResult(part, saved, f"{file.messages} messages kept{lost}.")
+
+
+def _set_aside(part: Path, why: str) -> str:
+    """Keep a leftover under another name, so that it is not tried again; return what is told of it."""
+    try:
+        kept = part.rename(part.with_name(part.name.removesuffix(PART_SUFFIX) + _HOPELESS_SUFFIX))
+    except OSError as error:
+        return f"It stays as it is: {why}; {error}"
+    return f"It could not be understood ({why}); kept as {kept}."
 
 
 def _give_up(part: Path, file: EpisodeWriter) -> RepairResult:
