@@ -40,7 +40,7 @@ _LEASE_MS = 4_000
 _SIGNS_OF_LIFE_A_LEASE = 16
 _QUEUED_BATCHES = 16
 _BLOCKED_AT_MOST_US = 500_000
-_HEARTBEAT_S = 0.25  # how soon a subscriber learns that it missed the newest, where nothing follows it
+_HEARTBEAT_S = 0.5  # how soon a subscriber learns that it missed the newest, where nothing follows it
 _FIRST_REST_S = 0.05  # before a query that was dropped is asked again; doubled each time
 
 _PRIORITY = {
@@ -87,7 +87,7 @@ class ZenohBus(Bus):
                 express=topic.express,
                 cache=zenoh.ext.CacheConfig(topic.kept),
                 sample_miss_detection=zenoh.ext.MissDetectionConfig(
-                    heartbeat=None, sporadic_heartbeat=_HEARTBEAT_S
+                    heartbeat=_HEARTBEAT_S, sporadic_heartbeat=None
                 ),
             )
             return _ZenohPublisher(recoverable)

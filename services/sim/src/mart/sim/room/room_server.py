@@ -10,6 +10,7 @@ from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import EpisodeRequest, Event, RecordingReport, RoomReply, SeatRequest
 from mart.protocol.queryables import EPISODE, SEAT
+from mart.protocol.received import decode_received
 from mart.runtime.bus import Bus, Closable, Request, Sample
 from mart.runtime.serving import RequestAnswerer, send_reply
 from mart.sim.room.room import Room
@@ -23,7 +24,8 @@ _MAX_REPORT_BYTES = 1024
 class RoomServer:
     """Turn what comes in into work for the room, which `submit` does now or later; never do any by itself.
 
-    garbled: counts undecodable payloads by where they came. looks: the same world with detailed meshes, to show.
+    leave: takes work from a thread that hears what the room says, and so must not do it. garbled: counts undecodable
+    payloads by where they came. looks: the same world with detailed meshes, to show.
     """
 
     def __init__(
@@ -34,13 +36,14 @@ class RoomServer:
         world: World,
         *,
         submit: Callable[[Callable[[], None]], None],
+        leave: Callable[[Callable[[], None]], None],
         garbled: Counter[str],
         now_s: Callable[[], float] = clock.monotonic_s,
         looks: World | None = None,
     ) -> None:
         self._bus, self._name, self._now_s = bus, name, now_s
         self._room = room
-        self._submit, self._garbled = submit, garbled
+        self._submit, self._leave, self._garbled = submit, leave, garbled
         self._models = {
             what: codec.encode(model_message(shown))
             for what, shown in ((b"", world), (keys.DETAILED, looks or world))
@@ -72,14 +75,14 @@ class RoomServer:
 
     def _on_recording_report(self, sample: Sample) -> None:
         try:
-            report = codec.decode(RecordingReport, sample.payload, _MAX_REPORT_BYTES)
+            report = decode_received(RecordingReport, sample.payload, _MAX_REPORT_BYTES)
         except InvalidInput:
             self._garbled["recording report"] += 1
         else:
-            self._submit(partial(self._room.recording_reported, report))
+            self._leave(partial(self._room.recording_reported, report))
 
     def _on_saved(self, saved: Event.EpisodeSaved) -> None:
-        self._submit(partial(self._room.episode_saved, saved))
+        self._leave(partial(self._room.episode_saved, saved))
 
     def _on_seat_request(self, request: Request) -> None:
         self._submit(partial(self._seat.respond, request))
