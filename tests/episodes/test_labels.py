@@ -61,6 +61,8 @@ FOREIGN = [
     '{"at_ns":2,"path":"a","kind":"note"}',
     '{"at_ns":"soon","path":"a","kind":"note","value":"x"}',
     "[1, 2]",
+    '{"at_ns":1e999,"path":"a","kind":"note","value":"x"}',
+    "[" * 100_000,
     "null",
     "\xff\xfe",
 ]

@@ -126,7 +126,7 @@ def read(root: Path) -> list[Label]:
     for number, fields in read_json_lines(root / FILE_NAME):
         try:
             found.append(_parse(fields))
-        except (ValueError, KeyError, TypeError, InvalidInput) as error:
+        except (ValueError, KeyError, TypeError, OverflowError, InvalidInput) as error:
             unknown[number] = str(error)
     _warn_once(root / FILE_NAME, unknown)
     return found

@@ -53,6 +53,6 @@ def read_last_json_line(path: Path) -> dict[str, Any] | None:
 def _object(line: bytes) -> dict[str, Any] | None:
     try:
         row = json.loads(line)
-    except ValueError:
+    except (ValueError, RecursionError):  # brackets within brackets, a hundred thousand deep
         return None
     return row if isinstance(row, dict) else None

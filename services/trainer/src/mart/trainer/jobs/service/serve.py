@@ -7,25 +7,21 @@ import fcntl
 import queue
 from collections.abc import Iterator
 
-from mart.protocol import clock, codec, keys
-from mart.protocol.errors import Conflict, MartError
-from mart.protocol.messages import TrainerReply, TrainerRequest, error_message
+from mart.protocol import clock, keys
+from mart.protocol.errors import Conflict
 from mart.protocol.vocabulary import ServiceKind
-from mart.runtime.bus import Request
 from mart.runtime.service import announced, connected
 from mart.trainer.jobs.executors.executor import Executor, JobEnded, OnEnded
 from mart.trainer.jobs.executors.local import LocalExecutor
 from mart.trainer.jobs.executors.ray import RayExecutor
 from mart.trainer.jobs.queue import JobQueue
 from mart.trainer.jobs.service.handlers import TrainerHandlers
+from mart.trainer.jobs.service.request_server import Inbox, RequestServer
 from mart.trainer.jobs.service.settings import TrainerSettings
 from mart.trainer.jobs.service.videos import Videos
 from mart.trainer.jobs.table import JobTable
 
-MAX_REQUEST_BYTES = 64 * 1024
 _LONGEST_WAIT_S = 0.5  # so that a stop is noticed, and a cluster that is back
-
-Inbox = queue.SimpleQueue[Request | JobEnded]
 
 
 def serve_trainer(settings: TrainerSettings) -> None:
@@ -35,34 +31,27 @@ def serve_trainer(settings: TrainerSettings) -> None:
         service = stack.enter_context(connected(settings, ServiceKind.TRAINER, settings.trainer))
         stack.enter_context(_claimed(settings))
         table = stack.enter_context(contextlib.closing(JobTable(settings.jobs_path)))
-        executors = stack.enter_context(_executors(settings, inbox.put))
+
+        def on_ended(ended: JobEnded) -> None:
+            inbox.put(lambda: jobs.end(ended, clock.wall_ns()))
+
+        executors = stack.enter_context(_executors(settings, on_ended))
         jobs = JobQueue(table, executors, settings.data_dir)
         videos = stack.enter_context(contextlib.closing(Videos(settings.data_dir / "logs" / "render.log")))
         handlers = TrainerHandlers(
             settings, table, jobs, videos, executors=list(executors), now_ns=clock.wall_ns
         )
+        server = stack.enter_context(contextlib.closing(RequestServer(handlers, inbox)))
         topic = keys.training(settings.trainer)
-        stack.enter_context(contextlib.closing(service.bus.serve(topic, inbox.put)))
+        stack.enter_context(contextlib.closing(service.bus.serve(topic, server.on_request)))
         stack.enter_context(announced(service))
         while not service.stop.is_set():
             jobs.advance(clock.wall_ns())
-            with contextlib.suppress(queue.Empty):
-                _take(inbox.get(timeout=_LONGEST_WAIT_S), handlers, jobs)
-
-
-def _take(item: Request | JobEnded, handlers: TrainerHandlers, jobs: JobQueue) -> None:
-    if isinstance(item, JobEnded):
-        jobs.end(item, clock.wall_ns())
-    else:
-        item.reply(codec.encode(_answer(handlers, item.payload)))
-
-
-def _answer(handlers: TrainerHandlers, payload: bytes) -> TrainerReply:
-    try:
-        request = codec.decode(TrainerRequest, payload, MAX_REQUEST_BYTES)
-        return handlers.handle(request)
-    except MartError as error:
-        return TrainerReply(error=error_message(error))
+            try:
+                work = inbox.get(timeout=_LONGEST_WAIT_S)
+            except queue.Empty:
+                continue
+            work()
 
 
 @contextlib.contextmanager
