@@ -16,6 +16,7 @@ from mart.runtime.secret_file import load_or_create_secret
 from mart.runtime.service import AsyncService, announced
 from mart.web.access.certificate import Certificate, ensure_certificate
 from mart.web.access.connection_table import ConnectionTable
+from mart.web.access.join_code import digest_of
 from mart.web.access.site_names import is_loopback, lan_addresses, site_names
 from mart.web.access.user_sessions import UserSessions
 from mart.web.api.app_state import AppState
@@ -58,14 +59,16 @@ async def serve(
     """Serve the pages and the API at `listener` until cancelled, or stopped by a signal."""
     lobby = Lobby()
     with contextlib.ExitStack() as stack:
-        user_sessions = stack.enter_context(contextlib.closing(UserSessions(settings.sessions_path)))
+        secret = load_or_create_secret(settings.secret_path)
+        sessions = UserSessions(settings.sessions_path, digest_of(join_code, secret))
+        user_sessions = stack.enter_context(contextlib.closing(sessions))
         feed = stack.enter_context(contextlib.closing(LobbyFeed(service.bus, lobby)))
         state = AppState(
             bus=service.bus,
             lobby=lobby,
             user_sessions=user_sessions,
             join_code=join_code,
-            secret=load_or_create_secret(settings.secret_path),
+            secret=secret,
             names=site_names(settings.public_names, settings.web_host),
             lan_host=_lan_host(settings),
             data_dir=settings.data_dir,
