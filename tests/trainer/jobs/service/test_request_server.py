@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import queue
+import threading
 from collections.abc import Callable
 from contextlib import closing
 from typing import cast
@@ -14,7 +14,7 @@ from mart.protocol import codec
 from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import TrainerReply, TrainerRequest, raise_error
 from mart.trainer.jobs.service.handlers import TrainerHandlers
-from mart.trainer.jobs.service.request_server import MAX_WAITING, Inbox, RequestServer
+from mart.trainer.jobs.service.request_server import MAX_READING, Inbox, RequestServer
 
 LIST = TrainerRequest(list=TrainerRequest.List())
 CHOICES = TrainerRequest(choices=TrainerRequest.Choices())
@@ -34,6 +34,9 @@ class Handlers:
     def __init__(self, prepare: Callable[[TrainerRequest], Callable[[], TrainerReply]]) -> None:
         self.prepare = prepare
 
+    def handle(self, request: TrainerRequest) -> TrainerReply:
+        return self.prepare(request)()
+
     def reads_folders(self, request: TrainerRequest) -> bool:
         return request.WhichOneof("what") == "choices"
 
@@ -41,15 +44,21 @@ class Handlers:
 def serving(
     prepare: Callable[[TrainerRequest], Callable[[], TrainerReply]],
 ) -> tuple[RequestServer, Inbox]:
-    inbox: Inbox = queue.SimpleQueue()
+    inbox = Inbox(64)
     return RequestServer(cast("TrainerHandlers", Handlers(prepare)), inbox), inbox
 
 
+def finish(inbox: Inbox) -> None:
+    """What was read for is done, as by the trainer's thread."""
+    item = inbox.take(30.0)
+    assert callable(item)
+    item()
+
+
 def answered(server: RequestServer, inbox: Inbox, asked: Asked) -> TrainerReply:
-    server.on_request(asked)
-    while not asked.replies:
-        with contextlib.suppress(queue.Empty):
-            inbox.get(timeout=0.02)()
+    server.take(asked)
+    if not asked.replies:
+        finish(inbox)
     (reply,) = asked.replies
     return reply
 
@@ -91,21 +100,27 @@ def test_others_are_answered_while_a_folder_is_read() -> None:
     server, inbox = serving(prepare)
     with closing(server):
         slow = Asked(CHOICES)
-        server.on_request(slow)
-        inbox.get(timeout=30)()
+        server.take(slow)
         assert not answered(server, inbox, Asked(LIST)).error.code
         assert not slow.replies
         going.put(None)
-        inbox.get(timeout=30)()
+        finish(inbox)
     assert len(slow.replies) == 1
 
 
-def test_more_than_the_trainer_can_see_to_are_refused_at_once() -> None:
-    server, _inbox = serving(lambda _: TrainerReply)
+def test_more_than_can_be_read_for_are_refused_at_once() -> None:
+    going = threading.Event()
+
+    def prepare(_: TrainerRequest) -> Callable[[], TrainerReply]:
+        going.wait(30)
+        return TrainerReply
+
+    server, _inbox = serving(prepare)
     with closing(server):
-        for _ in range(MAX_WAITING):
-            server.on_request(Asked(LIST))
-        late = Asked(LIST)
-        server.on_request(late)
+        for _ in range(MAX_READING):
+            server.take(Asked(CHOICES))
+        late = Asked(CHOICES)
+        server.take(late)
+        going.set()
     with pytest.raises(Unavailable):
         raise_error(late.replies[0].error)

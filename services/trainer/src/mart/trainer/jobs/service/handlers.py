@@ -61,6 +61,10 @@ class TrainerHandlers:
             "video": self._video,
         }
 
+    def handle(self, request: TrainerRequest) -> TrainerReply:
+        """Do what a request asks and return the reply. Raises errors of the tree."""
+        return self.prepare(request)()
+
     def reads_folders(self, request: TrainerRequest) -> bool:
         """Tell whether `prepare` may take long, because it looks through folders of episodes."""
         return request.WhichOneof("what") in ("choices", "submit")

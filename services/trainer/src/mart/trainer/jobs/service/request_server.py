@@ -2,76 +2,77 @@
 
 from __future__ import annotations
 
-import logging
-import queue
+import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 from mart.protocol import codec
 from mart.protocol.errors import MartError, Unavailable
-from mart.protocol.messages import TrainerReply, TrainerRequest, error_message
+from mart.protocol.messages import TrainerReply, TrainerRequest
+from mart.protocol.queryables import TRAINING
 from mart.runtime.bus import Request
+from mart.runtime.serving import BoundedInbox, RequestAnswerer
+from mart.trainer.jobs.executors.executor import JobEnded
 from mart.trainer.jobs.service.handlers import TrainerHandlers
 
-_log = logging.getLogger(__name__)
+MAX_READING = 16
 
-MAX_REQUEST_BYTES = 64 * 1024
-MAX_WAITING = 64
-
-Inbox = queue.SimpleQueue[
-    Callable[[], object]
-]  # what the trainer's one thread has to do, in the order it came
+Inbox = BoundedInbox[Request | JobEnded | Callable[[], None]]  # what the trainer's one thread has to do
 
 
 class RequestServer:
-    """Answer every request, with an error where it cannot be done; no request ends the trainer.
-
-    What comes over the bus is put into the inbox, and done by whoever takes from it.
-    """
+    """Answer every request on the thread that takes from the inbox. For that thread, but for what it says itself."""
 
     def __init__(self, handlers: TrainerHandlers, inbox: Inbox) -> None:
         self._handlers = handlers
         self._inbox = inbox
+        self._answerer = RequestAnswerer(TRAINING, handlers.handle)
         self._reader = ThreadPoolExecutor(1, "folders")
+        self._free = threading.Semaphore(MAX_READING)
 
-    def on_request(self, request: Request) -> None:
-        """Put a request into the inbox; called on a thread of the bus. Where too many wait, it is refused at once."""
-        if self._inbox.qsize() < MAX_WAITING:
-            self._inbox.put(lambda: _answer(request, lambda: self._begin(request)))
+    def take(self, request: Request) -> None:
+        """Answer a request, or begin to read what it needs: the rest comes through the inbox."""
+        asked = _reading(request, self._handlers)
+        if asked is None:
+            self._answerer.respond(request)
+        elif self._free.acquire(blocking=False):
+            self._reader.submit(self._read, request, asked)
         else:
-            _answer(request, _refuse)
+            busy = Unavailable(
+                f"{MAX_READING} requests that read folders wait already; try again in a moment."
+            )
+            _answer(request, _failing(busy))
 
     def close(self) -> None:
         """Return once no folder is being read any more; requests that still wait for one are not answered."""
         self._reader.shutdown(cancel_futures=True)
 
-    def _begin(self, request: Request) -> TrainerReply | None:
-        """Return the reply; None where a folder has to be read first."""
-        asked = codec.decode(TrainerRequest, request.payload, MAX_REQUEST_BYTES)
-        if not self._handlers.reads_folders(asked):
-            return self._handlers.prepare(asked)()
-        self._reader.submit(_answer, request, lambda: self._read(request, asked))
-        return None
-
     def _read(self, request: Request, asked: TrainerRequest) -> None:
         """Read on this thread, and leave the rest, which touches jobs, to the one that the inbox belongs to."""
-        finish = self._handlers.prepare(asked)
-        self._inbox.put(lambda: _answer(request, finish))
+        try:
+            finish = self._handlers.prepare(asked)
+        except Exception as error:  # noqa: BLE001 - told and logged where the request is answered
+            finish = _failing(error)
+        finally:
+            self._free.release()
+        self._inbox.put_always(lambda: _answer(request, finish))
 
 
-def _answer(request: Request, do: Callable[[], TrainerReply | None]) -> None:
-    """Reply with what `do` returns or with the error that it raises; None is replied to later."""
+def _reading(request: Request, handlers: TrainerHandlers) -> TrainerRequest | None:
+    """Return what is asked where that reads folders; None for anything else, also for what is no request."""
     try:
-        reply = do()
-    except MartError as error:
-        reply = TrainerReply(error=error_message(error))
-    except Exception:  # noqa: BLE001 - logged whole; what one request trips over ends no other
-        _log.exception("A request could not be answered")
-        failed = MartError("The trainer failed at this; its log tells more.")
-        reply = TrainerReply(error=error_message(failed))
-    if reply is not None:
-        request.reply(codec.encode(reply))
+        asked = codec.decode(TrainerRequest, request.payload, TRAINING.limit_bytes)
+    except MartError:
+        return None
+    return asked if handlers.reads_folders(asked) else None
 
 
-def _refuse() -> TrainerReply:
-    raise Unavailable(f"{MAX_WAITING} requests wait for the trainer already; try again in a moment.")
+def _answer(request: Request, finish: Callable[[], TrainerReply]) -> None:
+    RequestAnswerer(TRAINING, lambda _: finish()).respond(request)
+
+
+def _failing(error: Exception) -> Callable[[], TrainerReply]:
+    def fail() -> TrainerReply:
+        raise error
+
+    return fail

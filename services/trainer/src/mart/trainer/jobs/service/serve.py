@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
-import queue
 from collections.abc import Iterator
 
 from mart.protocol import clock, keys
@@ -21,21 +20,18 @@ from mart.trainer.jobs.service.settings import TrainerSettings
 from mart.trainer.jobs.service.videos import Videos
 from mart.trainer.jobs.table import JobTable
 
+_MAX_WAITING = 256
 _LONGEST_WAIT_S = 0.5  # so that a stop is noticed, and a cluster that is back
 
 
 def serve_trainer(settings: TrainerSettings) -> None:
     """Serve until the process is asked to stop; jobs that run then are gone on with by the next trainer."""
-    inbox: Inbox = queue.SimpleQueue()
+    inbox = Inbox(_MAX_WAITING)
     with contextlib.ExitStack() as stack:
         service = stack.enter_context(connected(settings, ServiceKind.TRAINER, settings.trainer))
         stack.enter_context(_claimed(settings))
         table = stack.enter_context(contextlib.closing(JobTable(settings.jobs_path)))
-
-        def on_ended(ended: JobEnded) -> None:
-            inbox.put(lambda: jobs.end(ended, clock.wall_ns()))
-
-        executors = stack.enter_context(_executors(settings, on_ended))
+        executors = stack.enter_context(_executors(settings, inbox.put_always))
         jobs = JobQueue(table, executors, settings.data_dir)
         videos = stack.enter_context(contextlib.closing(Videos(settings.data_dir / "logs" / "render.log")))
         handlers = TrainerHandlers(
@@ -43,15 +39,17 @@ def serve_trainer(settings: TrainerSettings) -> None:
         )
         server = stack.enter_context(contextlib.closing(RequestServer(handlers, inbox)))
         topic = keys.training(settings.trainer)
-        stack.enter_context(contextlib.closing(service.bus.serve(topic, server.on_request)))
+        stack.enter_context(contextlib.closing(service.bus.serve(topic, inbox.put)))
         stack.enter_context(announced(service))
         while not service.stop.is_set():
             jobs.advance(clock.wall_ns())
-            try:
-                work = inbox.get(timeout=_LONGEST_WAIT_S)
-            except queue.Empty:
-                continue
-            work()
+            item = inbox.take(_LONGEST_WAIT_S)
+            if isinstance(item, JobEnded):
+                jobs.end(item, clock.wall_ns())
+            elif callable(item):
+                item()
+            elif item is not None:
+                server.take(item)
 
 
 @contextlib.contextmanager
