@@ -69,6 +69,23 @@ declare namespace Api {
     good: number;
   }
 
+  interface SavedFile {
+    path: string;
+    verified: boolean;
+    verdict: string;
+    size_bytes: number;
+    outcome: Messages.Outcome | "unspecified";
+  }
+
+  interface LastEpisode {
+    number: number;
+    outcome: Messages.Outcome | "unspecified";
+    reason: string;
+    since_s: number;
+    epochs: Record<string, number>;
+    saved: SavedFile | null;
+  }
+
   interface Room {
     room: string;
     task: string;
@@ -88,6 +105,7 @@ declare namespace Api {
     episodes_good: number;
     plan: Plan | null;
     still: number;
+    last_episode: LastEpisode | null;
   }
 
   type EpisodeAction = "ready" | "unready" | "success" | "failure" | "discard" | "reset";
@@ -109,16 +127,11 @@ declare namespace Api {
     cue: Messages.Cue;
   }
 
-  interface EpisodeSaved {
+  interface EpisodeSaved extends SavedFile {
     id: number;
     room: string;
     kind: "episode_saved";
     number: number;
-    path: string;
-    verified: boolean;
-    verdict: string;
-    size_bytes: number;
-    outcome: Messages.Outcome | "unspecified";
   }
 
   type RoomEvent = Notice | CueGiven | EpisodeSaved;
