@@ -149,6 +149,7 @@ declare namespace Api {
     token: string;
     role: PeerRole;
     epoch: number;
+    ice_servers: RTCIceServer[];
   }
 
   interface Pairing {

@@ -73,7 +73,7 @@ class Leavers:
 
 async def seated() -> tuple[Peers, Leavers]:
     """A browser that was heard at 100 s, a phone at 90 s, and a viewer at 89 s."""
-    peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), ())
+    peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
     leavers = Leavers()
     peers.attach(leavers)
     for role in (Role.BROWSER, Role.PHONE, Role.VIEWER):
@@ -127,7 +127,7 @@ def watchers(peers: Peers) -> list[str]:
 
 def test_no_more_watch_than_may_however_many_come_at_once() -> None:
     async def body() -> None:
-        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), ())
+        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
         await watch(peers, *(f"person-{number}" for number in range(14)))
         assert len(watchers(peers)) == MAX_VIEWERS
         (refused,) = await watch(peers, "another")
@@ -138,7 +138,7 @@ def test_no_more_watch_than_may_however_many_come_at_once() -> None:
 
 def test_offers_that_never_connect_keep_nobody_out() -> None:
     async def body() -> None:
-        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), ())
+        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
         await watch(peers, *(f"person-{number}" for number in range(20)), offer="never connects")
         honest = [f"honest-{number}" for number in range(MAX_VIEWERS)]
         for person in honest:
@@ -150,7 +150,7 @@ def test_offers_that_never_connect_keep_nobody_out() -> None:
 
 def test_one_person_has_two_places_and_the_newest_count() -> None:
     async def body() -> None:
-        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), ())
+        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
         await watch(peers, "ben")
         for _ in range(5):
             assert await watch(peers, "ana") == [CONNECTS]
@@ -164,7 +164,7 @@ def test_an_offer_that_cannot_be_answered_gives_its_place_back(monkeypatch: pyte
         raise InvalidInput("No offer.")
 
     async def body() -> None:
-        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), ())
+        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
         monkeypatch.setattr(StubPeer, "answer", refuse)
         (refused,) = await watch(peers, "ana")
         assert isinstance(refused, InvalidInput)

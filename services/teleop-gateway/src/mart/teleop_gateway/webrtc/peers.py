@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from typing import Protocol
 
 from mart.protocol.errors import Conflict
 from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.ice_servers import IceServer
 from mart.teleop_gateway.video.encoder import Codec, EncodedPicture
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
@@ -48,8 +49,8 @@ class PeersListener(Protocol):
 class Peers:
     """Let peers in, tell and show all of them things, and let them go. Attach a listener before the first offer."""
 
-    def __init__(self, bus: AsyncBus, ice_servers: Sequence[str]) -> None:
-        """Keep a seat's peers. `ice_servers` are STUN and TURN URLs."""
+    def __init__(self, bus: AsyncBus, ice_servers: Callable[[], Sequence[IceServer]]) -> None:
+        """Keep a seat's peers. `ice_servers` returns the STUN and TURN servers that answer now."""
         self._bus = bus
         self._ice_servers = ice_servers
         self._listener: PeersListener | None = None
@@ -70,7 +71,7 @@ class Peers:
         A driving role's earlier peer is replaced once the new one is answered, and so is a person's oldest viewer where
         they watch twice already. Raises InvalidInput where the offer cannot be used, Conflict where too many watch.
         """
-        peer = Peer(role, self, self._ice_servers, holder_id)
+        peer = Peer(role, self, self._ice_servers(), holder_id)
         if role is Role.VIEWER:
             self._make_room(holder_id)
             self._viewers.append(peer)  # its place is taken before anything is awaited

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.ice_servers import IceSettings
 from mart.web.access.pairing_codes import PairingCodes
 from mart.web.access.request_limits import AtOnceLimit, FailureDelay, RequestLimit
 from mart.web.access.user_sessions import UserSessions
@@ -15,6 +16,7 @@ from mart.web.clients.gateway_client import GatewayClient
 from mart.web.clients.platform_client import PlatformClient
 from mart.web.clients.room_client import RoomRequester
 from mart.web.clients.trainer_client import TrainerClient
+from mart.web.lobby.health_findings import RelayCheck
 from mart.web.lobby.lobby import Lobby
 from mart.web.lobby.rooms_text import RoomsText
 
@@ -44,6 +46,7 @@ class AppState:
     """What all routes share; its maker closes what can be closed.
 
     `names`: what this site is called. `lan_host`: what a phone may call it; empty where it cannot reach it.
+    `ice`: the STUN and TURN servers that pages may use. `relays`: what became of asking them last, by URL.
     """
 
     bus: AsyncBus
@@ -61,6 +64,8 @@ class AppState:
     offers: RequestLimit = field(default_factory=_offers)
     offers_from_address: RequestLimit = field(default_factory=_offers_from_address)
     live_sockets: AtOnceLimit = field(default_factory=_live_sockets)
+    ice: IceSettings = field(default_factory=IceSettings)
+    relays: dict[str, RelayCheck] = field(default_factory=dict)
 
     @functools.cached_property
     def rooms_text(self) -> RoomsText:

@@ -28,6 +28,7 @@ from mart.web.app.guarded_listener import (
     quiet_when_full,
     raise_file_limit,
 )
+from mart.web.app.relay_checks import keep_checking
 from mart.web.app.security_middleware import MAX_BODY_BYTES
 from mart.web.app.settings import WebSettings
 from mart.web.clients.missed_saves import MissedSaves
@@ -73,6 +74,7 @@ async def serve(
             lan_host=_lan_host(settings),
             data_dir=settings.data_dir,
             certificate=settings.certificate or settings.certificates_dir / "site.pem",
+            ice=settings,
         )
         table = ConnectionTable(
             settings.connections_per_address, min(MAX_CONNECTIONS, raise_file_limit()), settings.proxies
@@ -80,8 +82,13 @@ async def serve(
         guarded = stack.enter_context(contextlib.closing(GuardedListener(listener, table)))
         quiet_when_full()
         config, background = _configured(settings, state, table)
-        works = (*background, feed.keep_asking(), guarded.keep_ending(), _missed(state))
-        tasks = [service.bus.spawn(work) for work in works]
+        background += [
+            feed.keep_asking(),
+            guarded.keep_ending(),
+            _missed(state),
+            keep_checking(settings, state.relays),
+        ]
+        tasks = [service.bus.spawn(work) for work in background]
         try:
             await feed.settled()
             # Whoever comes before the server is quite up waits in the listener's queue.
