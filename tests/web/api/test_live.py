@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, MutableMapping
 from typing import Any
 
 import pytest
@@ -18,7 +18,7 @@ from tests.web.room import Room
 
 pytestmark = pytest.mark.anyio
 
-Message = dict[str, Any]
+Message = MutableMapping[str, Any]
 
 
 class Page:
