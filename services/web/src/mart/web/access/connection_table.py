@@ -19,7 +19,7 @@ Peer = tuple[str, int]  # address and port of the other end: what tells open con
 
 
 @dataclass
-class _Connection:
+class _OpenConnection:
     site: str
     silent_since_s: float
     has_asked: bool = False
@@ -35,7 +35,7 @@ class ConnectionTable:
     def __init__(self, per_address: int, in_all: int, shared: Collection[str] = ()) -> None:
         self._per_address, self._in_all = per_address, in_all
         self._shared = frozenset(map(_site_of, shared))
-        self._open: dict[Peer, _Connection] = {}
+        self._open: dict[Peer, _OpenConnection] = {}
         self._of_site: Counter[str] = Counter()
 
     def __len__(self) -> int:
@@ -49,7 +49,7 @@ class ConnectionTable:
         site = _site_of(peer[0])
         too_many_here = self._of_site[site] >= self._per_address and site not in self._shared
         self.close(peer)
-        self._open[peer] = _Connection(site, now_s)
+        self._open[peer] = _OpenConnection(site, now_s)
         self._of_site[site] += 1
         if too_many_here:
             return self._dispensable(peer, site)

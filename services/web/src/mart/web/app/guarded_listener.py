@@ -37,7 +37,7 @@ class GuardedListener(socket.socket):
         """Take `listener` over: it is closed with this one."""
         super().__init__(listener.family, listener.type, listener.proto, fileno=listener.detach())
         self._table = table
-        self._connections: dict[Peer, _Connection] = {}
+        self._connections: dict[Peer, _Accepted] = {}
 
     def accept(self) -> tuple[socket.socket, Any]:
         """Return the next connection that is let in; raises BlockingIOError where there is none."""
@@ -51,7 +51,7 @@ class GuardedListener(socket.socket):
                 continue
             if ended is not None:
                 self._end(ended)
-            self._connections[peer] = _Connection(accepted, functools.partial(self._on_close, peer))
+            self._connections[peer] = _Accepted(accepted, functools.partial(self._on_close, peer))
             return self._connections[peer], address
 
     async def keep_ending(self) -> None:
@@ -74,7 +74,7 @@ class GuardedListener(socket.socket):
         self._connections.pop(peer, None)
 
 
-class _Connection(socket.socket):
+class _Accepted(socket.socket):
     """An accepted connection that tells when it is closed."""
 
     def __init__(self, accepted: socket.socket, on_close: Callable[[], None]) -> None:
