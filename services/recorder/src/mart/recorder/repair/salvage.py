@@ -41,7 +41,8 @@ class Salvage:
     """Find what is intact in one file.
 
     messages: how many are intact. damaged: how many places had to be left out. orphans: messages whose channel's
-    description is lost. expected: how many messages the end of the file counts; None where it is lost too, or was never written.
+    description is lost. expected: how many messages the end of the file counts; None where that is lost or was never
+    written.
     """
 
     def __init__(self, path: Path) -> None:
