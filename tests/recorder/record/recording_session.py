@@ -63,7 +63,7 @@ class RecordingSession:
             self.inbox,
             live_rooms=self.live_rooms,
             verify=verify_file,
-            tidy=lambda: tidy(root, verify_file),
+            tidy=lambda: tidy(root, verify_file, {}),
         )
         self.subscriptions = RoomSubscriptions(network.connect(), network.connect(), self.inbox)
 

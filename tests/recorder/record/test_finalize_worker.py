@@ -15,7 +15,7 @@ from mart.protocol.errors import Conflict
 from mart.protocol.messages import Event, Model
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.recorder.record.announcer import Announcer
-from mart.recorder.record.finalize import SavedEpisode, free_path, move_to_free_path
+from mart.recorder.record.finalize import SavedEpisode, below, free_path
 from mart.recorder.record.finalize_worker import FinalizeWorker
 from mart.recorder.record.folder_claim import only_recorder_of
 from mart.recorder.record.room_models import RoomModels
@@ -84,7 +84,7 @@ def test_no_file_is_ever_overwritten(tmp_path: Path) -> None:
     name.write_bytes(b"of somebody who was quicker")
     with pytest.raises(FileExistsError):
         file.move_to(name)
-    move_to_free_path(file, tmp_path, episode.record(facts))
+    below(tmp_path)(file, episode.record(facts))
     assert file.path.name.endswith("-2.mcap")
     assert name.read_bytes() == b"of somebody who was quicker"
 

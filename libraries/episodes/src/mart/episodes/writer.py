@@ -17,6 +17,7 @@ from mcap_protobuf.schema import register_schema
 from mart.episodes.mcap_entries import McapEntry
 from mart.protocol.messages import Model
 from mart.protocol.recording import CHECKSUMS, MODEL_ATTACHMENT, PROFILE, RoomRecord, metadata_checksum
+from mart.runtime.atomic_file import rename_to_new
 
 _CHUNK_BYTES = 256 * 1024  # what one damaged sector can cost
 
@@ -38,7 +39,7 @@ class EpisodeWriter:
         self._file = opening.open("wb")
         self._lock = opening.open("rb")
         fcntl.flock(self._lock, fcntl.LOCK_EX)
-        _name(opening, path)
+        rename_to_new(opening, path)
         self._mcap = Writer(
             self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True
         )
@@ -89,12 +90,10 @@ class EpisodeWriter:
         self._file.close()
 
     def move_to(self, path: Path) -> None:
-        """Give the finished file its name, for good also across a power cut.
-
-        Raises FileExistsError where the name is taken: nothing is ever overwritten.
-        """
+        """Give the finished file its name, for good also across a power cut. Raises FileExistsError if it is taken."""
         path.parent.mkdir(parents=True, exist_ok=True)
-        _name(self.path, path)
+        if path != self.path:
+            rename_to_new(self.path, path)
         self.path = path
         folder = os.open(path.parent, os.O_RDONLY)
         try:
@@ -122,16 +121,3 @@ class EpisodeWriter:
         """Take the file away: there was nothing to record."""
         self.abandon()
         self.path.unlink()
-
-
-def _name(draft: Path, path: Path) -> None:
-    """Give a file its name in one step. Raises FileExistsError where something has it already."""
-    try:
-        path.hardlink_to(draft)
-    except FileExistsError:
-        raise
-    except OSError:  # a file system without links: take the name first
-        path.touch(exist_ok=False)
-        draft.rename(path)
-    else:
-        draft.unlink()

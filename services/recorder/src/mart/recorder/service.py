@@ -9,6 +9,7 @@ from contextlib import closing
 from pathlib import Path
 
 from mart.episodes.reader import EpisodeFile
+from mart.protocol.errors import MartError
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.catalogue.episode_catalogue import list_folder
@@ -45,8 +46,10 @@ def serve_recorder(settings: RecorderSettings, name: str) -> None:
         def verify_file(file: EpisodeFile, room: RoomRecord) -> VerificationRecord:
             return verify(file, room, ask)
 
+        told: dict[Path, str] = {}
+
         def tidy_folder() -> Iterator[SavedEpisode]:
-            return tidy(root, verify_file)
+            return tidy(root, verify_file, told)
 
         recorder = Recorder(
             settings.data_dir,
@@ -61,10 +64,13 @@ def serve_recorder(settings: RecorderSettings, name: str) -> None:
             recorder.run(service.stop)
 
 
-def tidy(root: Path, verify_file: VerifyFile) -> Iterator[SavedEpisode]:
-    """Repair what crashes have left under `root`, yielding what became an episode; then refresh the catalogue."""
-    yield from log_repairs(repair_all(root, verify_file))
+def tidy(root: Path, verify_file: VerifyFile, told: dict[Path, str]) -> Iterator[SavedEpisode]:
+    """Repair what crashes have left under `root`, yielding what became an episode; then refresh the catalogue.
+
+    told: what was said of files that cannot be repaired, so that it is said once.
+    """
+    yield from log_repairs(repair_all(root, verify_file), told)
     try:
         list_folder(root)
-    except (OSError, sqlite3.Error) as error:  # it is derived: the next one makes up for it
+    except (OSError, sqlite3.Error, MartError) as error:  # it is derived: the next one makes up for it
         _log.warning("The catalogue could not be brought up to date: %s", error)
