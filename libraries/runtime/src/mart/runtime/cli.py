@@ -15,6 +15,7 @@ from typing import Any
 import click
 
 from mart.protocol.errors import MartError
+from mart.runtime import steady_libm
 
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object on standard output."
@@ -57,6 +58,7 @@ def print_result(result: Mapping[str, Any], text: str, as_json: bool) -> None:
 
 
 def main() -> None:
+    steady_libm.begin_anew()
     # Asked to end by a supervisor, a command unwinds as it does on Ctrl-C: what it started is stopped.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
