@@ -15,9 +15,9 @@ import threading
 from collections.abc import Mapping
 from typing import IO
 
-from mart.protocol import clock, codec
-from mart.protocol.errors import MartError, Unavailable
-from mart.protocol.messages import RolloutReply, RolloutRequest, error_message, raise_error
+from mart.protocol import codec
+from mart.protocol.errors import Unavailable
+from mart.protocol.messages import RolloutReply, RolloutRequest, raise_error
 from mart.runtime.child_process import start_child
 from mart.runtime.steady_libm import native_environment
 
@@ -87,15 +87,12 @@ class NativeRollouts:
 
 
 def _serve(requests: IO[bytes], replies: IO[bytes]) -> None:
+    from mart.sim.rollout.replica import rollout_answerer
     from mart.sim.rollout.rollout_server import RolloutServer
 
-    server = RolloutServer(threads=1)
+    answer = rollout_answerer(RolloutServer(threads=1))
     while (payload := _read(requests)) is not None:
-        try:
-            reply = server.answer(codec.decode(RolloutRequest, payload), clock.monotonic_s())
-        except MartError as error:
-            reply = RolloutReply(error=error_message(error))
-        _write(replies, codec.encode(reply))
+        _write(replies, answer(payload))
 
 
 def _write(pipe: IO[bytes], payload: bytes) -> None:
