@@ -108,7 +108,9 @@ class ToyReplica:
             reply.differences.extend(self._differences(asked, fingerprint))
         else:
             digests = resimulate(asked)
-            reply.state_digests = digests if fingerprint in self._follows else digests[:16] + bytes(len(digests) - 16)
+            reply.state_digests = (
+                digests if fingerprint in self._follows else digests[:16] + bytes(len(digests) - 16)
+            )
         return reply
 
     def _differences(self, asked: RolloutRequest.CompareTicks, fingerprint: str) -> Iterator[StateDifference]:

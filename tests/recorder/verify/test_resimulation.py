@@ -26,6 +26,7 @@ from tests.support.deaf_bus import DeafBus
 _BEFORE_FINGERPRINTS = RoomRecord(
     room=synthetic.ROOM, task=synthetic.TASK, control_hz=20.0, model_sha256=synthetic.MODEL.sha256
 )
+_REPLICA = synthetic.ToyReplica()
 _ROOM = _BEFORE_FINGERPRINTS.with_numerics(synthetic.NUMERICS)
 
 
@@ -37,7 +38,7 @@ def recorded(root: Path, states: list[State]) -> EpisodeFile:
 
 
 def verdict(
-    root: Path, states: list[State], room: RoomRecord = _ROOM, ask: AskReplica = synthetic.ToyReplica()
+    root: Path, states: list[State], room: RoomRecord = _ROOM, ask: AskReplica = _REPLICA
 ) -> VerificationRecord:
     return verify(recorded(root, states), room, ask)
 
@@ -84,7 +85,9 @@ def on(fingerprint: str, native: str, differs_by: float = 1e-9) -> synthetic.Toy
 def test_on_another_processor_it_is_unverified_with_the_difference(tmp_path: Path) -> None:
     said = verdict(tmp_path, synthetic.states(30), ask=on("cc", "dd"))
     assert (said.verdict, said.pending) == (Verdict.UNVERIFIED, False)
-    assert said.detail.startswith("Other processor: recorded on toy, toy 1.0, MuJoCo 4.0.0 toy (fingerprint aa).")
+    assert said.detail.startswith(
+        "Other processor: recorded on toy, toy 1.0, MuJoCo 4.0.0 toy (fingerprint aa)."
+    )
     assert (said.first_different_tick, said.within_tolerance, said.numeric_fingerprint) == (2, True, "cc")
     assert said.largest_difference["positions"] == 1e-9
 

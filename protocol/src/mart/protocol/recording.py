@@ -50,7 +50,9 @@ class Record(BaseModel):
     model_config = ConfigDict(frozen=True, allow_inf_nan=False)
 
     NAME: ClassVar[str]
-    _MAPS: ClassVar[Mapping[str, str]] = {}  # fields that are maps → the key of one entry, {} for what it is of
+    _MAPS: ClassVar[
+        Mapping[str, str]
+    ] = {}  # fields that are maps → the key of one entry, {} for what it is of
 
     def to_strings(self) -> dict[str, str]:
         plain = {n: _text(value) for n, value in self if value is not None and n not in self._MAPS}

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Mapping
 
 TUNABLES = "GLIBC_TUNABLES"
-GIVEN = "MART_GIVEN_GLIBC_TUNABLES"  # what TUNABLES was before
+GIVEN = "GLIBC_TUNABLES_BEFORE_MART"  # what TUNABLES was, empty where it was not set
 _HWCAPS = "glibc.cpu.hwcaps"
 _OFF = ("-FMA", "-FMA4")
 
@@ -37,22 +37,24 @@ def is_needed() -> bool:
     return os.uname().machine == "x86_64" and "CS_GNU_LIBC_VERSION" in os.confstr_names
 
 
+def steady_environment(environment: Mapping[str, str]) -> dict[str, str] | None:
+    """Return the environment that a process must begin with; None where it has it already, or none is needed."""
+    given = environment.get(TUNABLES, "")
+    if not is_needed() or steady(given) == given:
+        return None
+    return {**environment, TUNABLES: steady(given), GIVEN: given}
+
+
 def begin_anew() -> None:
     """Begin this process anew where its mathematics would depend on the processor; return where it does not.
 
     Only a process whose command line is `sys.argv` does so: one that calls a command from its own program, as tests do,
     stays what it is.
     """
-    given = os.environ.get(TUNABLES, "")
-    is_command = sys.orig_argv[-len(sys.argv) :] == sys.argv
-    if not is_command or not is_needed() or steady(given) == given:
-        return
-    sys.stdout.flush()
-    os.execve(  # noqa: S606 - this very command
-        sys.executable,
-        [sys.executable, *sys.orig_argv[1:]],
-        {**os.environ, TUNABLES: steady(given), GIVEN: given},
-    )
+    environment = steady_environment(os.environ)
+    if environment is not None and sys.orig_argv[-len(sys.argv) :] == sys.argv:
+        sys.stdout.flush()
+        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)  # noqa: S606 - this very command
 
 
 def native_environment(environment: Mapping[str, str]) -> dict[str, str] | None:

@@ -97,8 +97,8 @@ def _judge(file: EpisodeFile, room: RoomRecord, ask: AskReplica) -> Verification
     ticks = f"{found.checked} ticks re-simulated bit for bit"
     if found.gaps:
         detail = f"{ticks}; not those from {', '.join(found.gaps[:8])}."
-        return _record(room, Verdict.UNVERIFIED, detail, fingerprint)
-    return _record(room, Verdict.VERIFIED, f"{ticks}.", fingerprint)
+        return _record(room, Verdict.UNVERIFIED, detail, fingerprint=fingerprint)
+    return _record(room, Verdict.VERIFIED, f"{ticks}.", fingerprint=fingerprint)
 
 
 def _judge_difference(
@@ -116,7 +116,14 @@ def _judge_difference(
     else:
         verdict, why = Verdict.DIVERGED, ""
     detail = f"{why}{differs}" + (f" It was stepped on {_words(again)}." if why else "")
-    return _record(room, verdict, detail, again.fingerprint, found.first_different, comparison)
+    return _record(
+        room,
+        verdict,
+        detail,
+        fingerprint=again.fingerprint,
+        first_different=found.first_different,
+        comparison=comparison,
+    )
 
 
 def _compared(
@@ -158,10 +165,10 @@ def _record(
     room: RoomRecord,
     verdict: Verdict,
     detail: str,
+    *,
     fingerprint: str = "",
     first_different: int | None = None,
     comparison: Comparison | None = None,
-    *,
     pending: bool = False,
 ) -> VerificationRecord:
     differences = comparison.differences.items() if comparison else ()

@@ -82,9 +82,9 @@ def stretches(
             follows = state.tick == current.last_tick + 1 and arms == current.arms
             if not follows or len(current.digests) >= most_ticks:
                 yield current
-                current = _begin(previous, with_states) if follows else None
+                current = _begin(previous, with_states=with_states) if follows else None
         if current is None:
-            current = _begin(state, with_states)
+            current = _begin(state, with_states=with_states)
         else:
             current.add(state)
         previous = state
@@ -92,7 +92,7 @@ def stretches(
         yield current
 
 
-def _begin(state: State, with_states: bool) -> Stretch:  # noqa: FBT001 - private
+def _begin(state: State, *, with_states: bool) -> Stretch:
     arms = tuple(arm.arm for arm in state.arms)
     kept = [state.integration_state] if with_states else None
     return Stretch(state.tick, state.integration_state, arms, states=kept)

@@ -17,8 +17,8 @@ from mart.protocol.recording import RoomRecord
 from mart.recorder.verify.replica import AskReplica
 from mart.recorder.verify.stretches import stretches
 
-# What one tick may differ by on another processor, in metres, radians, metres and radians a second: measured, with
-# room; see docs/decisions/0034-numbers-and-processors.md. Other parts of the state are told and not judged: a warm
+# What one tick may differ by on another processor, in metres and radians, and those a second: measured, with room; see
+# docs/decisions/0034-what-another-processor-may-differ-by.md. Other parts of the state are told and not judged: a warm
 # start is an acceleration, and controls are torques.
 BOUNDS: Mapping[str, float] = MappingProxyType({"positions": 2e-3, "velocities": 0.2})
 _TICKS_A_REQUEST = 100

@@ -1,7 +1,8 @@
 """Say what the numbers of this process's worlds depend on besides their model: processor, C library, MuJoCo.
 
-The fingerprint is a digest of fixed computations by what worlds are stepped with: the C library's functions, and a small
-world of MuJoCo's with joints and contacts. Processes of one fingerprint step worlds to the same bits, as far as is known.
+The fingerprint is a digest of fixed computations by what worlds are stepped with: the C library's functions, and a
+small world of MuJoCo's with joints and contacts. Processes of one fingerprint step worlds to the same bits, as far as
+is known.
 """
 
 from __future__ import annotations
