@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from mart.protocol.errors import Corrupt
+from mart.protocol.messages import Numerics
 from mart.protocol.vocabulary import Verdict
 
 PROFILE = "mart"
@@ -49,9 +50,21 @@ class Record(BaseModel):
     model_config = ConfigDict(frozen=True, allow_inf_nan=False)
 
     NAME: ClassVar[str]
+    _MAPS: ClassVar[
+        Mapping[str, str]
+    ] = {}  # fields that are maps → the key of one entry, {} for what it is of
 
     def to_strings(self) -> dict[str, str]:
-        return {name: _text(value) for name, value in self if value is not None}
+        plain = {n: _text(value) for n, value in self if value is not None and n not in self._MAPS}
+        for name, key in self._MAPS.items():
+            plain |= {key.format(of): _text(value) for of, value in getattr(self, name).items()}
+        return plain
+
+    @model_validator(mode="before")
+    @classmethod
+    def _gather(cls, values: dict[str, Any]) -> dict[str, Any]:
+        gathered = {name: _matching(key, values) for name, key in cls._MAPS.items()}
+        return values | {name: found for name, found in gathered.items() if found}
 
     @classmethod
     def from_strings(cls, strings: Mapping[str, str]) -> Self:
@@ -95,7 +108,11 @@ class EpisodeRecord(Record):
 
 
 class RoomRecord(Record):
-    """Tell of what room the file is: written when it is opened, so that a file that was cut short still says it."""
+    """Tell of what room the file is: written when it is opened, so that a file that was cut short still says it.
+
+    processor, libm, mujoco_build, numeric_fingerprint: what the numbers of the process depended on that stepped the
+    room's world; absent before version 0.3.
+    """
 
     NAME = "mart.room"
 
@@ -104,6 +121,26 @@ class RoomRecord(Record):
     control_hz: float | None = None
     model_sha256: str | None = None
     mujoco_version: str | None = None
+    processor: str | None = None
+    libm: str | None = None
+    mujoco_build: str | None = None
+    numeric_fingerprint: str | None = None
+
+    def with_numerics(self, numerics: Numerics) -> RoomRecord:
+        """Return this record with what a process says of its numbers; what it does not say is absent."""
+        said = {"processor": numerics.processor, "libm": numerics.libm, "mujoco_build": numerics.mujoco_build}
+        fields = said | {"numeric_fingerprint": numerics.fingerprint}
+        return self.model_copy(update={name: value or None for name, value in fields.items()})
+
+    @property
+    def numerics(self) -> Numerics:
+        """What the process said of its numbers; empty where it said nothing."""
+        return Numerics(
+            processor=self.processor or "",
+            libm=self.libm or "",
+            mujoco_build=self.mujoco_build or "",
+            fingerprint=self.numeric_fingerprint or "",
+        )
 
 
 class CadenceRecord(Record):
@@ -125,32 +162,35 @@ class CadenceRecord(Record):
     motion_to_photon_p50_ms: Mapping[str, float] = Field(default_factory=dict)  # the seat's newest report
     motion_to_photon_p95_ms: Mapping[str, float] = Field(default_factory=dict)
 
-    _PER_ARM: ClassVar[Mapping[str, str]] = {
+    _MAPS: ClassVar[Mapping[str, str]] = {
         "waited_for_s": "waited_for_{}_s",
         "motion_to_photon_p50_ms": "motion_to_photon_{}_p50_ms",
         "motion_to_photon_p95_ms": "motion_to_photon_{}_p95_ms",
     }
 
-    def to_strings(self) -> dict[str, str]:
-        strings = {name: text for name, text in super().to_strings().items() if name not in self._PER_ARM}
-        for name, key in self._PER_ARM.items():
-            strings |= {key.format(arm): _text(value) for arm, value in getattr(self, name).items()}
-        return strings
-
-    @model_validator(mode="before")
-    @classmethod
-    def _gather(cls, values: dict[str, Any]) -> dict[str, Any]:
-        gathered = {name: _matching(key, values) for name, key in cls._PER_ARM.items()}
-        return values | {name: found for name, found in gathered.items() if found}
-
 
 class VerificationRecord(Record):
+    """What re-simulation said. It covers states and the actions between them, nothing else that the file says.
+
+    pending: whether it could not be had and is tried again; None in files of versions that did not try.
+    numeric_fingerprint: of the process that stepped again. first_different_tick, within_tolerance, largest_difference:
+    where it came to other states; the differences are those one tick ahead of each recorded state, by the parts of the
+    state, in their units.
+    """
+
     NAME = "mart.verification"
 
     verdict: Verdict
     detail: str
     model_sha256: str | None = None
     mujoco_version: str | None = None
+    pending: bool | None = None
+    numeric_fingerprint: str | None = None
+    first_different_tick: int | None = None
+    within_tolerance: bool | None = None
+    largest_difference: Mapping[str, float] = Field(default_factory=dict)
+
+    _MAPS: ClassVar[Mapping[str, str]] = {"largest_difference": "largest_difference_{}"}
 
 
 class Shift(BaseModel):

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from mart.episodes.labels import EpisodeLabels
 from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, MartError
-from mart.protocol.recording import OperatorsRecord, Shift
+from mart.protocol.recording import OperatorsRecord, Shift, VerificationRecord
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 
 
@@ -18,6 +18,7 @@ class LabelledEpisode(BaseModel):
 
     path: below the folder of its labels, as labels name it. file_path: where it lies, as it was asked for.
     outcome, verdict: as labelled, else as recorded. operators: who drove each arm (`human Ana | tick 57: hold`).
+    verification_pending: it is unverified because nobody could step it again yet; the recorder tries until it can.
     error: why the file cannot be used; what else it says is not known then. dropped: nobody shall learn from it.
     """
 
@@ -33,6 +34,7 @@ class LabelledEpisode(BaseModel):
     arms: tuple[str, ...] = ()
     outcome: str = EpisodeOutcome.UNSPECIFIED.value
     verdict: str = Verdict.UNVERIFIED.value
+    verification_pending: bool = False
     reason: str = ""
     ticks: int = 0
     simulated_s: float = 0.0
@@ -77,6 +79,7 @@ class LabelledEpisode(BaseModel):
         changes = {
             "outcome": said.outcome or self.outcome,
             "verdict": said.verdict or self.verdict,
+            "verification_pending": self.verification_pending and said.verdict is None,
             "note": said.note,
             "dropped": said.dropped,
             "datasets": tuple(sorted(said.datasets)),
@@ -93,17 +96,23 @@ def describe(file_path: Path, path: str) -> LabelledEpisode:
     try:
         file = EpisodeFile.open(file_path)
         episode, cadence, operators = file.episode, file.cadence, file.operators
-        verdict = file.verification.verdict.value
+        verification = file.verification
     except MartError as error:
         return found.model_copy(update={"error": str(error)})
     known = {name: value for name, value in episode if name in LabelledEpisode.model_fields}
     return found.model_copy(
         update=known
-        | {"verdict": verdict, "operators": operators.to_strings()}
+        | {"verdict": verification.verdict.value, "verification_pending": is_pending(verification)}
+        | {"operators": operators.to_strings()}
         | {"real_time_factor": cadence.real_time_factor}
         | {"missing_ticks": cadence.missing_ticks, "waited_s": cadence.waited_s}
         | {"simulated_s": episode.ticks / episode.control_hz if episode.control_hz else 0.0}
     )
+
+
+def is_pending(verification: VerificationRecord) -> bool:
+    """Whether a verdict is still to be had; files of versions that did not say so are tried once more."""
+    return verification.verdict is Verdict.UNVERIFIED and verification.pending is not False
 
 
 def require_readable(episodes: list[LabelledEpisode]) -> None:
