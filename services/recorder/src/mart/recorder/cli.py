@@ -20,7 +20,7 @@ from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
 
 if TYPE_CHECKING:
-    from mart.recorder.verify.resimulation import Resimulate
+    from mart.recorder.verify.replica import AskReplica
 
 _path = click.argument("path", type=click.Path(path_type=Path))
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
@@ -215,7 +215,7 @@ def _given(paths: tuple[Path, ...]) -> tuple[Path, ...]:
 
 
 @contextmanager
-def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> Iterator[Resimulate]:
+def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> Iterator[AskReplica]:
     """Ask a replica. Without a router this raises Unavailable: at once, or `wherever_possible` when it is asked."""
     from mart.recorder.verify import resimulation as verification
     from mart.runtime.bus.zenoh_bus import ZenohBus

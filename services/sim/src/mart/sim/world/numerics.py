@@ -77,8 +77,8 @@ def _fingerprint() -> str:
     for function, low, high in _ONE_ARGUMENT:
         digest.update(_packed(map(function, np.linspace(low, high, _POINTS).tolist())))
     arguments = np.linspace(0.01, 4.0, _POINTS).tolist()
-    for function in _TWO_ARGUMENTS:
-        digest.update(_packed(map(function, arguments, reversed(arguments))))
+    for of_two in _TWO_ARGUMENTS:
+        digest.update(_packed(map(of_two, arguments, reversed(arguments))))
     model = mujoco.MjModel.from_xml_string(_WORLD)
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data, _STEPS)
