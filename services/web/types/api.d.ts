@@ -11,6 +11,7 @@ declare namespace Api {
     title: string;
     instruction: string;
     arms: number;
+    arm_counts: number[];
   }
 
   interface NewRoom {
@@ -18,6 +19,7 @@ declare namespace Api {
     room: string;
     control_hz: number;
     episodes: number;
+    arms: number;
   }
 
   interface Finding {

@@ -26,6 +26,8 @@ declare namespace Messages {
     cadence: Record<string, string>;
     versions: Record<string, string>;
     verification: string;
+    simulated: boolean;
+    viewpoints: string[];
   }
 
   interface CatalogueReplyListing {

@@ -213,13 +213,42 @@ def test_whatever_is_typed_becomes_a_name_that_a_data_set_may_have(run: Run) -> 
     typed = ["Cubes, good", "  -_a", "Ünder 2", "x" * 99, "ok_1-2", "!?"]
     names = run("names.js", "({ nameFrom }, typed) => typed.map((text) => nameFrom(text))", typed)
     assert names == ["cubes-good", "a", "nder-2", "x" * 64, "ok_1-2", ""]
+    assert run("names.js", "({ finalName }) => finalName('My Set!')") == "my-set"
     for name in filter(None, names):
         Label("a", LabelKind.JOIN, name, 1)
 
 
-def test_who_takes_all_that_are_shown_knows_how_many_did_not_succeed(run: Run) -> None:
-    texts = run("episodes/formatting.js", "({ allText }, counts) => counts.map(allText)", [0, 3])
-    assert texts == [
-        "All that are shown; tick some to choose fewer",
-        "All that are shown, also 3 without success; tick some to choose fewer",
-    ]
+@pytest.mark.parametrize(
+    ("chosen", "tasks", "text"),
+    [
+        ({}, 1, "All that succeeded; tick some to choose others."),
+        ({}, 2, "Choose one task above, or tick episodes."),
+        ({"task": "two_arm_multi_cube_lifting"}, 2, "All that succeeded; tick some to choose others."),
+        ({"task": "two_arm_multi_cube_lifting", "outcome": "failure"}, 2, "All that are shown; tick"),
+    ],
+)
+def test_who_ticks_nothing_takes_what_succeeded_of_one_task(
+    run: Run, chosen: dict[str, str], tasks: int, text: str
+) -> None:
+    told = run(
+        "episodes/formatting.js",
+        "({ allText }, { chosen, tasks }) => allText(chosen, tasks)",
+        {"chosen": chosen, "tasks": tasks},
+    )
+    assert told.startswith(text)
+
+
+def test_what_is_said_of_an_episode_can_be_taken_back(run: Run) -> None:
+    before = {"outcome": "success", "dropped": False, "note": ""}
+    script = (
+        "({ undoing, labelledText }, { before, now }) => [undoing(before, now), labelledText(before, now)]"
+    )
+
+    def told(was: dict[str, Any], now: dict[str, Any]) -> Any:
+        return run("episodes/formatting.js", script, {"before": was, "now": now})
+
+    failed = before | {"outcome": "failure"}
+    assert told(before, failed) == [{"outcome": "success"}, "Saved: Failed. It was: Success."]
+    assert told(before, before | {"dropped": True}) == [{"dropped": False}, "Saved: left out of data sets."]
+    assert told(before, before | {"note": "x"}) == [{"note": ""}, "Saved: the note."]
+    assert told(before | {"outcome": "unspecified"}, failed)[0] is None

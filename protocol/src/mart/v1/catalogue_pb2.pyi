@@ -238,7 +238,7 @@ class CatalogueReply(_message.Message):
         skills: _containers.RepeatedScalarFieldContainer[str]
         def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ..., datasets: _Optional[_Iterable[_Union[NamedDataSet, _Mapping]]] = ..., skills: _Optional[_Iterable[str]] = ...) -> None: ...
     class Details(_message.Message):
-        __slots__ = ("episode", "wall_s", "lanes", "traces", "views", "cadence", "versions", "verification")
+        __slots__ = ("episode", "wall_s", "lanes", "traces", "views", "cadence", "versions", "verification", "simulated", "viewpoints")
         class CadenceEntry(_message.Message):
             __slots__ = ("key", "value")
             KEY_FIELD_NUMBER: _ClassVar[int]
@@ -261,6 +261,8 @@ class CatalogueReply(_message.Message):
         CADENCE_FIELD_NUMBER: _ClassVar[int]
         VERSIONS_FIELD_NUMBER: _ClassVar[int]
         VERIFICATION_FIELD_NUMBER: _ClassVar[int]
+        SIMULATED_FIELD_NUMBER: _ClassVar[int]
+        VIEWPOINTS_FIELD_NUMBER: _ClassVar[int]
         episode: RecordedEpisode
         wall_s: float
         lanes: _containers.RepeatedCompositeFieldContainer[Lane]
@@ -269,14 +271,18 @@ class CatalogueReply(_message.Message):
         cadence: _containers.ScalarMap[str, str]
         versions: _containers.ScalarMap[str, str]
         verification: str
-        def __init__(self, episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., wall_s: _Optional[float] = ..., lanes: _Optional[_Iterable[_Union[Lane, _Mapping]]] = ..., traces: _Optional[_Iterable[_Union[Trace, _Mapping]]] = ..., views: _Optional[_Iterable[_Union[RecordedView, _Mapping]]] = ..., cadence: _Optional[_Mapping[str, str]] = ..., versions: _Optional[_Mapping[str, str]] = ..., verification: _Optional[str] = ...) -> None: ...
+        simulated: bool
+        viewpoints: _containers.RepeatedScalarFieldContainer[str]
+        def __init__(self, episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., wall_s: _Optional[float] = ..., lanes: _Optional[_Iterable[_Union[Lane, _Mapping]]] = ..., traces: _Optional[_Iterable[_Union[Trace, _Mapping]]] = ..., views: _Optional[_Iterable[_Union[RecordedView, _Mapping]]] = ..., cadence: _Optional[_Mapping[str, str]] = ..., versions: _Optional[_Mapping[str, str]] = ..., verification: _Optional[str] = ..., simulated: _Optional[bool] = ..., viewpoints: _Optional[_Iterable[str]] = ...) -> None: ...
     class Piece(_message.Message):
-        __slots__ = ("piece", "size_bytes")
+        __slots__ = ("piece", "size_bytes", "pending")
         PIECE_FIELD_NUMBER: _ClassVar[int]
         SIZE_BYTES_FIELD_NUMBER: _ClassVar[int]
+        PENDING_FIELD_NUMBER: _ClassVar[int]
         piece: bytes
         size_bytes: int
-        def __init__(self, piece: _Optional[bytes] = ..., size_bytes: _Optional[int] = ...) -> None: ...
+        pending: bool
+        def __init__(self, piece: _Optional[bytes] = ..., size_bytes: _Optional[int] = ..., pending: _Optional[bool] = ...) -> None: ...
     class Curated(_message.Message):
         __slots__ = ("dataset", "changed", "left_out", "episodes", "act_ns")
         class LeftOutEntry(_message.Message):

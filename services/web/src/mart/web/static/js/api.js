@@ -175,16 +175,8 @@ export const fileOf = (path) => `/api${episodePath(path, "/file")}`;
 /** The address of an episode's last recorded picture. @type {(path: string) => string} */
 export const pictureOf = (path) => `/api${episodePath(path, "/picture")}`;
 
-/**
- * A recorded video, whole.
- * @param {string} path
- * @param {string} camera
- */
-export async function video(path, camera) {
-  const response = await fetch(`/api${episodePath(path, "/video")}&camera=${encoded(camera)}`);
-  if (response.ok) return response.blob();
-  throw new ApiError(response.status, "", "The recorded video cannot be had; reload the page to try again.");
-}
+/** The address of what one camera saw, recorded or drawn. @type {(path: string, camera: string) => string} */
+export const episodeVideoOf = (path, camera) => `/api${episodePath(path, "/video")}&camera=${encoded(camera)}`;
 
 // Training
 
