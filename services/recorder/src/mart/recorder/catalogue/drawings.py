@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from mart.episodes.reader import EpisodeFile
 from mart.episodes.rendering import EpisodeRenderings
 from mart.protocol import codec
-from mart.protocol.errors import NotFound
+from mart.protocol.errors import NotFound, Unavailable
 from mart.protocol.messages import State
 from mart.protocol.recording import STATE
 from mart.protocol.tasks import SHARED_VIEWPOINT
