@@ -238,6 +238,26 @@ def test_who_ticks_nothing_takes_what_succeeded_of_one_task(
     assert told.startswith(text)
 
 
+@pytest.mark.parametrize(
+    ("text", "plain"),
+    [
+        (
+            "Ana gave no command for 30 s: arm2 is free.",
+            "Ana gave no command for 30 s: the green arm is free.",
+        ),
+        ("arm0 waits.", "The blue arm waits."),
+        ("of three_arm_lift_wiping, two_arm_nothing", "Of “Lift and wipe”, two_arm_nothing"),
+        (
+            "2026/room-1-0001-two_arm_multi_cube_lifting.mcap",
+            "2026/room-1-0001-two_arm_multi_cube_lifting.mcap",
+        ),
+        ("See arm0/shadow.", "See arm0/shadow."),
+    ],
+)
+def test_people_read_of_arms_and_tasks_by_the_names_that_they_know(run: Run, text: str, plain: str) -> None:
+    assert run("plain-words.js", "({ inPlainWords }, text) => inPlainWords(text)", text) == plain
+
+
 def test_what_is_said_of_an_episode_can_be_taken_back(run: Run) -> None:
     before = {"outcome": "success", "dropped": False, "note": ""}
     script = (

@@ -73,8 +73,10 @@ class Drawings:
         return video
 
     def _folder(self) -> Path:
-        if self._made is None:
-            self._made = tempfile.TemporaryDirectory(prefix="mart-drawn-")
+        try:
+            self._made = self._made or tempfile.TemporaryDirectory(prefix="mart-drawn-")
+        except OSError as error:
+            raise Unavailable(f"Drawn videos can be kept nowhere here: {error}.") from error
         return Path(self._made.name)
 
     def _renderer_of(self, file: EpisodeFile) -> Renderer:
