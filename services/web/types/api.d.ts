@@ -58,6 +58,9 @@ declare namespace Api {
     elapsed_s: number;
     outcome: Messages.Outcome | "unspecified";
     reason: string;
+    ended_by: string;
+    ended_by_name: string;
+    ended_by_arm: string;
   }
 
   interface Subtask {
@@ -106,6 +109,7 @@ declare namespace Api {
     episodes_saved: number;
     episodes_good: number;
     plan: Plan | null;
+    unrecorded: string;
     still: number;
     last_episode: LastEpisode | null;
   }
@@ -151,6 +155,7 @@ declare namespace Api {
     token: string;
     role: PeerRole;
     epoch: number;
+    ice_servers: RTCIceServer[];
   }
 
   interface Pairing {
