@@ -86,6 +86,9 @@ declare namespace Api {
     number: number;
     outcome: Messages.Outcome | "unspecified";
     reason: string;
+    ended_by: string;
+    subtasks_done: number;
+    subtasks: number;
     since_s: number;
     epochs: Record<string, number>;
     saved: SavedFile | null;

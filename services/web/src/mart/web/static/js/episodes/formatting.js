@@ -101,10 +101,23 @@ export const dateText = (unixMs) => (unixMs ? DAY.format(unixMs) : "");
 /** 0.97 → "0.97×" @type {(factor: number | null) => string} */
 export const rateText = (factor) => (factor === null ? "–" : `${factor.toFixed(2)}×`);
 
+/**
+ * Whose word the outcome is, and how far the task had come by then: "said by Ana, 0 of 3 steps done". Nothing where the
+ * task itself ended it.
+ * @type {(episode: Api.Episode) => string}
+ */
+export function saidText({ ended_by: by, ended_by_name: name, subtasks_done: done, subtasks: all }) {
+  if (by !== "operator") return "";
+  const steps = all ? `, ${done ?? 0} of ${all} steps done` : "";
+  return `said by ${name || "an operator"}${steps}`;
+}
+
 /** What is unusual about an episode, in a few words each. @type {(episode: Api.Episode) => string[]} */
-export function remarks({ complete, repaired, interrupted, missing_ticks: missing, dropped, datasets, error }) {
+export function remarks(episode) {
+  const { complete, repaired, interrupted, missing_ticks: missing, dropped, datasets, error } = episode;
   if (error) return ["cannot be read"];
   return [
+    saidText(episode),
     datasets.length > 0 ? `in ${datasets.join(", ")}` : "",
     dropped ? "left out of data sets" : "",
     interrupted ? "was paused" : "",
