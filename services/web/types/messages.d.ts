@@ -173,6 +173,7 @@ declare namespace Messages {
     ended_by_arm: string;
     subtasks_done?: number;
     subtasks?: number;
+    outcome_by: string;
   }
 
   interface RecordedView {

@@ -21,7 +21,8 @@ class LabelledEpisode(BaseModel):
     """Describe one episode file by its metadata, overlaid with its labels.
 
     path: below the folder of its labels, as labels name it. file_path: where it lies, as it was asked for.
-    outcome, verdict: as labelled, else as recorded. operators: who drove each arm (`human Ana | tick 57: hold`).
+    outcome, verdict: as labelled, else as recorded. outcome_by: who labelled it so, where that is known.
+    operators: who drove each arm (`human Ana | tick 57: hold`).
     ended_by: task, time, operator, absence or room; None where nobody wrote it down. subtasks_done: in the last state.
     missing_commands: how many commands the states name and the file lacks; None where nobody counted.
     error: why the file cannot be used; what else it says is not known then. dropped: nobody shall learn from it.
@@ -61,6 +62,7 @@ class LabelledEpisode(BaseModel):
     interrupted: bool = False
     operators: dict[str, str] = {}
     error: str | None = None
+    outcome_by: str | None = None
     note: str | None = None
     dropped: bool = False
     datasets: tuple[str, ...] = ()  # that it is part of
@@ -88,6 +90,7 @@ class LabelledEpisode(BaseModel):
             return self
         changes = {
             "outcome": said.outcome or self.outcome,
+            "outcome_by": said.outcome_by or None,
             "verdict": said.verdict or self.verdict,
             "note": said.note,
             "dropped": said.dropped,

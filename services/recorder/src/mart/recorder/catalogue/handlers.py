@@ -114,7 +114,9 @@ class CatalogueHandlers:
             said[LabelKind.USE] = labels.DROP if asked.dropped else labels.KEEP
         if not said:
             raise InvalidInput("Nothing to say was given; say an outcome, a note, or whether to drop it.")
-        labels.append(self._root, [Label(row.path, kind, value, now_ns) for kind, value in said.items()])
+        labels.append(
+            self._root, [Label(row.path, kind, value, now_ns, by=asked.by) for kind, value in said.items()]
+        )
         row = row.with_labels(labels.read_folded(self._root).get(row.path))
         self._rows[row.path] = row
         return row

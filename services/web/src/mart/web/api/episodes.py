@@ -81,10 +81,10 @@ async def episode(path: Path, app: App, _user: JoinedUser) -> Json:
 
 
 @router.post("/episode")
-async def label(path: Path, body: LabelRequest, app: App, _user: JoinedUser) -> Json:
+async def label(path: Path, body: LabelRequest, app: App, user: JoinedUser) -> Json:
     """Write down what somebody says of an episode."""
     said = body.model_dump(exclude_none=True)
-    request = CatalogueRequest(label=CatalogueRequest.Label(path=path, **said))
+    request = CatalogueRequest(label=CatalogueRequest.Label(path=path, by=user.name, **said))
     labelled = (await app.catalogue.ask(request)).episode
     if body.outcome is not None:
         app.lobby.see_label(labelled.path, body.outcome)

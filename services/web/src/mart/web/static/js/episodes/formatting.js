@@ -106,7 +106,9 @@ export const rateText = (factor) => (factor === null ? "–" : `${factor.toFixed
  * task itself ended it.
  * @type {(episode: Api.Episode) => string}
  */
-export function saidText({ ended_by: by, ended_by_name: name, subtasks_done: done, subtasks: all }) {
+export function saidText(episode) {
+  const { ended_by: by, ended_by_name: name, subtasks_done: done, subtasks: all, outcome_by: labelledBy } = episode;
+  if (labelledBy) return `labelled by ${labelledBy}`;
   if (by !== "operator") return "";
   const steps = all ? `, ${done ?? 0} of ${all} steps done` : "";
   return `said by ${name || "an operator"}${steps}`;
