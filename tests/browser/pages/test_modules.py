@@ -258,6 +258,22 @@ def test_people_read_of_arms_and_tasks_by_the_names_that_they_know(run: Run, tex
     assert run("plain-words.js", "({ inPlainWords }, text) => inPlainWords(text)", text) == plain
 
 
+def test_whose_word_an_outcome_is_stands_beside_it(run: Run) -> None:
+    ended = {
+        "ended_by": "operator",
+        "ended_by_name": "Ana",
+        "subtasks_done": 0,
+        "subtasks": 3,
+        "outcome_by": "",
+    }
+    told = run(
+        "episodes/formatting.js",
+        "({ saidText }, episodes) => episodes.map(saidText)",
+        [ended, ended | {"ended_by": "task"}, ended | {"outcome_by": "Rita"}, ended | {"subtasks": None}],
+    )
+    assert told == ["said by Ana, 0 of 3 steps done", "", "labelled by Rita", "said by Ana"]
+
+
 def test_what_is_said_of_an_episode_can_be_taken_back(run: Run) -> None:
     before = {"outcome": "success", "dropped": False, "note": ""}
     script = (
