@@ -18,6 +18,7 @@ const list = new EpisodeList(curation, {
 });
 const view = new EpisodeView(attempt, () => go(list.query));
 let timer = 0;
+let asked = 0; // an older question's late answer is not shown
 
 if (await isMember()) start();
 
@@ -58,7 +59,9 @@ async function showList(parameters) {
   list.adopt(parameters);
   setShown(byId("one"), false);
   setShown(byId("list"), true);
+  const mine = ++asked;
   const listing = await list.load().catch(stillReading);
+  if (mine !== asked || view.isOpen) return;
   if (listing === undefined) {
     timer = setTimeout(show, RETRY_MS);
     return;

@@ -25,6 +25,9 @@ export class EpisodeView {
   #said = Promise.resolve();
   #labels = new LabelForm((labels) => this.#say(labels));
   #subtitle = element("p", { class: "soft" });
+  #facts = element("section");
+  /** @type {Api.EpisodeDetails | null} */
+  #details = null;
 
   /**
    * @param {AttemptChange} attempt
@@ -68,8 +71,9 @@ export class EpisodeView {
       element("header", { class: "one-head" }, element("div", {}, title, this.#subtitle), download(episode)),
       this.#labels.node,
       this.#seen(details),
-      factsCard(details),
+      this.#facts,
     );
+    this.#details = details;
     this.#known = episode;
     this.#labels.tell();
     this.#update(episode);
@@ -81,6 +85,10 @@ export class EpisodeView {
     const facts = [`${episode.room}, episode ${episode.number}`, dateText(episode.started_ms), ...remarks(episode)];
     setText(this.#subtitle, facts.filter(Boolean).join(" · "));
     this.#labels.update(episode);
+    if (!this.#details) return;
+    const facts = factsCard({ ...this.#details, episode });
+    this.#facts.replaceWith(facts);
+    this.#facts = facts;
   }
 
   #backLink() {
