@@ -86,9 +86,9 @@ export class EpisodeView {
     setText(this.#subtitle, facts.filter(Boolean).join(" · "));
     this.#labels.update(episode);
     if (!this.#details) return;
-    const facts = factsCard({ ...this.#details, episode });
-    this.#facts.replaceWith(facts);
-    this.#facts = facts;
+    const card = factsCard({ ...this.#details, episode });
+    this.#facts.replaceWith(card);
+    this.#facts = card;
   }
 
   #backLink() {
