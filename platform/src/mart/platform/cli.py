@@ -195,9 +195,9 @@ def rooms(as_json: bool) -> None:
 def doctor(as_json: bool) -> None:
     """Name what is missing or unreachable, layer by layer, and the mend."""
     from mart.platform.inspect.doctor import examine
-    from mart.runtime.settings import Settings
+    from mart.runtime.ice_servers import IceSettings
 
-    findings = list(examine(Settings()))
+    findings = list(examine(IceSettings()))
     lines = [
         f"{'ok ' if f.ok else 'BAD'}  {f.layer:<14} {f.found}{f'  →  {f.mend}' if f.mend else ''}"
         for f in findings
