@@ -56,6 +56,9 @@ declare namespace Api {
     elapsed_s: number;
     outcome: Messages.Outcome | "unspecified";
     reason: string;
+    ended_by: string;
+    ended_by_name: string;
+    ended_by_arm: string;
   }
 
   interface Subtask {
@@ -104,6 +107,7 @@ declare namespace Api {
     episodes_saved: number;
     episodes_good: number;
     plan: Plan | null;
+    unrecorded: string;
     still: number;
     last_episode: LastEpisode | null;
   }
