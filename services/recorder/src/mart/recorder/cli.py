@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,10 +16,12 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput, Unavailable
+from mart.protocol.recording import PART_SUFFIX
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
+from mart.runtime.progress import counted, progress, tracked
 
 if TYPE_CHECKING:
     from mart.recorder.verify.resimulation import Resimulate
@@ -92,7 +96,7 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
 
     found = []
     with _resimulation(replica) as resimulate:
-        for path in episode_files(_given(paths)):
+        for path in tracked(episode_files(_given(paths)), "Verified", as_json=as_json):
             file = EpisodeFile.open(path)
             said = verify_file(file, file.room, resimulate)
             if said.verdict is not Verdict.UNVERIFIED:  # a replica that is away takes nothing back
@@ -145,8 +149,13 @@ def repair(folder: Path | None, replica: str | None, as_json: bool) -> int:
     from mart.recorder.verify.resimulation import verify as verify_file
 
     root = folder or RecorderSettings().episodes_dir
-    with _resimulation(replica, wherever_possible=True) as resimulate:
-        repaired = list(repair_all(root, lambda file, room: verify_file(file, room, resimulate)))
+    left = sum(1 for _ in root.rglob(f"*{PART_SUFFIX}"))
+    with (
+        _resimulation(replica, wherever_possible=True) as resimulate,
+        progress("Files", left, as_json=as_json) as shown,
+    ):
+        mended = repair_all(root, lambda file, room: verify_file(file, room, resimulate))
+        repaired = list(counted(mended, shown))
     print_result(*formatting.repaired(repaired), as_json)
     return 0 if all(one.saved for one in repaired) else 1
 
@@ -210,7 +219,8 @@ def export(
     of_dataset = EpisodeFilter(datasets=(dataset,) if dataset else (), unusable=True)
     listed = of_dataset.apply(list_paths(_given(paths)))
     selection = choose(listed, filter_of(wanted, unusable=False))
-    ticks = write(selection, out)
+    each = partial(tracked, label="Episodes", as_json=as_json)
+    ticks = write(replace(selection, each=each), out)
     count, task = len(selection.episodes), selection.task.name
     result = {"path": str(out), "format": file_format, "task": task, "episodes": count, "ticks": ticks}
     print_result(result, f"{out}: {count} of {len(listed)} episodes of {task}, {ticks} ticks.", as_json)
