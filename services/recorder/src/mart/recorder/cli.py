@@ -16,12 +16,11 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput, Unavailable
-from mart.protocol.recording import PART_SUFFIX
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
-from mart.runtime.progress import counted, progress, tracked
+from mart.runtime.progress import progress, tracked
 
 if TYPE_CHECKING:
     from mart.recorder.verify.resimulation import Resimulate
@@ -139,25 +138,27 @@ def replay(path: Path, replica: str | None, as_json: bool) -> int:
 
 
 @episodes.command()
-@click.argument("folder", required=False, type=click.Path(path_type=Path, exists=True, file_okay=False))
+@_paths
 @_replica
 @json_option
-def repair(folder: Path | None, replica: str | None, as_json: bool) -> int:
-    """Make episodes of what crashes have left (.part files). Files that are being recorded are left alone."""
+def repair(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
+    """Make episodes of what crashes have left (.part files), and of damaged files new ones beside them.
+
+    Finished files never change, and what is being recorded, or is not MART's, is left alone.
+    """
     from mart.recorder import formatting
-    from mart.recorder.repair.repair import repair_all
+    from mart.recorder.repair.repair import file_count, repair_paths
     from mart.recorder.verify.resimulation import verify as verify_file
 
-    root = folder or RecorderSettings().episodes_dir
-    left = sum(1 for _ in root.rglob(f"*{PART_SUFFIX}"))
+    given = _given(paths)
     with (
         _resimulation(replica, wherever_possible=True) as resimulate,
-        progress("Files", left, as_json=as_json) as shown,
+        progress("Files", file_count(given), as_json=as_json) as shown,
     ):
-        mended = repair_all(root, lambda file, room: verify_file(file, room, resimulate))
-        repaired = list(counted(mended, shown))
+        mended = repair_paths(given, lambda file, room: verify_file(file, room, resimulate), shown.advance)
+        repaired = list(mended)
     print_result(*formatting.repaired(repaired), as_json)
-    return 0 if all(one.saved for one in repaired) else 1
+    return 0 if all(one.saved or one.needless for one in repaired) else 1
 
 
 @episodes.command()
