@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,9 +48,9 @@ class RunningMart:
         (pid,) = (pid for pid, command in words.items() if part in command[1:3] and _is_mart(command))
         return pid
 
-    def count(self) -> int:
-        """Return how many processes carry the platform's mark."""
-        return len(processes_of(self.mark))
+    def commands(self) -> Counter[str]:
+        """Return what runs with the platform's mark, by its command."""
+        return Counter(" ".join(_words(pid)[1:4]) for pid in processes_of(self.mark))
 
     def _seat(self, arm: str) -> int:
         log = (self.platform.logs_dir / "gateway-1.log").read_text(errors="replace")

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+
+import click
 
 from mart.episodes.folder import find_episodes
 from mart.episodes.reader import EpisodeFile
@@ -44,9 +47,9 @@ def try_fault(fault: Fault, scene: Scene, people: Sequence[EmulatedUser]) -> Tri
 
     Raises NotHere where it cannot be tried, and TimeoutError where no episode begins.
     """
-    before = scene.running.count()
     with witnessing(scene.running, people[0].web_client) as witness:
         number = _begin(witness, people)
+        before = scene.running.commands()
         fault_s = clock.monotonic_s()
         with fault.does(scene):
             clock.sleep_s(max(fault.lasts_s, _DEAD_S if fault.ends_platform else 0.0))
@@ -64,7 +67,7 @@ def try_fault(fault: Fault, scene: Scene, people: Sequence[EmulatedUser]) -> Tri
         if not fault.ends_platform:
             look_at_files(row, scene.data_dir, number, expected)
             row.next_verified = next_is_verified(witness, people, scene.data_dir)
-            row.left_over = max(_settled_count(scene) - before, 0)
+            row.left_over = _more_than(before, scene)
             finish(row, fault)
     return Trial(row, number, expected)
 
@@ -177,6 +180,11 @@ def _left(mark: str) -> int:
     return left
 
 
-def _settled_count(scene: Scene) -> int:
-    counts: Iterator[int] = (scene.running.count() for _ in range(2))
-    return min(counts)
+def _more_than(before: Counter[str], scene: Scene) -> int:
+    """How many processes there are more than before, once those that come and go have."""
+    deadline_s = clock.monotonic_s() + 15.0
+    while (more := scene.running.commands() - before) and clock.monotonic_s() < deadline_s:
+        clock.sleep_s(_LOOK_EVERY_S)
+    if more:
+        click.echo(f"More than before: {dict(more)}", err=True)
+    return more.total()

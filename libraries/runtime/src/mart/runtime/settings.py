@@ -11,7 +11,6 @@ from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
 
 from mart.protocol.errors import InvalidInput
 
-
 _TCP = re.compile(r"(?:tcp|tls|quic|ws)/(?P<host>.+):(?P<port>\d{1,5})")
 _LOCAL = ("unixsock-stream/", "unixpipe/")
 
