@@ -24,12 +24,12 @@ class Progress:
         self._bar = bar
 
     def advance(self, steps: int = 1) -> None:
-        """So many steps more are done."""
+        """Count so many steps more."""
         if self._bar is not None:
             self._bar.update(steps)
 
     def reach(self, steps: int) -> None:
-        """So many steps are done in all."""
+        """Count up to so many steps in all."""
         if self._bar is not None:
             self._bar.update(steps - self._bar.pos)
 
