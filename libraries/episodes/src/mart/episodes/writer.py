@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
 import os
 from collections.abc import Mapping
@@ -16,6 +17,7 @@ from mcap_protobuf.schema import register_schema
 from mart.episodes.mcap_entries import McapEntry
 from mart.protocol.messages import Model
 from mart.protocol.recording import CHECKSUMS, MODEL_ATTACHMENT, PROFILE, RoomRecord, metadata_checksum
+from mart.runtime.atomic_file import rename_to_new
 
 _CHUNK_BYTES = 256 * 1024  # what one damaged sector can cost
 
@@ -31,13 +33,13 @@ class EpisodeWriter:
         path.parent.mkdir(parents=True, exist_ok=True)
         self.path = path
         self.messages = 0
-        self.described = False
+        self.description: RoomRecord | None = None
         self.has_model = False
         opening = path.with_name(f".{path.name}.opening")  # a repair must not find it before it is locked
         self._file = opening.open("wb")
         self._lock = opening.open("rb")
         fcntl.flock(self._lock, fcntl.LOCK_EX)
-        opening.rename(path)
+        rename_to_new(opening, path)
         self._mcap = Writer(
             self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True
         )
@@ -55,9 +57,10 @@ class EpisodeWriter:
         self.messages += 1
 
     def describe(self, record: RoomRecord) -> None:
-        """Say of what room this file is, once that is known."""
-        self.described = True
-        self.add_record(record.NAME, record.to_strings())
+        """Say of what room this file is, once that is known, and again once more is known: the last word holds."""
+        if record != self.description:
+            self.description = record
+            self.add_record(record.NAME, record.to_strings())
 
     def attach_model(self, model: Model, now_ns: int) -> None:
         """Attach the compiled MuJoCo model. now_ns: Unix time."""
@@ -74,6 +77,11 @@ class EpisodeWriter:
         self._mcap.flush()  # type: ignore[no-untyped-call]
         os.fsync(self._file.fileno())
 
+    def require_there(self) -> None:
+        """Raise FileNotFoundError where somebody has deleted the file: what is written would be lost."""
+        if not os.fstat(self._file.fileno()).st_nlink:
+            raise FileNotFoundError(errno.ENOENT, "its file was deleted", str(self.path))
+
     def finish(self) -> None:
         """Write the checksums of the metadata and the summary, and close the file, which stays locked."""
         self._mcap.add_metadata(CHECKSUMS, self._checksums)
@@ -83,9 +91,11 @@ class EpisodeWriter:
         self._file.close()
 
     def move_to(self, path: Path) -> None:
-        """Give the finished file its name, for good also across a power cut."""
+        """Give the finished file its name, for good also across a power cut. Raises FileExistsError if it is taken."""
         path.parent.mkdir(parents=True, exist_ok=True)
-        self.path = self.path.rename(path)
+        if path != self.path:
+            rename_to_new(self.path, path)
+        self.path = path
         folder = os.open(path.parent, os.O_RDONLY)
         try:
             os.fsync(folder)

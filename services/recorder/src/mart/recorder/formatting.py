@@ -11,6 +11,7 @@ from mart.episodes.datasets import NamedDataSet
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, NotFound
+from mart.protocol.recording import VerificationRecord
 from mart.protocol.vocabulary import EpisodeEndedBy
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.repair.repair import RepairResult
@@ -46,6 +47,7 @@ def _cells(path: str, row: LabelledEpisode) -> tuple[str, ...]:
         "repaired": row.repaired,
         "paused": row.interrupted,
         "dropped": row.dropped,
+        "verification pending": row.verification_pending,
     }
     remarks = [ending(row)] if ending(row) else []
     remarks += [word for word, holds in marks.items() if holds] + ([row.note] if row.note else [])
@@ -87,6 +89,20 @@ def _lines(facts: Mapping[str, Any], indent: str) -> list[str]:
         elif value is not None:
             lines.append(f"{indent}{name}: {value}")
     return lines
+
+
+def verified(path: Path, said: VerificationRecord) -> dict[str, Any]:
+    """Return what `verify --json` says of one file; covers: what the verdict is about."""
+    return {
+        "path": str(path),
+        "verdict": said.verdict.value,
+        "detail": said.detail,
+        "covers": "states and actions",
+        "pending": bool(said.pending),
+        "first_different_tick": said.first_different_tick,
+        "within_tolerance": said.within_tolerance,
+        "largest_difference": dict(said.largest_difference),
+    }
 
 
 def replayed(path: Path, stretches: Sequence[ComparedStretch]) -> tuple[dict[str, Any], str]:
@@ -135,11 +151,17 @@ def _lacks(one: FileCheck) -> str:
 def repaired(repaired: Sequence[RepairResult]) -> tuple[dict[str, Any], str]:
     """Return what `repair` did, as JSON and in words."""
     told = [
-        {"part": str(r.part), "path": str(r.saved.path) if r.saved else None, "detail": r.detail}
+        {"file": str(r.source), "path": str(r.saved.path) if r.saved else None, "detail": r.detail}
         for r in repaired
     ]
-    lines = [f"{t['part']} → {t['path'] or 'not repaired'}. {t['detail']}" for t in told]
+    lines = [_repaired_line(one) for one in repaired]
     return {"repaired": told}, "\n".join(lines) or "There is nothing to repair."
+
+
+def _repaired_line(one: RepairResult) -> str:
+    if one.saved is None:
+        return f"{one.source}: {'' if one.needless else 'not repaired. '}{one.detail}"
+    return f"{one.source} → {one.saved.path}. {one.detail}"
 
 
 def dataset(found: NamedDataSet) -> dict[str, Any]:

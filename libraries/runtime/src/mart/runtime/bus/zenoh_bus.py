@@ -1,17 +1,6 @@
 """The bus on Zenoh: the only file that imports it.
 
-Settings and their reasons (measured on Zenoh 1.10.2):
-
-- A lease of 4 s, with a sign of life every 0.25 s: on a busy machine a link of 2 s expired while both ends were well,
-  and with 10 s a frozen recorder held up the world (decision 0022). A peer that dies is noticed at once, by its socket.
-- Multicast is off, or any peer on the network joins.
-- Shared memory is off, because a receiver that is descheduled for 100 ms silently loses messages over it.
-- `connect/timeout_ms` -1 keeps a client trying until a router is there, at first every 0.1 s and at least every second,
-  so that a router's return is noticed; the default waits 1 to 4 s.
-- A queue has 16 batches: with the default of 2, a burst of 8 commands on a busy machine lost 18 %, with 16 none.
-- `transport/auth/usrpwd` admits only who knows the router's secret (decision 0039); it costs nothing measurable.
-- A peer that takes nothing for 0.5 s is disconnected, because the router waits for it with everything else: with the
-  default of 5 s a frozen recorder held up the world for 10 s, with this not at all.
+Its settings, and their reasons, are in `zenoh_settings`.
 """
 
 from __future__ import annotations
@@ -27,23 +16,20 @@ from typing import Any
 from uuid import uuid4
 
 import zenoh
+import zenoh.ext
 
 from mart.protocol import clock
 from mart.protocol.errors import Unavailable
 from mart.protocol.keys import Priority, Topic
+from mart.runtime.bus import zenoh_settings
 from mart.runtime.bus.base import AliveHandler, Bus, Closable, Handler, Publisher, RequestHandler, Sample
 from mart.runtime.bus.repetitions import Repetitions
+from mart.runtime.bus.zenoh_settings import Settings
 from mart.runtime.bus_secret import admitted_with
 
 _log = logging.getLogger(__name__)
 
-_LEASE_MS = 4_000
-_SIGNS_OF_LIFE_A_LEASE = 16
-_QUEUED_BATCHES = 16
-_BLOCKED_AT_MOST_US = 500_000
-_AUTHENTICATION = "transport/auth/usrpwd"
-_USER = "mart"
-_SILENT_AFTER_MS = 2000
+_HEARTBEAT_S = 0.5  # how soon a subscriber learns that it missed the newest, where nothing follows it
 _FIRST_REST_S = 0.05  # before a query that was dropped is asked again; doubled each time
 
 _PRIORITY = {
@@ -67,13 +53,9 @@ class ZenohBus(Bus):
         Raises Unavailable where no router answers and `wait_for_router` is False, else keeps trying; Forbidden where
         the router admits only who knows its secret, and none that is known here is that.
         """
-        settings = {
-            "mode": "client",
-            "connect/endpoints": [endpoint],
-            "connect/timeout_ms": -1 if wait_for_router else 1000,
-        }
         secret = admitted_with(endpoint, partial(_opens, endpoint), wait_for_router=wait_for_router)
-        return cls(_open(settings | _identity(secret), endpoint))
+        settings = zenoh_settings.client(endpoint, wait_for_router) | zenoh_settings.identity(secret)
+        return cls(_open(settings, endpoint))
 
     @classmethod
     def route(cls, endpoint: str, secret: bytes | None = None) -> ZenohBus:
@@ -81,29 +63,46 @@ class ZenohBus(Bus):
 
         Raises Unavailable where the address is taken.
         """
-        settings = {"mode": "router", "listen/endpoints": [endpoint]}
         if secret is None:
-            return cls(_open(settings, endpoint))
+            return cls(_open(zenoh_settings.router(endpoint), endpoint))
         with tempfile.NamedTemporaryFile(prefix="mart-") as users:  # readable by this user alone
-            users.write(_USER.encode() + b":" + secret + b"\n")
+            users.write(zenoh_settings.users(secret))
             users.flush()
-            return cls(_open(settings | {f"{_AUTHENTICATION}/dictionary_file": users.name}, endpoint))
+            return cls(_open(zenoh_settings.router(endpoint, users.name), endpoint))
 
     def publisher(self, topic: Topic) -> Publisher:
         control = zenoh.CongestionControl.BLOCK if topic.must_arrive else zenoh.CongestionControl.DROP
-        return _ZenohPublisher(
-            self._session.declare_publisher(
+        priority = _PRIORITY[topic.priority]
+        if topic.kept:
+            recoverable = zenoh.ext.declare_advanced_publisher(
+                self._session,
                 topic.key,
                 congestion_control=control,
-                priority=_PRIORITY[topic.priority],
+                priority=priority,
                 express=topic.express,
+                cache=zenoh.ext.CacheConfig(topic.kept),
+                sample_miss_detection=zenoh.ext.MissDetectionConfig(
+                    heartbeat=_HEARTBEAT_S, sporadic_heartbeat=None
+                ),
+            )
+            return _ZenohPublisher(recoverable)
+        return _ZenohPublisher(
+            self._session.declare_publisher(
+                topic.key, congestion_control=control, priority=priority, express=topic.express
             )
         )
 
-    def subscribe(self, key_expression: str, handler: Handler) -> Closable:
+    def subscribe(self, key_expression: str, handler: Handler, *, recover: bool = False) -> Closable:
         def deliver(sample: zenoh.Sample) -> None:
             handler(Sample(str(sample.key_expr), sample.payload.to_bytes()))
 
+        if recover:
+            recovery = zenoh.ext.RecoveryConfig(periodic_queries=None, heartbeat=True)
+            return self._keep(
+                zenoh.ext.declare_advanced_subscriber(
+                    self._session, key_expression, _logged(deliver), recovery=recovery
+                )
+            )
         return self._keep(self._session.declare_subscriber(key_expression, _logged(deliver)))
 
     def serve(self, topic: Topic, handler: RequestHandler) -> Closable:
@@ -201,14 +200,14 @@ class ZenohBus(Bus):
 
 
 class _ZenohPublisher:
-    def __init__(self, publisher: zenoh.Publisher) -> None:
+    def __init__(self, publisher: zenoh.Publisher | zenoh.ext.AdvancedPublisher) -> None:
         self._publisher = publisher
 
     def put(self, payload: bytes) -> None:
         self._publisher.put(payload)
 
     def close(self) -> None:
-        self._publisher.undeclare()
+        self._publisher.undeclare()  # type: ignore[no-untyped-call]  # of the advanced one
 
 
 class _ZenohAsker:
@@ -234,42 +233,17 @@ class _Declared:
 
 
 def _opens(endpoint: str, secret: bytes | None) -> bool:
-    once = {
-        "mode": "client",
-        "connect/endpoints": [endpoint],
-        "connect/timeout_ms": 0,
-        "transport/unicast/open_timeout": _SILENT_AFTER_MS,
-    }
+    """Try once to open a session with this secret, and close it."""
     try:
-        _open(once | _identity(secret), endpoint).close()
+        _open(zenoh_settings.one_try(endpoint) | zenoh_settings.identity(secret), endpoint).close()
     except Unavailable:
         return False
     return True
 
 
-def _identity(secret: bytes | None) -> dict[str, str]:
-    if secret is None:
-        return {}
-    return {f"{_AUTHENTICATION}/user": _USER, f"{_AUTHENTICATION}/password": secret.decode()}
-
-
-def _open(settings: dict[str, Any], endpoint: str) -> zenoh.Session:
+def _open(settings: Settings, endpoint: str) -> zenoh.Session:
     config = zenoh.Config()
-    common = {
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": False,
-        "scouting/delay": 0,  # ms; else a router waits half a second for others, although it looks for none
-        "transport/link/tx/lease": _LEASE_MS,
-        "transport/link/tx/keep_alive": _SIGNS_OF_LIFE_A_LEASE,
-        "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2},
-        "transport/shared_memory/enabled": False,
-        "transport/link/tx/queue/congestion_control/block/wait_before_close": _BLOCKED_AT_MOST_US,
-        **{
-            f"transport/link/tx/queue/size/{queue}": _QUEUED_BATCHES
-            for queue in ("real_time", "data_high", "data")
-        },
-    }
-    for path, value in (common | settings).items():
+    for path, value in (zenoh_settings.COMMON | settings).items():
         config.insert_json5(path, json.dumps(value))
     try:
         return zenoh.open(config)
