@@ -23,6 +23,7 @@ from mart.protocol.messages import (
     Offer,
     OpenSeat,
     OpenSeatReply,
+    RecordingReport,
     RolloutReply,
     RolloutRequest,
     RoomReply,
@@ -74,6 +75,7 @@ BROADCASTS = (
     Broadcast(keys.state, State),
     Broadcast(keys.status, RoomStatus),
     Broadcast(keys.event, Event),
+    Broadcast(keys.recording, RecordingReport),
     Broadcast(keys.video, None),
     Broadcast(keys.still, None),
 )
