@@ -125,6 +125,12 @@ def test_a_file_from_before_fingerprints_is_judged_by_its_size(
     assert said.pending is False
 
 
+def test_an_infinite_difference_is_a_verdict_too(tmp_path: Path) -> None:
+    said = verdict(tmp_path, synthetic.states(30), ask=on("cc", "dd", float("inf")))
+    assert (said.verdict, said.within_tolerance) == (Verdict.UNVERIFIED, False)
+    assert VerificationRecord.from_strings(said.to_strings()) == said
+
+
 def test_a_gap_is_said(tmp_path: Path) -> None:
     said = verdict(tmp_path, list(synthetic.without(synthetic.states(30), 10, 11)))
     assert said.verdict is Verdict.UNVERIFIED

@@ -8,15 +8,23 @@ Python and absent from the file.
 
 from __future__ import annotations
 
+import hashlib
+import json
 import re
 from collections.abc import Mapping
-from typing import Any, ClassVar, Self
+from typing import ClassVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    field_validator,
+)
 
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import Numerics
-from mart.protocol.vocabulary import Verdict
+from mart.protocol.record import ControlHz, Count, Number, Record, Seed, Tick, UnixNs
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 
 PROFILE = "mart"
 SUFFIX = ".mcap"
@@ -27,9 +35,13 @@ EVENT = "/event"
 TRANSFORMS = "/tf"
 MODEL_ATTACHMENT = "model.mjb"
 
-# What one part of the file may take: a reader refuses more, so that a hostile file cannot fill the memory.
+# What a file and its parts may take: a reader refuses more, so that a hostile file cannot fill the memory.
 MAX_CHUNK_BYTES = 64 * 1024 * 1024
 MAX_RECORD_BYTES = 256 * 1024 * 1024
+MAX_METADATA_BYTES = 1024 * 1024  # of one record, and of eight at most in all
+MAX_UNPACKED_TIMES = 200  # of a file's size; episodes have 1 to 4, a world at rest 27
+MIN_UNPACKED_BYTES = 4 * 1024 * 1024
+MAX_MESSAGES = 4_000_000  # an hour of four arms at 100 ticks a second has 3,500,000
 
 
 def command_topic(arm: str) -> str:
@@ -44,67 +56,40 @@ def video_topic(camera: str) -> str:
     return f"/view/{camera}/video"
 
 
-class Record(BaseModel):
-    """One metadata record: each field is one string in the file."""
-
-    model_config = ConfigDict(frozen=True, allow_inf_nan=False)
-
-    NAME: ClassVar[str]
-    _MAPS: ClassVar[
-        Mapping[str, str]
-    ] = {}  # fields that are maps → the key of one entry, {} for what it is of
-
-    def to_strings(self) -> dict[str, str]:
-        plain = {n: _text(value) for n, value in self if value is not None and n not in self._MAPS}
-        for name, key in self._MAPS.items():
-            plain |= {key.format(of): _text(value) for of, value in getattr(self, name).items()}
-        return plain
-
-    @model_validator(mode="before")
-    @classmethod
-    def _gather(cls, values: dict[str, Any]) -> dict[str, Any]:
-        gathered = {name: _matching(key, values) for name, key in cls._MAPS.items()}
-        return values | {name: found for name, found in gathered.items() if found}
-
-    @classmethod
-    def from_strings(cls, strings: Mapping[str, str]) -> Self:
-        try:
-            return cls.model_validate(dict(strings))
-        except ValidationError as error:
-            first = error.errors()[0]
-            where = ".".join(map(str, first["loc"])) or "a value"
-            raise Corrupt(f"The record {cls.NAME} cannot be read: {where}: {first['msg']}.") from error
-
-
 class EpisodeRecord(Record):
     """What was recorded. `ticks` counts the recorded states after the first one."""
 
     NAME = "mart.episode"
 
     room: str
-    number: int
+    number: Count
     task: str | None = None
-    control_hz: float | None = None
+    control_hz: ControlHz | None = None
     arms: tuple[str, ...]
-    seed: int | None = None
+    seed: Seed | None = None
     mode: str | None = None  # live (paced) or lockstep (as fast as the machine allowed; no video)
     skill: str | None = None  # of the scripts that drove
-    time_limit_s: float | None = None  # simulated
-    started_ns: int  # Unix time of the first and of the last state
-    ended_ns: int
-    ticks: int
-    first_tick: int
-    last_tick: int
+    time_limit_s: Number | None = None  # simulated
+    started_ns: UnixNs  # Unix time of the first and of the last state
+    ended_ns: UnixNs
+    ticks: Count
+    first_tick: Tick
+    last_tick: Tick
     outcome: str  # success, failure, discarded or unspecified
     reason: str
     ended_by: str | None = None  # task, time, operator, absence or room
     ended_by_name: str | None = None  # who said how it ended, as others see them
     ended_by_arm: str | None = None  # the arm that they drove
-    subtasks_done: int | None = None  # in the last state
-    subtasks: int | None = None  # of the task
+    subtasks_done: Count | None = None  # in the last state
+    subtasks: Count | None = None  # of the task
     interrupted: bool  # the room was paused meanwhile
     complete: bool  # every state from the reset to the outcome is in the file
     repaired: bool = False  # put together from what a crash had left
+
+    @field_validator("outcome")
+    @classmethod
+    def _known(cls, outcome: str) -> str:
+        return EpisodeOutcome(outcome).value
 
     @field_validator("arms", mode="before")
     @classmethod
@@ -123,7 +108,7 @@ class RoomRecord(Record):
 
     room: str
     task: str | None = None
-    control_hz: float | None = None
+    control_hz: ControlHz | None = None
     model_sha256: str | None = None
     mujoco_version: str | None = None
     processor: str | None = None
@@ -153,20 +138,20 @@ class CadenceRecord(Record):
 
     NAME = "mart.cadence"
 
-    real_time_factor: float | None = None
-    wall_s: float
-    sim_s: float
-    missing_ticks: int
-    waited_s: float  # in all, beyond the pace
-    tick_interval_p50_ms: float | None = None
-    tick_interval_p95_ms: float | None = None
-    tick_interval_max_ms: float | None = None
-    video_dropped: int = 0  # frames that the recorder could not keep up with
-    missing_commands: int | None = None  # that states name and the file lacks
-    messages_lost: int = 0  # states, commands and events that it could not keep up with
-    waited_for_s: Mapping[str, float] = Field(default_factory=dict)
-    motion_to_photon_p50_ms: Mapping[str, float] = Field(default_factory=dict)  # the seat's newest report
-    motion_to_photon_p95_ms: Mapping[str, float] = Field(default_factory=dict)
+    real_time_factor: Number | None = None
+    wall_s: Number
+    sim_s: Number
+    missing_ticks: Count
+    waited_s: Number  # in all, beyond the pace
+    tick_interval_p50_ms: Number | None = None
+    tick_interval_p95_ms: Number | None = None
+    tick_interval_max_ms: Number | None = None
+    video_dropped: Count = 0  # frames that the recorder could not keep up with
+    missing_commands: Count | None = None  # that states name and the file lacks
+    messages_lost: Count = 0  # states, commands and events that it could not keep up with
+    waited_for_s: Mapping[str, Number] = Field(default_factory=dict)
+    motion_to_photon_p50_ms: Mapping[str, Number] = Field(default_factory=dict)  # the seat's newest report
+    motion_to_photon_p95_ms: Mapping[str, Number] = Field(default_factory=dict)
 
     _MAPS: ClassVar[Mapping[str, str]] = {
         "waited_for_s": "waited_for_{}_s",
@@ -192,9 +177,9 @@ class VerificationRecord(Record):
     mujoco_version: str | None = None
     pending: bool | None = None
     numeric_fingerprint: str | None = None
-    first_different_tick: int | None = None
+    first_different_tick: Tick | None = None
     within_tolerance: bool | None = None
-    largest_difference: Mapping[str, float] = Field(default_factory=dict)
+    largest_difference: Mapping[str, Number] = Field(default_factory=dict)
 
     _MAPS: ClassVar[Mapping[str, str]] = {"largest_difference": "largest_difference_{}"}
 
@@ -226,6 +211,9 @@ class Shift(BaseModel):
         return cls(episode_tick=int(tick or 0), operator=operator, name=name or "")
 
 
+_MAX_OPERATORS_CHARACTERS = 65536  # of one arm: some 4,000 changes
+
+
 class OperatorsRecord(BaseModel):
     """Who drove each arm, first shift first; in the file: `arm0: "human Ana | tick 57: hold"`."""
 
@@ -240,20 +228,18 @@ class OperatorsRecord(BaseModel):
 
     @classmethod
     def from_strings(cls, strings: Mapping[str, str]) -> OperatorsRecord:
+        if any(len(text) > _MAX_OPERATORS_CHARACTERS for text in strings.values()):
+            raise Corrupt(
+                f"The record {cls.NAME} says more than {_MAX_OPERATORS_CHARACTERS} characters of an arm."
+            )
         return cls(shifts={arm: tuple(map(Shift.parse, text.split(" | "))) for arm, text in strings.items()})
 
 
 VERSIONS = "mart.versions"  # distribution → version of the software that wrote the file
+CHECKSUMS = "mart.checksums"  # metadata record → SHA-256 of what it says: the format itself has none for them
 
 
-def _text(value: object) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return ",".join(value) if isinstance(value, tuple) else str(value)
-
-
-def _matching(key: str, values: Mapping[str, Any]) -> dict[str, Any]:
-    """The values whose names fit `key`, by what stands at its {}."""
-    before, after = key.split("{}")
-    matches = {name: re.fullmatch(f"{before}(.+){after}", name) for name in values}
-    return {match[1]: values[name] for name, match in matches.items() if match}
+def metadata_checksum(strings: Mapping[str, str]) -> str:
+    """Return the SHA-256 of what a metadata record says, in hexadecimal digits, whatever the order of its keys."""
+    said = json.dumps(sorted(strings.items()), ensure_ascii=True, separators=(",", ":"))
+    return hashlib.sha256(said.encode()).hexdigest()
