@@ -8,6 +8,7 @@ from mart.protocol import codec, keys
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest, raise_error
+from mart.protocol.received import decode_received
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.alive_wait import await_alive
 from mart.runtime.bus import Bus
@@ -35,7 +36,7 @@ def replica(bus: Bus, name: str, patience_s: float = _PATIENCE_S) -> AskReplica:
         if not is_up:
             raise Unavailable(f"No replica {name!r} is up; start one with `mart replica --name {name}`.")
         timeout_s = _TIMEOUT_S + _TIMEOUT_PER_TICK_S * _ticks(request)
-        reply = codec.decode(RolloutReply, bus.query(keys.rollout(name), codec.encode(request), timeout_s))
+        reply = decode_received(RolloutReply, bus.query(keys.rollout(name), codec.encode(request), timeout_s))
         raise_error(reply.error)
         return reply
 

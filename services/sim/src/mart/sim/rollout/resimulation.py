@@ -21,6 +21,7 @@ from mart.sim.world import World
 from mart.sim.world.numerics import own_numerics
 
 MAX_TICKS = 100_000  # over an hour at 20 Hz
+FAR = 1e15  # every reader can take it, and no world is so large
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
 # MuJoCo's parts of the integration state, by the names under which a difference is told; others have MuJoCo's own.
@@ -96,12 +97,12 @@ class Resimulator:
 def differences_of(model: mujoco.MjModel, recorded: Array, again: Array) -> list[StateDifference]:
     """Return the largest difference of each group that this model's state has; shapes (ticks, size).
 
-    A number that is not finite on one side only differs infinitely.
+    What is no finite number on one side only differs by `FAR`, and nothing by more.
     """
     found, start = [], 0
     with np.errstate(invalid="ignore"):
         apart = np.where(recorded == again, 0.0, np.abs(recorded - again))
-    apart = np.where(np.isnan(apart), np.inf, apart)
+    apart = np.where(apart <= FAR, apart, FAR)
     for part in _GROUPS:
         end = start + mujoco.mj_stateSize(model, int(part))
         if end > start and len(apart):
