@@ -46,7 +46,11 @@ def serve_recorder(settings: RecorderSettings, name: str) -> None:
         root = settings.episodes_dir.resolve()
         with verifying_again(service.bus, settings, verify_file) as pending:
             recorder = Recorder(
-                settings.data_dir, service.bus, inbox, verify_file, lambda: tidy(root, verify_file, pending.see)
+                settings.data_dir,
+                service.bus,
+                inbox,
+                verify_file,
+                lambda: tidy(root, verify_file, pending.see),
             )
             with closing(RoomSubscriptions(service.bus, video_bus, inbox)), announced(service):
                 recorder.run(service.stop)
@@ -67,7 +71,7 @@ def verifying_again(
         except Unavailable:  # the router is away
             return False
 
-    def on_token(_key: str, alive: bool) -> None:  # noqa: FBT001 - as the bus calls it
+    def on_token(_key: str, alive: bool) -> None:
         if alive:
             pending.wake()
 

@@ -105,7 +105,7 @@ class PendingVerifications:
         except MartError as error:  # it is damaged, or was moved away
             _log.warning("%s is not verified: %s", path, error)
             has_verdict = True
-        except Exception:  # one file must not keep the others from their verdicts
+        except Exception:  # noqa: BLE001 - logged whole; one file must not keep the others from their verdicts
             _log.exception("%s could not be verified; it is tried again later", path)
             has_verdict = False
         with self._lock:
