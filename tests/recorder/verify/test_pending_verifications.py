@@ -151,7 +151,7 @@ def test_the_recorder_verifies_as_soon_as_a_replica_appears_and_tells_the_room(t
 
     settings = RecorderSettings(data_dir=tmp_path)
     with verifying_again(bus, settings, verify_file) as pending:
-        assert list(tidy(settings.episodes_dir, verify_file, pending.see)) == []
+        assert list(tidy(settings.episodes_dir, verify_file, {}, pending.see)) == []
         serve_toy_replica(network.connect())
         event = told.get(timeout=PATIENCE_S).episode_verified
     assert (event.number, event.verified, event.verdict) == (1, True, "verified")

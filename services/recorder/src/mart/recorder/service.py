@@ -11,7 +11,7 @@ from pathlib import Path
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import keys
-from mart.protocol.errors import Unavailable
+from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.catalogue.episode_catalogue import list_folder
@@ -44,13 +44,14 @@ def serve_recorder(settings: RecorderSettings, name: str) -> None:
             return verify(file, room, ask)
 
         root = settings.episodes_dir.resolve()
+        told: dict[Path, str] = {}
         with verifying_again(service.bus, settings, verify_file) as pending:
             recorder = Recorder(
                 settings.data_dir,
                 service.bus,
                 inbox,
                 verify_file,
-                lambda: tidy(root, verify_file, pending.see),
+                lambda: tidy(root, verify_file, told, pending.see),
             )
             with closing(RoomSubscriptions(service.bus, video_bus, inbox)), announced(service):
                 recorder.run(service.stop)
@@ -82,16 +83,19 @@ def verifying_again(
 
 
 def tidy(
-    root: Path, verify_file: VerifyFile, on_listed: Callable[[Iterable[LabelledEpisode]], None] | None = None
+    root: Path,
+    verify_file: VerifyFile,
+    told: dict[Path, str],
+    on_listed: Callable[[Iterable[LabelledEpisode]], None] | None = None,
 ) -> Iterator[SavedEpisode]:
     """Repair what crashes have left under `root`, yielding what became an episode; then refresh the catalogue.
 
-    on_listed: is told of every episode that is there then.
+    told: what was said of files that cannot be repaired, so that it is said once. on_listed: is told of every episode that is there then.
     """
-    yield from log_repairs(repair_all(root, verify_file))
+    yield from log_repairs(repair_all(root, verify_file), told)
     try:
         listed = list_folder(root)
         if on_listed is not None:
             on_listed(listed)
-    except (OSError, sqlite3.Error) as error:  # it is derived: the next one makes up for it
+    except (OSError, sqlite3.Error, MartError) as error:  # it is derived: the next one makes up for it
         _log.warning("The catalogue could not be brought up to date: %s", error)
