@@ -90,7 +90,8 @@ def tidy(
 ) -> Iterator[SavedEpisode]:
     """Repair what crashes have left under `root`, yielding what became an episode; then refresh the catalogue.
 
-    told: what was said of files that cannot be repaired, so that it is said once. on_listed: is told of every episode that is there then.
+    told: what was said of files that cannot be repaired, so that it is said once.
+    on_listed: is told of every episode that is there then.
     """
     yield from log_repairs(repair_all(root, verify_file), told)
     try:
