@@ -148,6 +148,7 @@ declare namespace Messages {
     control_hz: number;
     outcome: string;
     verdict: string;
+    verification_pending: boolean;
     reason: string;
     ticks: number;
     simulated_s: number;

@@ -12,6 +12,7 @@ from pathlib import Path
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Event, outcome_from_word
+from mart.protocol.recording import EpisodeRecord, VerificationRecord
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.record.finalize import SavedEpisode
 from mart.runtime.bus import Bus, Publisher
@@ -51,6 +52,18 @@ class Announcer:
         if episode.outcome != EpisodeOutcome.UNSPECIFIED:
             told.outcome = outcome_from_word(episode.outcome)
         self._put(episode.room, Event(episode_saved=told, tick=episode.last_tick))
+
+    def verified(self, path: Path, episode: EpisodeRecord, said: VerificationRecord) -> None:
+        """Tell a room that an episode that was saved before has its verdict now."""
+        told = Event.EpisodeVerified(
+            number=episode.number,
+            path=path.relative_to(self._data_dir).as_posix(),
+            verified=said.verdict is Verdict.VERIFIED,
+            verdict=said.verdict.value,
+        )
+        if episode.outcome != EpisodeOutcome.UNSPECIFIED:
+            told.outcome = outcome_from_word(episode.outcome)
+        self._put(episode.room, Event(episode_verified=told, tick=episode.last_tick))
 
     def _put(self, room: str, event: Event) -> None:
         event.wall_ns = clock.wall_ns()

@@ -130,6 +130,11 @@ class Room:
         good = saved.verified and saved.outcome == OUTCOME_SUCCESS
         self._remember(self._record.with_changes(saved=self._record.saved + 1, good=self._record.good + good))
 
+    def episode_verified(self, told: Event.EpisodeVerified) -> None:
+        """Count an episode as good whose verification could not be had when it was saved."""
+        if told.outcome == OUTCOME_SUCCESS:
+            self._remember(self._record.with_changes(good=self._record.good + 1))
+
     def advance(self, now_s: float) -> float:
         """Do what is due; return the time at which to call again if nothing arrives before."""
         decision = self._barrier.advance(now_s, self._episode.world_runs)

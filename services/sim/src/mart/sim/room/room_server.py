@@ -48,7 +48,7 @@ class RoomServer:
         self._seat = RequestAnswerer(SEAT, self._answer_seat, self._on_refused)
         self._episode = RequestAnswerer(EPISODE, self._answer_episode, self._on_refused)
         self._open: list[Closable] = [
-            SaveFollower(bus, name, self._on_saved, garbled),
+            SaveFollower(bus, name, self._on_saved, self._on_verified, garbled),
             bus.serve(keys.seat(name), self._on_seat_request),
             bus.serve(keys.episode(name), self._on_episode_request),
             bus.serve(keys.model(name), self._on_model_request),
@@ -71,6 +71,9 @@ class RoomServer:
 
     def _on_saved(self, saved: Event.EpisodeSaved) -> None:
         self._leave(partial(self._room.episode_saved, saved))
+
+    def _on_verified(self, told: Event.EpisodeVerified) -> None:
+        self._submit(partial(self._room.episode_verified, told))
 
     def _on_seat_request(self, request: Request) -> None:
         self._submit(partial(self._seat.respond, request))

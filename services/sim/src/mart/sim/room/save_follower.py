@@ -26,18 +26,24 @@ _LISTED = 64
 _REMEMBERED = 256
 
 OnSaved = Callable[[Event.EpisodeSaved], None]
+OnVerified = Callable[[Event.EpisodeVerified], None]
 
 
 class SaveFollower:
     """Call `on_saved` once for each episode of a room whose file is there. Asks on a thread of its own.
 
+    on_verified: is called once for each that was verified after it had been saved without.
     garbled: counts what could not be decoded.
     """
 
-    def __init__(self, bus: Bus, room: str, on_saved: OnSaved, garbled: Counter[str]) -> None:
-        self._bus, self._room, self._on_saved, self._garbled = bus, room, on_saved, garbled
+    def __init__(
+        self, bus: Bus, room: str, on_saved: OnSaved, on_verified: OnVerified, garbled: Counter[str]
+    ) -> None:
+        self._bus, self._room, self._garbled = bus, room, garbled
+        self._on_saved, self._on_verified = on_saved, on_verified
         self._awaited = AwaitedSaves()
         self._heard: dict[int, None] = {}
+        self._verified: dict[int, None] = {}
         self._lock = threading.Lock()
         self._closing = threading.Event()
         self._subscriptions = [
@@ -62,6 +68,8 @@ class SaveFollower:
             return
         if event.HasField("episode_saved"):
             self._hear(event.episode_saved)
+        elif event.HasField("episode_verified") and event.episode_verified.verified:
+            self._hear_verified(event.episode_verified)
 
     def _on_status(self, sample: Sample) -> None:
         with contextlib.suppress(InvalidInput):  # the room's own words, or somebody's garbage
@@ -74,10 +82,17 @@ class SaveFollower:
             self._awaited.see_saved(self._room, saved.number)
             if saved.number in self._heard:  # an episode in two files, or told of twice
                 return
-            self._heard[saved.number] = None
-            while len(self._heard) > _REMEMBERED:
-                del self._heard[next(iter(self._heard))]
+            _remember(self._heard, saved.number)
+            if saved.verified:
+                _remember(self._verified, saved.number)
         self._on_saved(saved)
+
+    def _hear_verified(self, told: Event.EpisodeVerified) -> None:
+        with self._lock:
+            if told.number in self._verified:
+                return
+            _remember(self._verified, told.number)
+        self._on_verified(told)
 
     def _ask_all(self) -> None:
         while not self._closing.wait(_LOOK_EVERY_S):
@@ -103,3 +118,10 @@ class SaveFollower:
                 event = saved_event(save, reply.listing.episodes)
                 if event is not None:
                     self._hear(event.episode_saved)
+
+
+def _remember(numbers: dict[int, None], number: int) -> None:
+    """Add a number and forget the oldest where there are too many."""
+    numbers[number] = None
+    while len(numbers) > _REMEMBERED:
+        del numbers[next(iter(numbers))]
