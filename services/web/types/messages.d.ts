@@ -148,7 +148,6 @@ declare namespace Messages {
     control_hz: number;
     outcome: string;
     verdict: string;
-    verification_pending: boolean;
     reason: string;
     ticks: number;
     simulated_s: number;
@@ -172,6 +171,7 @@ declare namespace Messages {
     ended_by_arm: string;
     subtasks_done?: number;
     subtasks?: number;
+    verification_pending: boolean;
   }
 
   interface RecordedView {
