@@ -121,6 +121,14 @@ def test_a_process_that_is_lost_over_an_episode_is_one_sentence(
         render_process.render_in_process(file, tmp_path / "one.mp4", "front", 64, 48)
 
 
+def test_its_pictures_are_counted_here(world: World, tmp_path: Path) -> None:
+    file, counted = recorded(tmp_path / "one.mcap", world), list[int]()
+    frames = render_process.render_in_process(
+        file, tmp_path / "one.mp4", "front", 64, 48, on_picture=lambda: counted.append(1)
+    )
+    assert frames == len(counted) == TICKS
+
+
 def test_what_is_refused_in_the_process_is_refused_here(world: World, tmp_path: Path) -> None:
     file = recorded(tmp_path / "one.mcap", world)
     with pytest.raises(NotFound):

@@ -9,6 +9,7 @@ import click
 
 from mart.protocol.tasks import SHARED_VIEWPOINT
 from mart.runtime.cli import json_option, print_result
+from mart.runtime.progress import progress
 from mart.sim.settings import ExpertsSettings, ReplicaSettings, SimSettings
 
 
@@ -72,8 +73,9 @@ def render(
     *, file: Path, viewpoint: str, out: Path | None, width_px: int, height_px: int, as_json: bool
 ) -> None:
     """Draw an episode anew from its states, from any viewpoint, as a video."""
-    from mart.sim.render_process import render_in_process
+    from mart.sim.render_process import picture_count, render_in_process
 
     video = out or Path(f"{file.stem}-{viewpoint}.mp4")
-    frames = render_in_process(file, video, viewpoint, width_px, height_px)
+    with progress("Pictures", picture_count(file), as_json=as_json) as shown:
+        frames = render_in_process(file, video, viewpoint, width_px, height_px, on_picture=shown.advance)
     print_result({"video": str(video), "frames": frames}, f"{video}: {frames} pictures.", as_json)
