@@ -150,10 +150,10 @@ def test_the_recorder_verifies_as_soon_as_a_replica_appears_and_tells_the_room(t
         return verify(file, room, ask)
 
     settings = RecorderSettings(data_dir=tmp_path)
-    with verifying_again(bus, settings, verify_file) as pending:
+    with verifying_again(bus, settings, "recorder-1", verify_file) as pending:
         assert list(tidy(settings.episodes_dir, verify_file, {}, pending.see)) == []
         serve_toy_replica(network.connect())
-        event = told.get(timeout=PATIENCE_S).episode_verified
+        event = told.get(timeout=PATIENCE_S).episode_saved
     assert (event.number, event.verified, event.verdict) == (1, True, "verified")
     assert event.path == path.relative_to(tmp_path).as_posix()
     assert list_episodes(path)[0].verified

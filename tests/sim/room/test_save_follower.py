@@ -36,18 +36,11 @@ def bus() -> Bus:
 
 
 @pytest.fixture
-def verified() -> queue.Queue[Event.EpisodeVerified]:
-    return queue.Queue()
-
-
-@pytest.fixture
-def heard(
-    bus: Bus, verified: queue.Queue[Event.EpisodeVerified], monkeypatch: pytest.MonkeyPatch
-) -> Iterator[queue.Queue[Event.EpisodeSaved]]:
+def heard(bus: Bus, monkeypatch: pytest.MonkeyPatch) -> Iterator[queue.Queue[Event.EpisodeSaved]]:
     monkeypatch.setattr(awaited_saves, "ASKED_AFTER_S", 0.0)
     monkeypatch.setattr(save_follower, "_LOOK_EVERY_S", 0.01)
     saved: queue.Queue[Event.EpisodeSaved] = queue.Queue()
-    with contextlib.closing(SaveFollower(bus, ROOM, saved.put, verified.put, Counter())):
+    with contextlib.closing(SaveFollower(bus, ROOM, saved.put, Counter())):
         yield saved
 
 
@@ -60,17 +53,6 @@ def test_what_is_told_twice_counts_once(bus: Bus, heard: queue.Queue[Event.Episo
     for number in (1, 1, 2):
         tell(bus, number)
     assert [heard.get_nowait().number for _ in range(heard.qsize())] == [1, 2]
-
-
-def test_what_is_verified_later_is_told_once(
-    bus: Bus, heard: queue.Queue[Event.EpisodeSaved], verified: queue.Queue[Event.EpisodeVerified]
-) -> None:
-    tell(bus, 1)  # verified already
-    for number, is_verified in ((1, True), (2, False), (2, True), (2, True)):
-        told = Event.EpisodeVerified(number=number, verified=is_verified, outcome=OUTCOME_SUCCESS)
-        bus.publisher(keys.event(ROOM)).put(codec.encode(Event(room=ROOM, episode_verified=told)))
-    assert [verified.get_nowait().number for _ in range(verified.qsize())] == [2]
-    assert heard.qsize() == 1
 
 
 def test_what_nobody_told_is_asked_of_the_catalogue(bus: Bus, heard: queue.Queue[Event.EpisodeSaved]) -> None:

@@ -306,7 +306,7 @@ class RoomReply(_message.Message):
     def __init__(self, error: _Optional[_Union[Error, _Mapping]] = ..., status: _Optional[_Union[RoomStatus, _Mapping]] = ..., seat: _Optional[_Union[Seat, _Mapping]] = ...) -> None: ...
 
 class Event(_message.Message):
-    __slots__ = ("wall_ns", "room", "tick", "barrier_changed", "seat_changed", "episode_started", "episode_ended", "episode_saved", "world_reset", "notice", "latency", "cue_given", "episode_verified")
+    __slots__ = ("wall_ns", "room", "tick", "barrier_changed", "seat_changed", "episode_started", "episode_ended", "episode_saved", "world_reset", "notice", "latency", "cue_given")
     class BarrierChanged(_message.Message):
         __slots__ = ("phase", "waiting_for")
         PHASE_FIELD_NUMBER: _ClassVar[int]
@@ -377,19 +377,6 @@ class Event(_message.Message):
         missing_ticks: int
         missing_commands: int
         def __init__(self, number: _Optional[int] = ..., path: _Optional[str] = ..., verified: _Optional[bool] = ..., verdict: _Optional[str] = ..., size_bytes: _Optional[int] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., missing_ticks: _Optional[int] = ..., missing_commands: _Optional[int] = ...) -> None: ...
-    class EpisodeVerified(_message.Message):
-        __slots__ = ("number", "path", "verified", "verdict", "outcome")
-        NUMBER_FIELD_NUMBER: _ClassVar[int]
-        PATH_FIELD_NUMBER: _ClassVar[int]
-        VERIFIED_FIELD_NUMBER: _ClassVar[int]
-        VERDICT_FIELD_NUMBER: _ClassVar[int]
-        OUTCOME_FIELD_NUMBER: _ClassVar[int]
-        number: int
-        path: str
-        verified: bool
-        verdict: str
-        outcome: Outcome
-        def __init__(self, number: _Optional[int] = ..., path: _Optional[str] = ..., verified: _Optional[bool] = ..., verdict: _Optional[str] = ..., outcome: _Optional[_Union[Outcome, str]] = ...) -> None: ...
     class WorldReset(_message.Message):
         __slots__ = ("seed",)
         SEED_FIELD_NUMBER: _ClassVar[int]
@@ -442,7 +429,6 @@ class Event(_message.Message):
     NOTICE_FIELD_NUMBER: _ClassVar[int]
     LATENCY_FIELD_NUMBER: _ClassVar[int]
     CUE_GIVEN_FIELD_NUMBER: _ClassVar[int]
-    EPISODE_VERIFIED_FIELD_NUMBER: _ClassVar[int]
     wall_ns: int
     room: str
     tick: int
@@ -455,8 +441,7 @@ class Event(_message.Message):
     notice: Event.Notice
     latency: Event.Latency
     cue_given: Event.CueGiven
-    episode_verified: Event.EpisodeVerified
-    def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ..., latency: _Optional[_Union[Event.Latency, _Mapping]] = ..., cue_given: _Optional[_Union[Event.CueGiven, _Mapping]] = ..., episode_verified: _Optional[_Union[Event.EpisodeVerified, _Mapping]] = ...) -> None: ...
+    def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ..., latency: _Optional[_Union[Event.Latency, _Mapping]] = ..., cue_given: _Optional[_Union[Event.CueGiven, _Mapping]] = ...) -> None: ...
 
 class RecordingReport(_message.Message):
     __slots__ = ("recorder", "boot", "episode", "last_tick")

@@ -15,8 +15,7 @@ from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import clock
 from mart.protocol.errors import MartError
-from mart.protocol.recording import EpisodeRecord, VerificationRecord
-from mart.recorder.record.finalize import VerifyFile
+from mart.recorder.record.finalize import SavedEpisode, VerifyFile
 from mart.recorder.verify.retry_schedule import RetrySchedule
 from mart.recorder.verify.verdict_label import keep_verdict
 
@@ -24,7 +23,7 @@ _log = logging.getLogger(__name__)
 
 _LOOK_EVERY_S = 10.0  # for a replica of which no word came
 
-OnVerdict = Callable[[Path, EpisodeRecord, VerificationRecord], None]
+OnVerdict = Callable[[SavedEpisode], None]
 
 
 class PendingVerifications:
@@ -121,6 +120,5 @@ class PendingVerifications:
             _log.info("%s is not verified yet: %s", path, said.detail)
             return False
         keep_verdict(path, said, clock.wall_ns())
-        _log.info("%s: %s (%s)", path, said.verdict.value, said.detail)
-        self._on_verdict(path, file.episode, said)
+        self._on_verdict(SavedEpisode(path, file.episode, file.cadence, said, path.stat().st_size))
         return True

@@ -6,11 +6,11 @@ import contextlib
 import logging
 import threading
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput, MartError
-from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RoomStatus
+from mart.protocol.messages import OUTCOME_SUCCESS, CatalogueReply, CatalogueRequest, Event, RoomStatus
 from mart.protocol.received import decode_received
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.ask import ask
@@ -26,24 +26,28 @@ _LISTED = 64
 _REMEMBERED = 256
 
 OnSaved = Callable[[Event.EpisodeSaved], None]
-OnVerified = Callable[[Event.EpisodeVerified], None]
 
 
 class SaveFollower:
-    """Call `on_saved` once for each episode of a room whose file is there. Asks on a thread of its own.
+    """Call `on_saved` for each episode of a room whose file is there, once, or again when it has become good.
 
-    on_verified: is called once for each that was verified after it had been saved without.
-    garbled: counts what could not be decoded.
+    garbled: counts what could not be decoded. awaited: episodes that ended before, of whose file nobody has heard.
+    Asks on a thread of its own.
     """
 
     def __init__(
-        self, bus: Bus, room: str, on_saved: OnSaved, on_verified: OnVerified, garbled: Counter[str]
+        self,
+        bus: Bus,
+        room: str,
+        on_saved: OnSaved,
+        garbled: Counter[str],
+        awaited: Iterable[int] = (),
     ) -> None:
-        self._bus, self._room, self._garbled = bus, room, garbled
-        self._on_saved, self._on_verified = on_saved, on_verified
+        self._bus, self._room, self._on_saved, self._garbled = bus, room, on_saved, garbled
         self._awaited = AwaitedSaves()
-        self._heard: dict[int, None] = {}
-        self._verified: dict[int, None] = {}
+        for number in awaited:
+            self._awaited.await_saved(room, number, clock.monotonic_s())
+        self._heard: dict[int, bool] = {}  # number → whether it is good
         self._lock = threading.Lock()
         self._closing = threading.Event()
         self._subscriptions = [
@@ -68,8 +72,6 @@ class SaveFollower:
             return
         if event.HasField("episode_saved"):
             self._hear(event.episode_saved)
-        elif event.HasField("episode_verified") and event.episode_verified.verified:
-            self._hear_verified(event.episode_verified)
 
     def _on_status(self, sample: Sample) -> None:
         with contextlib.suppress(InvalidInput):  # the room's own words, or somebody's garbage
@@ -80,19 +82,13 @@ class SaveFollower:
     def _hear(self, saved: Event.EpisodeSaved) -> None:
         with self._lock:
             self._awaited.see_saved(self._room, saved.number)
-            if saved.number in self._heard:  # an episode in two files, or told of twice
-                return
-            _remember(self._heard, saved.number)
-            if saved.verified:
-                _remember(self._verified, saved.number)
+            good = saved.verified and saved.outcome == OUTCOME_SUCCESS
+            if self._heard.get(saved.number, False) or self._heard.get(saved.number) is good:
+                return  # an episode in two files, or told of twice
+            self._heard[saved.number] = good
+            while len(self._heard) > _REMEMBERED:
+                del self._heard[next(iter(self._heard))]
         self._on_saved(saved)
-
-    def _hear_verified(self, told: Event.EpisodeVerified) -> None:
-        with self._lock:
-            if told.number in self._verified:
-                return
-            _remember(self._verified, told.number)
-        self._on_verified(told)
 
     def _ask_all(self) -> None:
         while not self._closing.wait(_LOOK_EVERY_S):
@@ -118,10 +114,3 @@ class SaveFollower:
                 event = saved_event(save, reply.listing.episodes)
                 if event is not None:
                     self._hear(event.episode_saved)
-
-
-def _remember(numbers: dict[int, None], number: int) -> None:
-    """Add a number and forget the oldest where there are too many."""
-    numbers[number] = None
-    while len(numbers) > _REMEMBERED:
-        del numbers[next(iter(numbers))]
