@@ -60,7 +60,7 @@ class Verdicts:
         pending = PendingVerifications(
             verify_file,
             is_up,
-            lambda path, _episode, said: self.told.put((path, said.verdict)),
+            lambda saved: self.told.put((saved.path, saved.verification.verdict)),
             lambda: listed,
         )
         pending.see(listed)
