@@ -1,4 +1,4 @@
-"""Say which level of H.264 pictures of a size and rate need (ITU-T H.264, table A-1): what a decoder must keep up with."""
+"""Say which level of H.264 (ITU-T H.264, table A-1) pictures of a size and rate need: what a decoder keeps up with."""
 
 from __future__ import annotations
 
