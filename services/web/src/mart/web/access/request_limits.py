@@ -60,7 +60,7 @@ class AtOnceLimit:
 
 
 class TurnLimit:
-    """At most `count` things of one key (a user) at one time; the next waits for its turn. On an event loop."""
+    """Let `count` things of one key (a user) go on at one time; the next waits for its turn. On an event loop."""
 
     def __init__(self, count: int) -> None:
         self._count = count
