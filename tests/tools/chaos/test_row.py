@@ -87,7 +87,8 @@ def test_the_table_stands_between_its_marks(tmp_path: Path) -> None:
     assert "earlier" not in text
     assert "a \\| b" in text
     assert "not tried: no mounts" in text
-    assert all(line.count(" | ") == table([]).splitlines()[0].count(" | ") for line in text.splitlines()[2:6])
+    columns = {line.replace("\\|", "").count("|") for line in text.splitlines() if line.startswith("|")}
+    assert len(columns) == 1
 
 
 def test_every_fault_has_a_name_of_its_own() -> None:
