@@ -8,7 +8,7 @@ import pytest
 
 from mart.protocol.messages import Event
 from tools.chaos.faults import every_fault
-from tools.chaos.report import table, write_table
+from tools.chaos.report import write_table
 from tools.chaos.row import RecordedFile, Row, in_words, judge, lost, standstill, told
 from tools.chaos.witness import Shown
 
