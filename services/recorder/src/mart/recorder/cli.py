@@ -86,21 +86,25 @@ def show(path: Path, as_json: bool) -> None:
 def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     """Step episodes again in a replica: do they follow bit for bit? The answer is kept as a label."""
     from mart.episodes import labels
-    from mart.episodes.folder import episode_files
-    from mart.episodes.reader import EpisodeFile
+    from mart.episodes.folder import described, episode_files, readable
     from mart.recorder.verify.resimulation import verify as verify_file
 
-    found = []
+    found: list[dict[str, str]] = []
+    listed = described(episode_files(_given(paths)))
     with _resimulation(replica) as resimulate:
-        for path in episode_files(_given(paths)):
-            file = EpisodeFile.open(path)
+        for one in readable(listed, paths):
+            path, file = one.file_path, one.open()
             said = verify_file(file, file.room, resimulate)
             if said.verdict is not Verdict.UNVERIFIED:  # a replica that is away takes nothing back
                 labels.say(path, labels.LabelKind.VERDICT, said.verdict.value, clock.wall_ns(), said.detail)
             found.append({"path": str(path), "verdict": said.verdict.value, "detail": said.detail})
-    lines = [f"{entry['path']}: {entry['verdict']}. {entry['detail']}" for entry in found]
-    print_result({"episodes": found}, "\n".join(lines) or "There are no episodes.", as_json)
-    return 0 if all(entry["verdict"] == Verdict.VERIFIED for entry in found) else 1
+            if not as_json:  # at once: what has been labelled is told whatever comes later
+                click.echo("{path}: {verdict}. {detail}".format(**found[-1]))
+    left_out = [{"path": str(one.file_path), "why": one.error} for one in listed if one.error is not None]
+    if as_json or not found:
+        print_result({"episodes": found, "left_out": left_out}, "There are no episodes.", as_json)
+    damaged = any(one.error is not None and not (one.foreign or one.dropped) for one in listed)
+    return 1 if damaged or any(entry["verdict"] != Verdict.VERIFIED for entry in found) else 0
 
 
 @episodes.command()
@@ -201,8 +205,9 @@ def export(
 ) -> None:
     """Write episodes of one task as a data set of another project; dropped ones are left out."""
     from mart.episodes.filter import EpisodeFilter
+    from mart.episodes.folder import readable
     from mart.recorder.catalogue.episode_catalogue import list_paths
-    from mart.recorder.export.selection import choose
+    from mart.recorder.export.selection import choose, sound
 
     if file_format == "robomimic":
         from mart.recorder.export.robomimic import write_robomimic as write
@@ -211,7 +216,9 @@ def export(
 
     of_dataset = EpisodeFilter(datasets=(dataset,) if dataset else (), unusable=True)
     listed = of_dataset.apply(list_paths(_given(paths)))
-    selection = choose(listed, filter_of(wanted, unusable=False))
+    asked = filter_of(wanted, unusable=False)
+    taken = readable(sound(asked.apply(readable(listed, paths))), paths)
+    selection = choose(taken or listed, asked)
     ticks = write(selection, out)
     count, task = len(selection.episodes), selection.task.name
     result = {"path": str(out), "format": file_format, "task": task, "episodes": count, "ticks": ticks}

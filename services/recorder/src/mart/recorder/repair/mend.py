@@ -14,7 +14,7 @@ from mart.episodes.mcap_entries import McapEntry, state_entries
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput
-from mart.protocol.messages import Command, Event, Model, State
+from mart.protocol.messages import Command, Event, Model, Operator, State
 from mart.protocol.recording import (
     CHECKSUMS,
     MODEL_ATTACHMENT,
@@ -136,6 +136,8 @@ class _Mended:
 
     def _add_state(self, found: SalvagedMessage) -> None:
         state = codec.decode(State, found.payload)
+        if any(arm.source not in Operator.values() for arm in state.arms):
+            raise InvalidInput("A state names a kind of operator that this version does not know.")
         if self.episode is None:
             self.facts.room = state.room
             self.episode = EpisodeAccumulator(state)

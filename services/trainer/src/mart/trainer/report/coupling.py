@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from mart.episodes.arrays import EpisodeData
 from mart.episodes.filter import EpisodeFilter
-from mart.episodes.folder import list_episodes
-from mart.episodes.labelled_episode import LabelledEpisode, require_readable
+from mart.episodes.folder import list_episodes, readable
+from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.tasks import Arm, Task, get_task
 from mart.protocol.vocabulary import EpisodeOutcome
@@ -64,10 +64,10 @@ def read_couplings(folder: Path, policies: Sequence[Policy] = ()) -> list[Coupli
     """Read every task with successful episodes in a folder, as labelled since; dropped ones don't count.
 
     policies: of each task the one among these is looked at.
-    Raises NotFound where there are none, InvalidInput where there are too few, Corrupt where one cannot be read.
+    A file that cannot be read is left out, and the log says so. Raises NotFound where there are none, and InvalidInput
+    where there are too few.
     """
-    listed = list_episodes(folder)
-    require_readable(listed)
+    listed = readable(list_episodes(folder), [folder])
     by_task: defaultdict[tuple[str, int], list[LabelledEpisode]] = defaultdict(list)
     for episode in _SUCCESSFUL.apply(listed):
         if episode.task is not None:
