@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from aiortc import RTCRtpSender, RTCRtpTransceiver, rtp
+from aiortc import RTCRtpSender, RTCRtpTransceiver, RTCSctpTransport, rtp
 from aiortc.codecs import HEADER_EXTENSIONS
 from aiortc.rtcrtpparameters import RTCRtpHeaderExtensionParameters, RTCRtpParameters
 
@@ -33,6 +33,21 @@ def show_at_once(sender: RTCRtpSender) -> None:
 def on_keyframe_request(sender: RTCRtpSender, handler: Callable[[], None]) -> None:
     """Call `handler` on PLI and FIR: a sender of encoded pictures only sets a flag that nobody reads."""
     sender._send_keyframe = handler  # type: ignore[method-assign]  # noqa: SLF001
+
+
+def on_unreadable(sctp: RTCSctpTransport, handler: Callable[[Exception], None]) -> None:
+    """Call `handler` where a peer's data trips the parser: aiortc ends its receiving there, and tells nobody."""
+    receive = sctp._handle_data  # noqa: SLF001
+
+    async def receive_all(data: bytes) -> None:
+        try:
+            await receive(data)
+        except ConnectionError:
+            raise
+        except Exception as error:  # noqa: BLE001 - whatever the parser or a listener trips over
+            handler(error)
+
+    sctp._handle_data = receive_all  # type: ignore[method-assign]  # noqa: SLF001
 
 
 def sent_codec(transceiver: RTCRtpTransceiver) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +12,7 @@ from mart.teleop_gateway.input.driving import Driving, InputDevice
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 
 MAX_CHARACTERS = 1100  # one SCTP packet
+_LARGEST = 2**63 - 1
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def parse(text: str | bytes) -> PeerMessage:
                 return PingMessage(_finite(t_us))
             case {"type": "clock", "offset_ns": offset_ns}:
                 return ClockMessage(int(_finite(offset_ns)))
-            case {"type": "seen", "tick": int(tick), "t_us": t_us}:
+            case {"type": "seen", "tick": int(tick), "t_us": t_us} if 0 <= tick <= _LARGEST:
                 return SeenMessage(tick, _finite(t_us))
             case {"type": "input", "input": name}:
                 return SelectInputMessage(InputDevice(name))
@@ -144,6 +144,6 @@ def _text(message: dict[str, Any]) -> str:
 
 
 def _finite(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ValueError(f"{value!r} is no finite number")
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LARGEST:
+        raise ValueError(f"{value!r} is no finite number of at most 63 bits")
     return value
