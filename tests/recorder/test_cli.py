@@ -151,7 +151,7 @@ def replica(monkeypatch: pytest.MonkeyPatch) -> None:
     @contextmanager
     def toy(_replica: str | None, *, wherever_possible: bool = False) -> Iterator[object]:
         assert not wherever_possible
-        yield synthetic.resimulate
+        yield synthetic.ToyReplica()
 
     monkeypatch.setattr("mart.recorder.cli._resimulation", toy)
 

@@ -18,6 +18,7 @@ from typing import Any
 import click
 
 from mart.protocol.errors import MartError
+from mart.runtime import steady_libm
 from mart.runtime.stop_signals import stop_signals
 from mart.runtime.supervision import SUPERVISOR_PID, end_with_supervisor
 
@@ -62,6 +63,7 @@ def print_result(result: Mapping[str, Any], text: str, as_json: bool) -> None:
 
 
 def main() -> None:
+    steady_libm.begin_anew()
     end_with_supervisor()
     # Asked to end by a supervisor or a closed terminal, a command unwinds as on Ctrl-C: what it started is stopped.
     for number in stop_signals():

@@ -20,7 +20,7 @@ from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
 
 if TYPE_CHECKING:
-    from mart.recorder.verify.resimulation import Resimulate
+    from mart.recorder.verify.replica import AskReplica
 
 _path = click.argument("path", type=click.Path(path_type=Path))
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
@@ -84,20 +84,23 @@ def show(path: Path, as_json: bool) -> None:
 @_replica
 @json_option
 def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
-    """Step episodes again in a replica: do they follow bit for bit? The answer is kept as a label."""
-    from mart.episodes import labels
-    from mart.episodes.folder import described, episode_files, readable
-    from mart.recorder.verify.resimulation import verify as verify_file
+    """Step episodes again in a replica: do their states follow from their actions bit for bit?
 
-    found: list[dict[str, str]] = []
+    The answer is kept as a label. It covers states and actions; what else a file says is not part of it.
+    """
+    from mart.episodes.folder import described, episode_files, readable
+    from mart.recorder import formatting
+    from mart.recorder.verify.resimulation import verify as verify_file
+    from mart.recorder.verify.verdict_label import keep_verdict
+
+    found: list[dict[str, Any]] = []
     listed = described(episode_files(_given(paths)))
-    with _resimulation(replica) as resimulate:
+    with _resimulation(replica) as ask:
         for one in readable(listed, paths):
-            path, file = one.file_path, one.open()
-            said = verify_file(file, file.room, resimulate)
-            if said.verdict is not Verdict.UNVERIFIED:  # a replica that is away takes nothing back
-                labels.say(path, labels.LabelKind.VERDICT, said.verdict.value, clock.wall_ns(), said.detail)
-            found.append({"path": str(path), "verdict": said.verdict.value, "detail": said.detail})
+            file = one.open()
+            said = verify_file(file, file.room, ask)
+            keep_verdict(one.file_path, said, clock.wall_ns())
+            found.append(formatting.verified(one.file_path, said))
             if not as_json:  # at once: what has been labelled is told whatever comes later
                 click.echo("{path}: {verdict}. {detail}".format(**found[-1]))
     left_out = [{"path": str(one.file_path), "why": one.error} for one in listed if one.error is not None]
@@ -235,7 +238,7 @@ def _given(paths: tuple[Path, ...]) -> tuple[Path, ...]:
 
 
 @contextmanager
-def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> Iterator[Resimulate]:
+def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> Iterator[AskReplica]:
     """Ask a replica. Without a router this raises Unavailable: at once, or `wherever_possible` when it is asked."""
     from mart.recorder.verify import resimulation as verification
     from mart.runtime.bus.zenoh_bus import ZenohBus
