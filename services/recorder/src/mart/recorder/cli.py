@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +20,7 @@ from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
+from mart.runtime.progress import progress, tracked
 
 if TYPE_CHECKING:
     from mart.recorder.verify.replica import AskReplica
@@ -96,7 +99,7 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     found: list[dict[str, Any]] = []
     listed = described(episode_files(_given(paths)))
     with _resimulation(replica) as ask:
-        for one in readable(listed, paths):
+        for one in tracked(readable(listed, paths), "Verified", as_json=as_json):
             file = one.open()
             said = verify_file(file, file.room, ask)
             keep_verdict(one.file_path, said, clock.wall_ns())
@@ -151,11 +154,16 @@ def repair(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     Finished files never change, and what is being recorded, or is not MART's, is left alone.
     """
     from mart.recorder import formatting
-    from mart.recorder.repair.repair import repair_paths
+    from mart.recorder.repair.repair import file_count, repair_paths
     from mart.recorder.verify.resimulation import verify as verify_file
 
-    with _resimulation(replica, wherever_possible=True) as resimulate:
-        repaired = list(repair_paths(_given(paths), lambda file, room: verify_file(file, room, resimulate)))
+    given = _given(paths)
+    with (
+        _resimulation(replica, wherever_possible=True) as ask,
+        progress("Files", file_count(given), as_json=as_json) as shown,
+    ):
+        mended = repair_paths(given, lambda file, room: verify_file(file, room, ask), shown.advance)
+        repaired = list(mended)
     print_result(*formatting.repaired(repaired), as_json)
     return 0 if all(one.saved or one.needless for one in repaired) else 1
 
@@ -222,7 +230,8 @@ def export(
     asked = filter_of(wanted, unusable=False)
     taken = readable(sound(asked.apply(readable(listed, paths))), paths)
     selection = choose(taken or listed, asked)
-    ticks = write(selection, out)
+    each = partial(tracked, label="Episodes", as_json=as_json)
+    ticks = write(replace(selection, each=each), out)
     count, task = len(selection.episodes), selection.task.name
     result = {"path": str(out), "format": file_format, "task": task, "episodes": count, "ticks": ticks}
     print_result(result, f"{out}: {count} of {len(listed)} episodes of {task}, {ticks} ticks.", as_json)

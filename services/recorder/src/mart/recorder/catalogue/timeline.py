@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from array import array
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 
 from mart.protocol.messages import (
@@ -30,16 +31,24 @@ _MAX_SUBTASKS = 64
 _MAX_TEXT_CHARACTERS = 500
 
 
-def timeline(states: Iterable[State], events: Iterable[Event]) -> CatalogueReply.Details:
-    """Return `wall_s`, `lanes` and `traces`. Seconds are the wall's, since the first state was there."""
+def timeline(
+    states: Iterable[State], events: Iterable[Event], control_hz: float | None = None
+) -> CatalogueReply.Details:
+    """Return `wall_s`, `lanes` and `traces`.
+
+    Seconds are since the first state: simulated ones where `control_hz` is given, else the wall's.
+    """
     told: _Timeline | None = None
     for state in states:
-        told = told or _Timeline(state)
+        told = told or _Timeline(state, control_hz)
         told.add(state)
     if told is None:
         return CatalogueReply.Details()
     return CatalogueReply.Details(
-        wall_s=told.now_s, lanes=[*told.lanes(), *_said(events, told.start_ns)], traces=told.traces()
+        wall_s=told.now_s,
+        lanes=[*told.lanes(), *_said(events, told)],
+        traces=told.traces(),
+        simulated=control_hz is not None,
     )
 
 
@@ -109,17 +118,20 @@ def _finite(number: float) -> float:
 class _Timeline:
     """Gather one episode, state by state."""
 
-    def __init__(self, first: State) -> None:
-        self.start_ns = first.stamps.stepped_ns
+    def __init__(self, first: State, control_hz: float | None) -> None:
         self.now_s = 0.0
+        self._start_ns, self._first_tick = first.stamps.stepped_ns, first.tick
+        self._control_hz = control_hz
+        self._stepped_ns = array("Q")
         self._seconds = array("d")
         self._subtasks = {one.name: _Runs() for one in first.progress.subtasks[:_MAX_SUBTASKS]}
         self._arms = {one.arm: _Arm(one.arm) for one in first.arms[:_MAX_ARMS]}
         self._waiting: dict[str, list[Span]] = {}
 
     def add(self, state: State) -> None:
-        now_s = self.now_s = (state.stamps.stepped_ns - self.start_ns) / 1e9
+        now_s = self.now_s = self._second(state)
         self._seconds.append(now_s)
+        self._stepped_ns.append(state.stamps.stepped_ns)
         done = {one.name for one in state.progress.subtasks if one.done}
         for name, found in self._subtasks.items():
             found.add(now_s, "done" if name in done else "")
@@ -131,6 +143,17 @@ class _Timeline:
             spans = self._waiting.setdefault(state.straggler, [])
             if len(spans) < MAX_SPANS:
                 spans.append(Span(begin_s=begin_s, end_s=now_s))
+
+    def _second(self, state: State) -> float:
+        if self._control_hz is not None:
+            return (state.tick - self._first_tick) / self._control_hz
+        return (state.stamps.stepped_ns - self._start_ns) / 1e9
+
+    def second_of(self, wall_ns: int) -> float:
+        """Return when something was said; negative for what was said before."""
+        if self._control_hz is None or wall_ns < self._start_ns:
+            return (wall_ns - self._start_ns) / 1e9
+        return self._seconds[max(0, bisect_right(self._stepped_ns, wall_ns) - 1)]
 
     def lanes(self) -> Iterator[Lane]:
         for name, done in self._subtasks.items():
@@ -150,7 +173,7 @@ class _Timeline:
             yield Trace(arm=arm.name, quantity="gripper", unit="", seconds=at_s, values=arm.gripper[::every])
 
 
-def _said(events: Iterable[Event], start_ns: int) -> Iterator[Lane]:
+def _said(events: Iterable[Event], told: _Timeline) -> Iterator[Lane]:
     """Tell what partners said to each other, and what the services said."""
     said: dict[tuple[str, str], list[Span]] = {}
     for event in events:
@@ -161,7 +184,7 @@ def _said(events: Iterable[Event], start_ns: int) -> Iterator[Lane]:
                 lane, text = ("notice", ""), event.notice.text[:_MAX_TEXT_CHARACTERS]
             case _:
                 continue
-        at_s = (event.wall_ns - start_ns) / 1e9
+        at_s = told.second_of(event.wall_ns)
         spans = said.setdefault(lane, []) if lane in said or len(said) < _MAX_ARMS else []
         if at_s >= 0.0 and len(spans) < MAX_SPANS:
             spans.append(Span(begin_s=at_s, end_s=at_s, text=text))

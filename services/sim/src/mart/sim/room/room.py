@@ -18,6 +18,7 @@ from mart.protocol.messages import (
     OUTCOME_SUCCESS,
     EpisodeRequest,
     Event,
+    RecordingReport,
     RoomReply,
     RoomStatus,
     Seat,
@@ -37,6 +38,7 @@ from mart.sim.room.episode_state_machine import (
     ResetWorld,
     Terms,
 )
+from mart.sim.room.recording_watch import RecordingWatch
 from mart.sim.room.room_publisher import REPEAT_S, RoomPublisher
 from mart.sim.room.saved_room import SavedRoom
 from mart.sim.room.seats import SeatHolder, SeatTable
@@ -78,6 +80,7 @@ class Room:
         self._episode = EpisodeStateMachine(record.seed, horizon_ticks, record.episodes)
         self._ticker = Ticker(name, world, self._boot_ns, now_s)
         self._last_ended: Event.EpisodeEnded | None = None
+        self._recording_watch = RecordingWatch()
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
         self._status_due_s = now_s
@@ -89,6 +92,11 @@ class Room:
     def rejected(self) -> Counter[CommandRejection]:
         """Count the commands that were not used since the room opened, by reason."""
         return self._barrier.rejected
+
+    @property
+    def unsaved(self) -> tuple[int, ...]:
+        """Return the newest episodes that have ended and of whose file nobody has told."""
+        return self._record.uncounted()
 
     @property
     def in_practice(self) -> bool:
@@ -126,9 +134,16 @@ class Room:
         return RoomReply(status=self.status(now_s))
 
     def episode_saved(self, saved: Event.EpisodeSaved) -> None:
-        """Count an episode that the recorder has saved."""
+        """Count an episode that the recorder has saved, once, however often it is told."""
         good = saved.verified and saved.outcome == OUTCOME_SUCCESS
-        self._remember(self._record.with_changes(saved=self._record.saved + 1, good=self._record.good + good))
+        counted = self._record.with_saved(saved.number, good)
+        if counted is not self._record:
+            self._remember(counted)
+
+    def recording_reported(self, report: RecordingReport) -> None:
+        """Take note of what a recorder has kept of the episode."""
+        if report.boot == self._boot_ns:
+            self._recording_watch.reported(report)
 
     def advance(self, now_s: float) -> float:
         """Do what is due; return the time at which to call again if nothing arrives before."""
@@ -167,6 +182,7 @@ class Room:
             rejected_commands=self.rejected.total(),
             plan=room_messages.plan(self._record),
             last_ended=self._last_ended,
+            unrecorded=self._recording_watch.objection(now_s),
         )
 
     def _fire(self, inputs: TickInputs, now_s: float) -> None:
@@ -245,6 +261,7 @@ class Room:
 
     def _tell_state(self, state: State, now_s: float) -> None:
         self._publisher.state(state)
+        self._recording_watch.told(0 if self._terms.lockstep else state.episode, state.tick, now_s)
         self._repeat_due_s = now_s + REPEAT_S
 
     def _tell(self, event: Event) -> None:
@@ -256,6 +273,9 @@ class Room:
             self._publisher.repeat_state()
             self._repeat_due_s = now_s + REPEAT_S
         if now_s >= self._status_due_s:
+            news = self._recording_watch.news(now_s)
+            if news is not None:
+                self._tell(room_messages.notice(*news))
             self._publisher.status(self.status(now_s))
             self._status_due_s = now_s + REPEAT_S
 

@@ -33,6 +33,8 @@ const HOW_TO_MOVE = {
   touch: "Drag the picture; with two fingers up and down: away and towards you, sideways: turn.",
 };
 
+const MARK = "The mark on the table in your colour says whose side it is. Nothing has to go there.";
+
 /** Shows the input of one's own arm, pairs phones, and lists the keys. */
 export class InputPanel {
   #room;
@@ -53,7 +55,7 @@ export class InputPanel {
     byId("pairing-close").addEventListener("click", () => this.#closePairing());
     byId("help").addEventListener("click", () => this.toggleHelp());
     const rows = KEYS.flatMap(([keys, text]) => [element("dt", {}, ...caps(keys)), element("dd", {}, text)]);
-    byId("keys").append(element("dl", {}, ...rows));
+    byId("keys").append(element("dl", {}, ...rows), element("p", { class: "soft" }, MARK));
   }
 
   /**
