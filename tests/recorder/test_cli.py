@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from mart.episodes.labels import LabelKind, read
+from mart.episodes.labels import LabelKind, read, say
 from mart.protocol.messages import ENDED_BY_OPERATOR
 from mart.recorder.record.finalize import finalize
 from tests.recorder import synthetic
@@ -196,3 +196,15 @@ def test_repair_takes_files_and_says_what_they_are(mart: Mart, path: Path) -> No
     pointer.write_bytes(b"version https://git-lfs.github.com/spec/v1\n")
     assert "git lfs pull" in mart("episodes", "repair", pointer, code=1)
     assert "There is no" in mart("episodes", "repair", path.with_name("none.mcap"), code=1)
+
+
+def test_what_a_file_says_does_not_steer_the_terminal(mart: Mart, path: Path) -> None:
+    labels_of(path, "\x1b[2Jgone\nnew line")
+    for command in (("list",), ("show", path)):
+        printed = mart("episodes", *command)
+        assert "\x1b" not in printed
+        assert "\ufffd[2Jgone\ufffdnew line" in printed
+
+
+def labels_of(path: Path, note: str) -> None:
+    say(path, LabelKind.NOTE, note, 1)

@@ -229,7 +229,7 @@ def export(
     listed = of_dataset.apply(list_paths(_given(paths)))
     asked = filter_of(wanted, unusable=False)
     taken = readable(sound(asked.apply(readable(listed, paths))), paths)
-    selection = choose(taken or listed, asked)
+    selection = choose(taken or [one for one in listed if one.error is None], asked)
     each = partial(tracked, label="Episodes", as_json=as_json)
     ticks = write(replace(selection, each=each), out)
     count, task = len(selection.episodes), selection.task.name
