@@ -110,6 +110,18 @@ def test_a_finished_file_with_a_spoilt_model_is_not_called_complete(tmp_path: Pa
     assert EpisodeFile.open(one.saved.path).episode.repaired
 
 
+def test_a_state_of_another_version_costs_itself_only(tmp_path: Path) -> None:
+    states = synthetic.states(10)
+    states[4].arms[0].source = 77  # type: ignore[assignment]
+    file, _, _ = write_part(tmp_path, states)
+    file.flush()
+    file.abandon()
+    one = repaired(tmp_path)
+    assert one.saved is not None
+    assert ticks(one.saved.path) == [0, 1, 2, 3, 5, 6, 7, 8, 9, 10]
+    assert "1 messages that cannot be read" in one.detail
+
+
 def test_what_somebody_else_repairs_is_left_alone(tmp_path: Path, left: Left) -> None:
     part = leftover(tmp_path, left.data)
     with part.open("rb") as elsewhere:

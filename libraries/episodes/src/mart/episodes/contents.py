@@ -15,10 +15,9 @@ from mcap.records import Attachment, Channel, Chunk, DataEnd, Message, Metadata,
 from mart.episodes.chunks import UnpackingBudget, unpack
 from mart.episodes.scan import BoundedFile, FoundRecord, crc_of, parse, walk
 from mart.episodes.summary import FileSummary, read_summary
-from mart.protocol.recording import CHECKSUMS, MAX_METADATA_BYTES, metadata_checksum
+from mart.protocol.recording import CHECKSUMS, MAX_METADATA_BYTES, EpisodeRecord, metadata_checksum
 
 _MAX_METADATA_RECORDS = 8  # of the largest size; more of smaller ones
-_OURS = "mart."  # how the names of our own records begin
 _OF_MESSAGES = (Opcode.CHANNEL, Opcode.CHUNK, Opcode.MESSAGE)
 
 
@@ -44,12 +43,13 @@ def read_messages(file: BoundedFile, finished: bool) -> Iterator[tuple[Channel, 
 
 
 def read_metadata(file: BoundedFile, finished: bool) -> Mapping[str, Mapping[str, str]]:
-    """Return the metadata records by name; the last one where another tool has written several of a name.
+    """Return the metadata records by name; the last one where several of a name are written.
 
-    Records above `MAX_METADATA_BYTES`, which are none of ours, are left out. Raises one of `SYMPTOMS`, also where two
-    of our own records of a name differ, or one does not have its checksum.
+    Records above `MAX_METADATA_BYTES`, which are none of ours, are left out. Raises one of `SYMPTOMS`, also where it
+    speaks of two episodes, or a record does not have its checksum.
     """
     found: dict[str, Mapping[str, str]] = {}
+    checksums: dict[str, str] = {}
     left_bytes = _MAX_METADATA_RECORDS * MAX_METADATA_BYTES
     for place in _metadata_places(file, finished):
         if place.size_bytes > MAX_METADATA_BYTES:
@@ -61,10 +61,12 @@ def read_metadata(file: BoundedFile, finished: bool) -> Mapping[str, Mapping[str
             )
         record = parse(file, place)
         assert isinstance(record, Metadata)
-        if record.name.startswith(_OURS) and found.get(record.name, record.metadata) != record.metadata:
+        if record.name == CHECKSUMS:  # those of what is known when a file begins, and all when it ends
+            checksums |= record.metadata
+            continue
+        if record.name == EpisodeRecord.NAME and found.get(record.name, record.metadata) != record.metadata:
             raise ValueError(f"it holds two records {record.name} that differ, as if of two episodes")
         found[record.name] = record.metadata
-    checksums = found.pop(CHECKSUMS, {})
     for name, checksum in checksums.items():
         if name not in found or metadata_checksum(found[name]) != checksum:
             raise ValueError(f"its record {name[:64]} is not what was written")

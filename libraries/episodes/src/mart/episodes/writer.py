@@ -57,10 +57,14 @@ class EpisodeWriter:
         self.messages += 1
 
     def describe(self, record: RoomRecord) -> None:
-        """Say of what room this file is, once that is known, and again once more is known: the last word holds."""
+        """Say of what room this file is, once that is known, and again once more is known: the last word holds.
+
+        Its checksum follows at once, since the file may be cut short.
+        """
         if record != self.description:
             self.description = record
             self.add_record(record.NAME, record.to_strings())
+            self._mcap.add_metadata(CHECKSUMS, self._checksums)
 
     def attach_model(self, model: Model, now_ns: int) -> None:
         """Attach the compiled MuJoCo model. now_ns: Unix time."""
