@@ -33,7 +33,7 @@ class EpisodeWriter:
         path.parent.mkdir(parents=True, exist_ok=True)
         self.path = path
         self.messages = 0
-        self.description: RoomRecord | None = None
+        self.described = False
         self.has_model = False
         opening = path.with_name(f".{path.name}.opening")  # a repair must not find it before it is locked
         self._file = opening.open("wb")
@@ -57,12 +57,12 @@ class EpisodeWriter:
         self.messages += 1
 
     def describe(self, record: RoomRecord) -> None:
-        """Say of what room this file is, once that is known, and again once more is known: the last word holds.
+        """Say of what room this file is, once that is known. What comes later says nothing: a record stands once.
 
         Its checksum follows at once, since the file may be cut short.
         """
-        if record != self.description:
-            self.description = record
+        if not self.described:
+            self.described = True
             self.add_record(record.NAME, record.to_strings())
             self._mcap.add_metadata(CHECKSUMS, self._checksums)
 

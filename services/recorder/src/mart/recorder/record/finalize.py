@@ -153,10 +153,12 @@ def versions() -> Mapping[str, str]:
 
 
 def describe_room(file: EpisodeWriter, facts: RoomFacts, model: Model | None) -> None:
-    """Write what is known about the room and its model into an open file, once each, as soon as it is known."""
+    """Write what is known about the room and its model into an open file, once, as soon as the model is known.
+
+    A record stands in a file once, and the model says what the room's numbers depend on.
+    """
     if model is not None and not file.has_model:
         facts.learn_model(model)
-    if facts.is_complete and (file.description is None or (model is not None and not file.has_model)):
-        file.describe(facts.record())
-    if model is not None and not file.has_model and file.description is not None:
-        file.attach_model(model, clock.wall_ns())
+        if facts.is_complete:
+            file.describe(facts.record())
+            file.attach_model(model, clock.wall_ns())
