@@ -12,6 +12,7 @@ from mart.protocol.pose import Pose
 from mart.teleop_gateway.input.driving import LOST_AFTER_S, Driving, InputDevice
 from mart.teleop_gateway.input.phone_frame import Flag
 from mart.teleop_gateway.input.retarget import Retarget
+from mart.teleop_gateway.input.tool_motion import ToolMotion
 from tests.teleop_gateway.input.strategies import NONE, phone_frame
 
 EPOCH = 7
@@ -34,7 +35,8 @@ class Seat:
         self.numbers[source] += 1
         flags = given.pop("more", NONE) | Flag.SCREEN_ALIGNED
         frame = phone_frame(self.numbers[source], sent_us=int(self.now_s * 1e6), more=flags, **given)
-        return self.driving.receive(source, frame.encode(), measured, self.now_s, NOW_NS)
+        tool = None if measured is None else ToolMotion(measured, self.now_s)
+        return self.driving.receive(source, frame.encode(), tool, self.now_s, NOW_NS)
 
     def command(self, source: InputDevice = InputDevice.KEYBOARD, **given: Any) -> Command:
         command = self.send(source, **given)
@@ -70,14 +72,15 @@ def test_a_held_clutch_moves_the_target(seat: Seat) -> None:
     assert target(pressed).distance_to(HOME)[0] == 0
     moved = seat.command(clutch=True, position=(0.0, 0.05, 0.0))
     np.testing.assert_allclose(target(moved).position, HOME.position + np.array((0, 0, 0.05)), atol=1e-6)
-    released = seat.command(position=(0.0, 0.1, 0.0))
-    assert target(released).distance_to(target(moved))[0] < 1e-9
+    here = Pose(np.array([0.5, 0.0, 0.32]), HOME.quaternion_wxyz)
+    released = seat.command(position=(0.0, 0.1, 0.0), measured=here)
+    assert target(released).distance_to(here)[0] < 1e-9
 
 
 def test_bad_frames_and_unseen_arms_give_no_command(seat: Seat) -> None:
     assert seat.send(InputDevice.KEYBOARD, epoch=8) is None
     assert seat.send(InputDevice.KEYBOARD, measured=None) is None
-    assert seat.driving.receive(InputDevice.KEYBOARD, b"junk", HOME, seat.now_s, NOW_NS) is None
+    assert seat.driving.receive(InputDevice.KEYBOARD, b"junk", ToolMotion(HOME), seat.now_s, NOW_NS) is None
     assert seat.driving.rejected() == {"epoch": 1, "malformed": 1}
 
 

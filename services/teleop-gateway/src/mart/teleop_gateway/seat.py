@@ -57,7 +57,9 @@ class Seat:
             on_new_holder=self._peers.drop_driving,
         )
         self._video = VideoPublisher(video_bus, address)
-        relay = PictureRelay(asyncio.get_running_loop(), self._peers.put, self._video, self._latency)
+        relay = PictureRelay(
+            asyncio.get_running_loop(), self._peers.put, self._video, self._latency, self._input.on_drawn
+        )
         self._views = ViewManager(
             bus,
             address,

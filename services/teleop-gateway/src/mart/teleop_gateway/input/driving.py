@@ -7,14 +7,16 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 
 from mart.protocol.messages import OPERATOR_HUMAN, ArmState, Command, CommandStamps, pose_message
-from mart.protocol.pose import Pose
-from mart.teleop_gateway.input.frame_validator import FrameValidator, HandSample
+from mart.teleop_gateway.input.frame_validator import FrameRejection, FrameValidator, HandSample, LetGo
 from mart.teleop_gateway.input.grasp import GripperSample, holds
 from mart.teleop_gateway.input.phone_frame import Flag
+from mart.teleop_gateway.input.picture_watch import PictureWatch
 from mart.teleop_gateway.input.retarget import ArmTarget, Retarget
+from mart.teleop_gateway.input.tool_motion import ToolMotion
 
 LOST_AFTER_S = 0.25
 _REMEMBERED_COMMANDS = 512
+MAX_FRAME_AGE_NS = 1_000_000_000  # an older hand leads nothing
 _OLDEST_INPUT_NS = 10_000_000_000  # an older stamp is a wrong clock, not a slow network
 
 
@@ -48,7 +50,7 @@ class Driving:
     """Drive one arm for one holder of its seat (one epoch).
 
     `first_sequence` must be above every command's number of an earlier process for the same epoch: the sim takes only
-    newer ones. gripper_told: what the gripper was asked for in the newest tick, by whoever drove then; None: unknown.
+    newer ones. `picture` is what the holder sees: while it stands still, no hand counts. gripper_told: what the gripper was asked for in the newest tick, by whoever drove then; None: unknown.
     holding: the gripper has taken hold of something.
     """
 
@@ -56,6 +58,7 @@ class Driving:
     seat_epoch: int
     first_sequence: int
     retarget: Retarget
+    picture: PictureWatch = field(default_factory=PictureWatch)
     active: InputDevice = InputDevice.KEYBOARD
     gripper_told: float | None = None
     holding: bool = False
@@ -72,6 +75,8 @@ class Driving:
         self._sources[source] = _Source(FrameValidator(self.seat_epoch))
         if source is InputDevice.PHONE:
             self.select(InputDevice.PHONE)
+        else:
+            self.picture.page_came()
 
     def disconnect(self, source: InputDevice) -> None:
         """Forget a peer that left for good; a phone that leaves gives the arm back to the keyboard."""
@@ -100,13 +105,13 @@ class Driving:
         self,
         source: InputDevice,
         payload: bytes,
-        measured_tool_in_base: Pose | None,
+        tool: ToolMotion | None,
         now_s: float,
         now_ns: int,
     ) -> Command | None:
         """Return the command that a frame asks for; None for a bad frame, an input not in use or an unseen arm.
 
-        now_s: monotonic; now_ns: wall clock, for the stamps.
+        tool: the newest that is known of the arm's tool. now_s: monotonic; now_ns: wall clock, for the stamps.
         """
         peer = self._sources.get(source)
         hand = peer.validator.validate(payload, now_s) if peer else None
@@ -114,12 +119,14 @@ class Driving:
             return None
         peer.grips = peer.grips or _means_its_gripper(hand, peer.last)
         peer.last = hand
-        if source is not self.active or measured_tool_in_base is None:
+        if source is not self.active or tool is None:
             return None
-        target = self.retarget.follow(hand, measured_tool_in_base)
+        sent_ns = _input_sent_ns(hand.frame.sent_us, peer.clock_offset_ns, now_ns)
+        hand = peer.last = self._unless_blind(peer.validator, hand, sent_ns, now_s, now_ns)
+        target = self.retarget.follow(hand, tool)
         gripper = target.gripper if peer.grips or self.gripper_told is None else self.gripper
         self._target = replace(target, gripper=gripper)
-        return self._command(hand, self._target, peer.clock_offset_ns, now_ns)
+        return self._command(hand, self._target, sent_ns, now_ns)
 
     def see(self, arm: ArmState, sim_time_s: float) -> None:
         """Take how the arm is after the newest tick, whoever drove it."""
@@ -127,6 +134,17 @@ class Driving:
         grip = GripperSample(arm.gripper, self.gripper_told, sim_time_s)
         self.holding = bool(arm.action) and holds(self.holding, self._grip, grip)
         self._grip = grip
+
+    def _unless_blind(
+        self, validator: FrameValidator, hand: HandSample, sent_ns: int, now_s: float, now_ns: int
+    ) -> HandSample:
+        """Return the hand, let go where it is too old or its person sees nothing move."""
+        if hand.clutch and sent_ns and now_ns - sent_ns > MAX_FRAME_AGE_NS:
+            validator.rejected[FrameRejection.AGE] += 1
+            return validator.let_go(hand, LetGo.AGE)
+        if hand.clutch and self.picture.stands_still(now_s):
+            return validator.let_go(hand, LetGo.PICTURE)
+        return hand
 
     def world_was_reset(self) -> None:
         """Let go of everything: targets from before the reset mean nothing now."""
@@ -137,6 +155,11 @@ class Driving:
         """Tell whether the input in use has been silent for too long."""
         peer = self._sources.get(self.active)
         return peer is None or now_s - peer.validator.last_good_s > LOST_AFTER_S
+
+    def let_go(self, now_s: float) -> LetGo | None:
+        """Return why the clutch that is held does not lead the arm; None where it does, or is not held."""
+        peer = self._sources.get(self.active)
+        return peer.last.let_go if peer and peer.last and not self.lost(now_s) else None
 
     def engaged(self, now_s: float) -> bool:
         """Tell whether the arm follows a hand now."""
@@ -167,7 +190,7 @@ class Driving:
             self._rejected += _counts(self._sources[source].validator)
 
     def _command(
-        self, hand: HandSample, target: ArmTarget, clock_offset_ns: int | None, now_ns: int
+        self, hand: HandSample, target: ArmTarget, input_sent_ns: int, now_ns: int
     ) -> Command:
         sequence = self.first_sequence + self._sent
         self._sent += 1
@@ -182,7 +205,7 @@ class Driving:
             engaged=target.engaged,
             source=OPERATOR_HUMAN,
             stamps=CommandStamps(
-                input_sent_ns=_input_sent_ns(hand.frame.sent_us, clock_offset_ns, now_ns),
+                input_sent_ns=input_sent_ns,
                 gateway_received_ns=now_ns,
             ),
             seen_tick=hand.frame.seen_tick,

@@ -56,4 +56,5 @@ class StatusBroadcaster:
 
     def _worth_telling(self, driving: Driving, now_s: float) -> tuple[object, ...]:
         waiting = tuple(waiting.arm for waiting in self.status.waiting_for)
-        return driving.engaged(now_s), driving.holding, driving.active, self.status.barrier, waiting
+        engaged = driving.engaged(now_s), driving.let_go(now_s)
+        return engaged, driving.holding, driving.active, self.status.barrier, waiting

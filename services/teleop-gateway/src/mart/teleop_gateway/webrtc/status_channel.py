@@ -118,6 +118,7 @@ def tick(
             "sequence": driving.frame_number(sequence) or 0,
             "rtf": round(state.real_time_factor, 3),
             "engaged": driving.engaged(now_s),
+            "let_go": driving.let_go(now_s) or "",
             "gripper": round(driving.gripper, 3),
             "holding": driving.holding,
             "barrier": barrier_word(room.barrier),
