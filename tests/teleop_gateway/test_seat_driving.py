@@ -7,6 +7,7 @@ import contextlib
 
 import numpy as np
 import pytest
+from aiortc.rtcsctptransport import WEBRTC_STRING
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import Forbidden, InvalidInput
@@ -82,6 +83,28 @@ def test_hostile_frames_are_dropped_counted_and_told(on_seat: OnSeat) -> None:
                 assert len(commands) <= 5
 
     on_seat(body)
+
+
+def test_a_peer_that_sends_what_nobody_can_read_is_let_go_in_one_line(
+    on_seat: OnSeat, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def body(seat: SeatUnderTest) -> None:
+        async with connected(seat.exchange(Role.BROWSER)) as browser:
+            closed = asyncio.Event()
+            browser.connection.on("connectionstatechange", closed.set)
+            browser.status.send('{"type":"seen","tick":1,"t_us":1e306}')  # only nonsense: not understood
+            await browser.wait_told(lambda told: told["type"] == "tick")
+            assert not closed.is_set()
+            transport = browser.connection.sctp
+            assert transport is not None
+            transport._data_channel_queue.append((browser.status, WEBRTC_STRING, b"\xff\xfe"))
+            await transport._data_channel_flush()
+            await asyncio.wait_for(closed.wait(), 10)
+
+    on_seat(body)
+    (line,) = [record.message for record in caplog.records if "let go" in record.message]
+    assert "can't decode" in line
+    assert "Traceback" not in caplog.text
 
 
 def test_ten_thousand_frames_a_second_move_no_more_than_the_allowed_ones(on_seat: OnSeat) -> None:

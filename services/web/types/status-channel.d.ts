@@ -3,6 +3,8 @@
 declare namespace StatusChannel {
   type Input = "keyboard" | "phone";
 
+  type LetGo = "" | "new" | "tracking" | "gap" | "jump" | "age" | "picture";
+
   interface Latency {
     p50_ms: number;
     p95_ms: number;
@@ -15,6 +17,7 @@ declare namespace StatusChannel {
     sequence: number;
     rtf: number;
     engaged: boolean;
+    let_go: LetGo;
     gripper: number;
     holding: boolean;
     barrier: Messages.BarrierPhase;

@@ -17,7 +17,7 @@ steps_s = st.floats(0.01, 0.2)
 
 def moved(pose: Pose, metres: float, radians: float = 0.0) -> Pose:
     turn = Pose(np.zeros(3), quaternion_exp(np.array([0.0, 0.0, radians])))
-    return Pose(pose.position + (0.0, metres, 0.0), (turn @ pose).quaternion_wxyz)
+    return Pose(pose.position + np.array([0.0, metres, 0.0]), (turn @ pose).quaternion_wxyz)
 
 
 @given(poses, steps_s)

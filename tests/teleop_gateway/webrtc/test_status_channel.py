@@ -21,6 +21,7 @@ from mart.protocol.tasks import MAX_ARMS
 from mart.teleop_gateway.input.driving import Driving, InputDevice
 from mart.teleop_gateway.input.frame_validator import FrameRejection
 from mart.teleop_gateway.input.retarget import Retarget
+from mart.teleop_gateway.input.tool_motion import ToolMotion
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 from mart.teleop_gateway.webrtc import status_channel
 from tests.teleop_gateway.input.strategies import phone_frame
@@ -34,7 +35,7 @@ LATENCY = LatencySummary(
 def driving() -> Driving:
     driving = Driving("arm0", 7, 100, Retarget(0.0))
     driving.connect(InputDevice.PHONE)
-    driving.receive(InputDevice.PHONE, phone_frame(41, gripper=0.25).encode(), HOME, 10.0, 0)
+    driving.receive(InputDevice.PHONE, phone_frame(41, gripper=0.25).encode(), ToolMotion(HOME), 10.0, 0)
     return driving
 
 
@@ -50,6 +51,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "sequence": 41,
         "rtf": 0.999,
         "engaged": False,
+        "let_go": "",
         "gripper": 0.25,
         "holding": False,
         "barrier": "stalled",
@@ -120,6 +122,8 @@ def test_what_peers_say_is_understood(text: str, message: object) -> None:
         '{"type":"clock","offset_ns":1e999}',
         '{"type":"clock","offset_ns":1' + "0" * 400 + "}",
         '{"type":"seen","tick":1.5,"t_us":1}',
+        '{"type":"seen","tick":1,"t_us":1e306}',
+        '{"type":"seen","tick":1,"t_us":-1e306}',
         '{"type":"input","input":"mind"}',
         '{"type":"cue","cue":"hurry","t_us":1}',
         '{"type":"cue","cue":["go"],"t_us":1}',

@@ -50,8 +50,9 @@ class Driving:
     """Drive one arm for one holder of its seat (one epoch).
 
     `first_sequence` must be above every command's number of an earlier process for the same epoch: the sim takes only
-    newer ones. `picture` is what the holder sees: while it stands still, no hand counts. gripper_told: what the gripper was asked for in the newest tick, by whoever drove then; None: unknown.
-    holding: the gripper has taken hold of something.
+    newer ones. `picture` is what the holder sees: while it stands still, no hand counts. gripper_told: what the gripper
+    was asked for in the newest tick, by whoever drove then; None: unknown. holding: the gripper has taken hold of
+    something.
     """
 
     arm: str
@@ -189,9 +190,7 @@ class Driving:
         if source in self._sources:
             self._rejected += _counts(self._sources[source].validator)
 
-    def _command(
-        self, hand: HandSample, target: ArmTarget, input_sent_ns: int, now_ns: int
-    ) -> Command:
+    def _command(self, hand: HandSample, target: ArmTarget, input_sent_ns: int, now_ns: int) -> Command:
         sequence = self.first_sequence + self._sent
         self._sent += 1
         self._frame_numbers[sequence] = hand.frame.sequence

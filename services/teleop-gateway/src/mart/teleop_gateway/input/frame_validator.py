@@ -59,7 +59,7 @@ class _Rejected(Exception):
 
 @dataclass(frozen=True)
 class HandSample:
-    """Hold a good frame. `clutch` tells that it is held and nothing speaks against it; else `let_go` tells what does."""
+    """Hold a good frame. `clutch`: held, and nothing speaks against it; `let_go`: what speaks against a held one."""
 
     frame: PhoneFrame
     pose_phone_in_session: Pose

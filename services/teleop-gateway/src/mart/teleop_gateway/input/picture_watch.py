@@ -10,7 +10,7 @@ STILL_AFTER_S = 1.0
 
 
 class PictureWatch:
-    """Watch one holder's picture. Nothing is expected of a seat that no page ever looked at: emulated phones drive so."""
+    """Watch one holder's picture. A seat that no page ever looked at needs none: emulated phones drive so."""
 
     def __init__(self) -> None:
         self._watched = False

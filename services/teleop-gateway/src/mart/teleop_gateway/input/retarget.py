@@ -72,7 +72,9 @@ class Retarget:
         self._stopping = None
         if self._grip is None:
             self._grip = self._take(hand, tool.stopping_pose())
-        return ArmTarget(self._moved(self._grip, hand.pose_phone_in_session), hand.frame.gripper, engaged=True)
+        return ArmTarget(
+            self._moved(self._grip, hand.pose_phone_in_session), hand.frame.gripper, engaged=True
+        )
 
     def release(self) -> None:
         """Let another hand take over: the tool stops, and a held clutch takes its references anew."""

@@ -75,7 +75,9 @@ class SeatInput:
             self.driving.retarget = Retarget(azimuth_rad, self._hand_scale)
         self._renew()
 
-    def on_state(self, arm: ArmState, tool_in_base: Pose, tick: int, sim_time_s: float, was_reset: bool) -> None:
+    def on_state(
+        self, arm: ArmState, tool_in_base: Pose, tick: int, sim_time_s: float, was_reset: bool
+    ) -> None:
         """Take where the arm is after the newest tick."""
         known = None if was_reset else self._tool
         self._tool = known.after(tool_in_base, sim_time_s) if known else ToolMotion(tool_in_base, sim_time_s)

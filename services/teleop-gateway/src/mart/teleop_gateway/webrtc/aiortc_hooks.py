@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from aiortc import RTCRtpSender, RTCRtpTransceiver, rtp
+from aiortc import RTCRtpSender, RTCRtpTransceiver, RTCSctpTransport, rtp
 from aiortc.codecs import HEADER_EXTENSIONS
 from aiortc.rtcrtpparameters import RTCRtpHeaderExtensionParameters, RTCRtpParameters
 
@@ -33,6 +33,22 @@ def show_at_once(sender: RTCRtpSender) -> None:
 def on_keyframe_request(sender: RTCRtpSender, handler: Callable[[], None]) -> None:
     """Call `handler` on PLI and FIR: a sender of encoded pictures only sets a flag that nobody reads."""
     sender._send_keyframe = handler  # type: ignore[method-assign]  # noqa: SLF001
+
+
+def on_unusable_message(transport: RTCSctpTransport, handler: Callable[[Exception], None]) -> None:
+    """Call `handler` where a message of a data channel cannot be taken, whoever trips over it.
+
+    aiortc ends its receiving there and then: the connection would be deaf from then on, and seem to be there.
+    """
+    receive = transport._data_channel_receive  # noqa: SLF001
+
+    async def guarded(stream_id: int, protocol_id: int, data: bytes) -> None:
+        try:
+            await receive(stream_id, protocol_id, data)
+        except Exception as error:  # noqa: BLE001 - a peer may send anything
+            handler(error)
+
+    transport._data_channel_receive = guarded  # type: ignore[method-assign]  # noqa: SLF001
 
 
 def sent_codec(transceiver: RTCRtpTransceiver) -> str:

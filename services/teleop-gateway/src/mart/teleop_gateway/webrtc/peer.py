@@ -23,6 +23,7 @@ from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.webrtc.aiortc_hooks import (
     offer_playout_delay,
     on_keyframe_request,
+    on_unusable_message,
     sent_codec,
     show_at_once,
 )
@@ -99,6 +100,8 @@ class Peer:
         sender = self._add_video() if self.role is not Role.PHONE else None
         await self._connection.setRemoteDescription(RTCSessionDescription(offer_sdp, "offer"))
         await self._connection.setLocalDescription(await self._connection.createAnswer())
+        if self._connection.sctp is not None:
+            on_unusable_message(self._connection.sctp, self._on_unusable_message)
         if sender is not None:
             self.codec = Codec(sent_codec(self._connection.getTransceivers()[0]))
 
@@ -136,6 +139,11 @@ class Peer:
             self._listener.on_status(
                 self, message if isinstance(message, str) else message.decode(errors="replace")
             )
+
+    def _on_unusable_message(self, error: Exception) -> None:
+        """Let a peer go that sends what nobody can read: its page connects anew."""
+        _log.warning("A %s is let go, because what it sent cannot be used: %s", self.role, error)
+        self._listener.on_gone(self)
 
     def _on_state(self) -> None:
         _log.debug("%s: %s", self.role, self._connection.connectionState)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +12,8 @@ from mart.teleop_gateway.input.driving import Driving, InputDevice
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 
 MAX_CHARACTERS = 1100  # one SCTP packet
+_MAX_US = 2.0**53  # what a page's clock can count
+_MAX_NS = 2.0**63
 
 
 @dataclass(frozen=True)
@@ -65,15 +66,15 @@ def parse(text: str | bytes) -> PeerMessage:
         message = json.loads(text)
         match message:
             case {"type": "ping", "t_us": t_us}:
-                return PingMessage(_finite(t_us))
+                return PingMessage(_within(t_us, _MAX_US))
             case {"type": "clock", "offset_ns": offset_ns}:
-                return ClockMessage(int(_finite(offset_ns)))
+                return ClockMessage(int(_within(offset_ns, _MAX_NS)))
             case {"type": "seen", "tick": int(tick), "t_us": t_us}:
-                return SeenMessage(tick, _finite(t_us))
+                return SeenMessage(tick, _within(t_us, _MAX_US))
             case {"type": "input", "input": name}:
                 return SelectInputMessage(InputDevice(name))
             case {"type": "cue", "cue": str(word), "t_us": t_us}:
-                return CueMessage(cue_from_word(word), _finite(t_us))
+                return CueMessage(cue_from_word(word), _within(t_us, _MAX_US))
     except (ValueError, OverflowError, RecursionError) as error:
         raise InvalidInput(f"A status message was given that cannot be read: {error}.") from error
     raise InvalidInput("A status message was given that is none of ping, clock, seen, input and cue.")
@@ -144,7 +145,7 @@ def _text(message: dict[str, Any]) -> str:
     return json.dumps(message, separators=(",", ":"), ensure_ascii=False)
 
 
-def _finite(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ValueError(f"{value!r} is no finite number")
+def _within(value: Any, limit: float) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= limit:
+        raise ValueError(f"{value!r} is no number of at most {limit:g}")
     return value

@@ -67,7 +67,7 @@ function begin() {
   video.addEventListener("resize", () => render());
   document.addEventListener("click", letGoOfButton);
   watchTicks(video, (tick, displayedMs) => {
-    input.seenTick = Math.max(input.seenTick, tick);
+    input.seenTick = tick; // a smaller one than before is of another run of the simulation
     link.send({ type: "seen", tick, t_us: displayedMs * 1000 });
   });
   input.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));

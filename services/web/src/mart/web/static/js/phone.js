@@ -4,6 +4,7 @@ import { messageOf, phoneToken, redeemPairing } from "./api.js";
 import { armName, theArm } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
+import { letGoText } from "./drive/let-go.js";
 import { IDENTITY } from "./drive/quaternion.js";
 import { everyFrame } from "./drive/ticker.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
@@ -204,7 +205,8 @@ function onStatus(tick, link) {
 /** @param {SeatLink} link */
 function showLink(link) {
   setText(byId("link"), linkText(link));
-  setText(byId("hold-text"), tutorial?.tip || (status?.engaged ? "Moving" : "Hold to move"));
+  const holding = status?.engaged ? "Moving" : letGoText(status?.let_go) || "Hold to move";
+  setText(byId("hold-text"), tutorial?.tip || holding);
 }
 
 /** @param {SeatLink} link */

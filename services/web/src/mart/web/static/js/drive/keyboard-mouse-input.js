@@ -8,6 +8,8 @@ import { VirtualPhone } from "./virtual-phone.js";
 
 /** @import { Command } from "./keys.js" */
 
+/** @typedef {{ gripper: number, stopped: boolean, engaged: boolean, letGo: StatusChannel.LetGo }} HandView */
+
 const LONGEST_STEP_S = 0.1;
 const CLOSED_ABOVE = 0.15; // a gripper that holds something is neither open nor shut
 
@@ -75,9 +77,11 @@ export class KeyboardMouseInput {
   /**
    * What the input panel shows.
    * @param {StatusChannel.Tick | null} status
+   * @returns {HandView}
    */
   view(status) {
-    return { gripper: this.#gripper, stopped: this.#stopped, engaged: status?.engaged ?? false };
+    const { engaged = false, let_go: letGo = "" } = status ?? {};
+    return { gripper: this.#gripper, stopped: this.#stopped, engaged, letGo };
   }
 
   /**

@@ -3,7 +3,10 @@
 import { pairPhone } from "../api.js";
 import { cueText } from "../cues.js";
 import { byId, element, setShown, setText } from "../dom.js";
+import { letGoText } from "../drive/let-go.js";
 import { CUES } from "../facts.js";
+
+/** @import { HandView } from "../drive/keyboard-mouse-input.js" */
 
 /** @type {[keys: string, text: string][]} */
 const KEYS = [
@@ -49,7 +52,7 @@ export class InputPanel {
   /**
    * Shows the newest status, and what keyboard and mouse ask for now.
    * @param {StatusChannel.Tick | null} status
-   * @param {{ gripper: number, stopped: boolean, engaged: boolean }} hand
+   * @param {HandView} hand
    */
   update(status, hand) {
     const phone = status?.phone ?? null;
@@ -117,12 +120,12 @@ function showInput(phone, byPhone) {
 
 /**
  * What the hand does, and what it can be told.
- * @param {{ gripper: number, stopped: boolean, engaged: boolean }} hand
+ * @param {HandView} hand
  * @param {boolean} byPhone
  */
-function showHand({ gripper, stopped, engaged }, byPhone) {
+function showHand({ gripper, stopped, engaged, letGo }, byPhone) {
   const how = byPhone ? "Hold the phone's lower part to move." : "Hold space or drag the picture to move.";
-  setText(byId("clutch"), engaged ? "Moving" : how);
+  setText(byId("clutch"), engaged ? "Moving" : letGoText(letGo) || how);
   setText(byId("gripper"), `${gripper > 0.5 ? "Open" : "Close"} gripper`);
   setText(byId("stop"), stopped ? "Go on" : "Stop everything");
   byId("stop").setAttribute("aria-pressed", String(stopped));
