@@ -47,6 +47,21 @@ def test_a_class_name_means_one_thing() -> None:
     assert offences == [], listed(offences)
 
 
+def test_requests_are_answered_by_the_serving_helper() -> None:
+    """So that whatever a handler raises is an answer, and no service ends over a question."""
+    offences = [
+        f"{place(path, node)} calls {ast.unparse(node.func)}"
+        for path in sources()
+        if not relative(path).startswith("libraries/runtime/")
+        for node in ast.walk(parsed(path))
+        if isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Attribute)
+        and node.func.attr == "reply"
+        and ast.unparse(node.func.value) == "request"
+    ]
+    assert offences == [], listed(offences)
+
+
 def test_dates_come_from_the_clock_module() -> None:
     # `time` itself is forbidden by import-linter; datetime is needed to format, so only its clock reads are.
     offences = [

@@ -17,8 +17,15 @@ from mart.episodes.reader import EpisodeFile, open_episode
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol import recording
 from mart.protocol.errors import Corrupt, NotFound
-from mart.protocol.recording import CadenceRecord, EpisodeRecord, OperatorsRecord, VerificationRecord
+from mart.protocol.recording import (
+    CadenceRecord,
+    EpisodeRecord,
+    OperatorsRecord,
+    RoomRecord,
+    VerificationRecord,
+)
 from mart.protocol.vocabulary import Verdict
+from tests.recorder import synthetic
 from tests.recorder.files import write_episode
 
 
@@ -136,6 +143,55 @@ def test_a_file_of_another_version_that_is_not_understood_is_one_sentence_and_th
     listed = {one.file_path: one.error for one in list_episodes(tmp_path)}
     assert listed[known] is None
     assert "9.1.0" in (listed[path] or "")
+
+
+def with_spoilt_model(path: Path) -> Path:
+    """Flip one bit inside the model."""
+    data = bytearray(path.read_bytes())
+    data[data.index(synthetic.MJB) + 5000] ^= 4
+    path.write_bytes(data)
+    return path
+
+
+def test_one_bit_of_the_model_is_enough_to_be_corrupt(tmp_path: Path) -> None:
+    file = EpisodeFile.open(with_spoilt_model(write_episode(tmp_path).path))
+    for read in (file.check, file.check_model, file.model):
+        with pytest.raises(Corrupt):
+            read()
+
+
+def test_a_model_that_its_checksum_fits_but_not_its_sha256_is_corrupt(tmp_path: Path) -> None:
+    room = RoomRecord(room="room-1", model_sha256="0" * 64)
+    file = EpisodeWriter(tmp_path / "other.mcap")
+    file.describe(room)
+    file.attach_model(synthetic.MODEL, 0)
+    file.finish()
+    file.move_to(file.path)
+    with pytest.raises(Corrupt):
+        EpisodeFile.open(file.path).model()
+
+
+@settings(max_examples=60)
+@given(where=st.integers(0, 10**6), bit=st.integers(0, 7))
+def test_one_bit_anywhere_is_found(
+    where: int, bit: int, written: Written, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    data = bytearray(written.data)
+    data[where % len(data)] ^= 1 << bit
+    path = tmp_path_factory.mktemp("flipped") / "flipped.mcap"
+    path.write_bytes(data)
+    with pytest.raises(Corrupt):
+        EpisodeFile(path, {}).check()
+
+
+@pytest.mark.parametrize("what", [b"verdict", b"waited_s", b"/arm/arm0/command"], ids=bytes.decode)
+def test_a_flipped_bit_outside_of_chunks_is_found(what: bytes, tmp_path: Path) -> None:
+    path = write_episode(tmp_path).path
+    data = bytearray(path.read_bytes())
+    data[data.rindex(what)] ^= 1
+    path.write_bytes(data)
+    with pytest.raises(Corrupt):
+        EpisodeFile(path, {}).check()
 
 
 def test_no_file_is_not_found(tmp_path: Path) -> None:

@@ -49,6 +49,15 @@ def test_show_tells_all(mart: Mart, path: Path) -> None:
     assert "waited_for_arm1_s" in mart("episodes", "show", path)
 
 
+def test_show_says_how_the_model_stands(mart: Mart, path: Path) -> None:
+    assert "intact" in mart.json("episodes", "show", path)["model"]
+    data = bytearray(path.read_bytes())
+    data[data.index(synthetic.MJB)] ^= 1
+    path.write_bytes(data)
+    assert "does not match its checksum" in mart.json("episodes", "show", path)["model"]
+    assert mart.json("episodes", "list", path)["episodes"][0]["error"] is None
+
+
 def test_labels_are_laid_over_and_the_file_is_untouched(mart: Mart, path: Path) -> None:
     before = path.read_bytes()
     mart("episodes", "label", path, "--outcome", "failure", "--note", "cube slipped", "--drop")

@@ -26,6 +26,8 @@ from mart.recorder.export.selection import choose, read_data
 from mart.sim.world import World
 from mart.trainer.data.episode import from_states as as_the_trainer
 from mart.trainer.data.layout import ObservationLayout
+from tests.recorder import synthetic
+from tests.recorder.files import write_episode
 from tests.trainer import recorded
 
 TASK = get_task(recorded.TASK)
@@ -164,6 +166,15 @@ def test_a_damaged_file_is_named(folder: Path) -> None:
     path.write_bytes(path.read_bytes()[:5000])
     with pytest.raises(Corrupt, match=path.name):
         write(folder, folder / "lifting.hdf5")
+
+
+def test_an_episode_whose_model_has_a_spoilt_bit_is_not_exported(tmp_path: Path) -> None:
+    path = write_episode(tmp_path).path
+    data = bytearray(path.read_bytes())
+    data[data.index(synthetic.MJB)] ^= 1
+    path.write_bytes(data)
+    with pytest.raises(Corrupt, match="checksum"):
+        read_data(list_episodes(path)[0], TASK)
 
 
 @pytest.mark.parametrize(

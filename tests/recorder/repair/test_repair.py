@@ -99,6 +99,17 @@ def test_a_model_with_a_spoilt_byte_is_left_out(tmp_path: Path, left: Left) -> N
         EpisodeFile.open(one.saved.path).model()
 
 
+def test_a_finished_file_with_a_spoilt_model_is_not_called_complete(tmp_path: Path) -> None:
+    path = write_episode(tmp_path).path
+    data = bytearray(path.read_bytes())
+    data[data.index(synthetic.MJB)] ^= 1
+    path.with_name(f"{path.name}.part").write_bytes(data)
+    path.unlink()
+    one = repaired(tmp_path)
+    assert one.saved is not None
+    assert EpisodeFile.open(one.saved.path).episode.repaired
+
+
 def test_what_somebody_else_repairs_is_left_alone(tmp_path: Path, left: Left) -> None:
     part = leftover(tmp_path, left.data)
     with part.open("rb") as elsewhere:

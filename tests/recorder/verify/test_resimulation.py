@@ -58,6 +58,16 @@ def test_an_action_that_was_not_applied_differs(tmp_path: Path) -> None:
     assert "tick 9" in verdict(tmp_path, states).detail
 
 
+def test_a_model_with_one_spoilt_bit_is_never_verified(tmp_path: Path) -> None:
+    file = recorded(tmp_path, synthetic.states(5))
+    data = bytearray(file.path.read_bytes())
+    data[data.index(synthetic.MJB)] ^= 1
+    file.path.write_bytes(data)
+    said = verify(file, _ROOM, synthetic.resimulate)
+    assert said.verdict is Verdict.UNVERIFIED
+    assert "model.mjb" in said.detail
+
+
 def test_a_gap_is_said(tmp_path: Path) -> None:
     said = verdict(tmp_path, list(synthetic.without(synthetic.states(30), 10, 11)))
     assert said.verdict is Verdict.UNVERIFIED

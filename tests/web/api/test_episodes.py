@@ -21,8 +21,7 @@ from mart.protocol.messages import (
 from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.catalogue import handlers
 from mart.recorder.catalogue.handlers import CatalogueHandlers
-from mart.recorder.catalogue.serve import answer
-from mart.runtime.bus.base import Request
+from mart.recorder.catalogue.serve import catalogue_answerer
 from mart.runtime.bus.memory import MemoryBus
 from mart.web.api.app_state import AppState
 from mart.web.clients.missed_saves import MissedSaves
@@ -40,13 +39,9 @@ def root(app_state: AppState, bus: MemoryBus, tmp_path: Path) -> Iterator[Path]:
     """A folder with two episodes, and a catalogue that tells of it."""
     for number in (1, 2):
         write_episode(tmp_path, ticks=30, number=number)
-    answers = CatalogueHandlers(tmp_path)
-
-    def take(request: Request) -> None:
-        request.reply(codec.encode(answer(answers, request.payload)))
-
+    answerer = catalogue_answerer(CatalogueHandlers(tmp_path))
     with (
-        contextlib.closing(bus.serve(keys.catalogue("catalogue-1"), take)),
+        contextlib.closing(bus.serve(keys.catalogue("catalogue-1"), answerer.respond)),
         contextlib.closing(bus.announce(keys.alive(ServiceKind.CATALOGUE, "catalogue-1"))),
     ):
         yield tmp_path
@@ -163,12 +158,10 @@ async def test_where_no_picture_can_be_shown_there_is_none(enter: Enter, root: P
 
 
 def test_garbage_is_answered_with_a_sentence(tmp_path: Path) -> None:
-    reply = answer(CatalogueHandlers(tmp_path), b"\xff\xff\xff")
-    assert isinstance(reply, CatalogueReply)
-    assert reply.error.code == "InvalidInput"
-    assert answer(CatalogueHandlers(tmp_path), codec.encode(CatalogueRequest())).error.message.startswith(
-        "An empty"
-    )
+    answerer = catalogue_answerer(CatalogueHandlers(tmp_path))
+    assert codec.decode(CatalogueReply, answerer(b"\xff\xff\xff")).error.code == "InvalidInput"
+    empty = codec.decode(CatalogueReply, answerer(codec.encode(CatalogueRequest())))
+    assert empty.error.message.startswith("An empty")
 
 
 async def test_what_is_saved_without_a_word_is_found_in_the_catalogue(

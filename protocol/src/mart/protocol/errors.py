@@ -6,7 +6,8 @@ MartError
 ├── Forbidden      not yours to do: get the right token or seat
 ├── Conflict       someone or something is in the way: wait or choose another
 ├── Unavailable    a part cannot be reached now: start it or try again
-└── Corrupt        data does not hold together: repair it or leave it out
+├── Corrupt        data does not hold together: repair it or leave it out
+└── ServiceFault   a part failed at what it was asked: its log says why
 
 Every error carries one sentence: what was given, what is allowed, what to do.
 """
@@ -58,8 +59,13 @@ class Corrupt(MartError):
     """Data does not hold together."""
 
 
+class ServiceFault(MartError):
+    """A part failed at what it was asked, and goes on."""
+
+
 BRANCHES: dict[str, type[MartError]] = {
-    branch.__name__: branch for branch in (InvalidInput, NotFound, Forbidden, Conflict, Unavailable, Corrupt)
+    branch.__name__: branch
+    for branch in (InvalidInput, NotFound, Forbidden, Conflict, Unavailable, Corrupt, ServiceFault)
 }
 
 

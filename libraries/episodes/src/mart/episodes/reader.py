@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 from typing import TypeVar
 
 from mcap.exceptions import EndOfFile
 from mcap.reader import SeekingReader
-from mcap.records import Channel, Chunk, McapRecord, Message, Metadata
+from mcap.records import Attachment, Channel, Chunk, McapRecord, Message, Metadata
 from mcap.stream_reader import MAGIC_SIZE
 
 from mart.episodes.arrays import EpisodeData, arrays_for_task, arrays_from_states
+from mart.episodes.checksums import require_intact
 from mart.episodes.scan import BoundedFile, corruption, records, unpack
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
@@ -143,22 +146,40 @@ class EpisodeFile:
                     )
 
     def model(self) -> bytes:
-        """Return the compiled MuJoCo model (MJB). Raises NotFound where the file has none."""
+        """Return the compiled MuJoCo model (MJB), of which both its checksum and the room's SHA-256 are found right.
+
+        Raises NotFound where the file has none and Corrupt where it is another than the recorded one.
+        """
         with BoundedFile(self.path) as file, corruption(self.path):
-            for attachment in _reader(file).iter_attachments():
-                if attachment.name == MODEL_ATTACHMENT:
-                    return attachment.data
+            for record in _until_cut(records(file), self.path):
+                if isinstance(record, Attachment) and record.name == MODEL_ATTACHMENT:
+                    require_intact(file, record)
+                    self._require_recorded(record.data)
+                    return record.data
         raise NotFound(f"{self.path} holds no {MODEL_ATTACHMENT}.")
+
+    def check_model(self) -> None:
+        """Raise Corrupt where the file holds another model than the recorded one; one without any is as good."""
+        with contextlib.suppress(NotFound):
+            self.model()
 
     def check(self, expected_messages: int | None = None) -> None:
         """Read all of the file, every checksum included. Raises Corrupt where anything is amiss or missing."""
         found = sum(1 for _ in self.messages())
         with BoundedFile(self.path) as file, corruption(self.path):
+            for record in records(file):
+                require_intact(file, record)
             summary = _reader(file).get_summary()
+        EpisodeFile.open(self.path).check_model()
         counted = summary.statistics.message_count if summary and summary.statistics else None
         if found != counted or expected_messages not in (None, found):
             expected = counted if expected_messages is None else expected_messages
             raise Corrupt(f"{self.path} holds {found} messages; it should hold {expected}.")
+
+    def _require_recorded(self, mjb: bytes) -> None:
+        said = self.metadata.get(RoomRecord.NAME, {}).get("model_sha256")
+        if said is not None and sha256(mjb).hexdigest() != said:
+            raise ValueError(f"its {MODEL_ATTACHMENT} is not the model whose SHA-256 it names")
 
     def _read(self, record: type[R]) -> R:
         strings = self.metadata.get(record.NAME)

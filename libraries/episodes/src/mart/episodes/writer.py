@@ -38,7 +38,9 @@ class EpisodeWriter:
         self._lock = opening.open("rb")
         fcntl.flock(self._lock, fcntl.LOCK_EX)
         opening.rename(path)
-        self._mcap = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
+        self._mcap = Writer(
+            self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True
+        )
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
         self._mcap.start(profile=PROFILE)

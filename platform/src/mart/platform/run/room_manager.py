@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import queue
 import threading
 from collections.abc import Iterator
 from itertools import count
@@ -26,11 +25,12 @@ from mart.protocol.messages import (
     RoomReply,
     RoomsRequest,
     RoomStatus,
-    error_message,
 )
+from mart.protocol.queryables import ROOMS
 from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.base import Request, Sample
+from mart.runtime.serving import BoundedInbox, RequestAnswerer
 
 _log = logging.getLogger(__name__)
 
@@ -38,9 +38,9 @@ NAME = "platform-1"
 MAX_ROOMS = 8
 MAX_EPISODES = 10_000
 SILENCE_S = 60.0  # a sim that is started anew takes a moment, and remembers who sat where
-_MAX_REQUEST_BYTES = 1024
 _MAX_STATUS_BYTES = 64 * 1024
 _MAX_WAITING = 16
+_STOP_CHECK_S = 0.5
 
 
 class HeardStatuses:
@@ -165,7 +165,7 @@ def opening_rooms(platform: Platform) -> Iterator[None]:
     For a platform that runs its services itself.
     """
     assert platform.supervisor is not None
-    inbox: queue.Queue[Request | None] = queue.Queue(_MAX_WAITING)
+    inbox = BoundedInbox[Request](_MAX_WAITING)
     statuses = HeardStatuses()
     rooms = RoomManager(platform.options, platform.supervisor, statuses)
     rooms.reopen()
@@ -176,30 +176,28 @@ def opening_rooms(platform: Platform) -> Iterator[None]:
             if status.room in rooms.names:
                 statuses.hear(status, clock.monotonic_s())
 
-    def take(request: Request) -> None:
-        with contextlib.suppress(queue.Full):  # whoever asks hears nothing in time, and asks again
-            inbox.put_nowait(request)
-
     def work() -> None:
-        while (request := inbox.get()) is not None:
-            request.reply(codec.encode(_answer(rooms, request.payload)))
+        answerer = rooms_answerer(rooms)
+        while not ended.is_set():
+            request = inbox.take(_STOP_CHECK_S)
+            if request is not None:
+                answerer.respond(request)
 
+    ended = threading.Event()
     worker = threading.Thread(target=work, name="rooms")
     with contextlib.ExitStack() as stack:
         worker.start()
         stack.callback(worker.join)
-        stack.callback(inbox.put, None)
+        stack.callback(ended.set)
         for opened in (
             platform.bus.subscribe(keys.EVERY_STATUS, on_status),
-            platform.bus.serve(keys.rooms(NAME), take),
+            platform.bus.serve(keys.rooms(NAME), inbox.put),
             platform.bus.announce(keys.alive(ServiceKind.PLATFORM, NAME)),
         ):
             stack.callback(opened.close)
         yield
 
 
-def _answer(rooms: RoomManager, payload: bytes) -> RoomReply:
-    try:
-        return rooms.answer(codec.decode(RoomsRequest, payload, _MAX_REQUEST_BYTES))
-    except MartError as error:
-        return RoomReply(error=error_message(error))
+def rooms_answerer(rooms: RoomManager) -> RequestAnswerer[RoomsRequest, RoomReply]:
+    """What answers encoded requests for `rooms`."""
+    return RequestAnswerer(ROOMS, rooms.answer)

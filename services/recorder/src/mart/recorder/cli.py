@@ -75,7 +75,7 @@ def show(path: Path, as_json: bool) -> None:
 
     file = open_episode(path)
     (listed,) = described([path])
-    result = {**formatting.listed(listed), "metadata": file.metadata}
+    result = {**formatting.listed(listed), "model": formatting.model(file), "metadata": file.metadata}
     print_result(result, formatting.details(result), as_json)
 
 

@@ -9,6 +9,8 @@ from typing import Any
 
 from mart.episodes.datasets import NamedDataSet
 from mart.episodes.labelled_episode import LabelledEpisode
+from mart.episodes.reader import EpisodeFile
+from mart.protocol.errors import Corrupt, NotFound
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.repair.repair import RepairResult
 from mart.recorder.verify.resimulation import ComparedStretch
@@ -46,6 +48,16 @@ def _cells(path: str, row: LabelledEpisode) -> tuple[str, ...]:
     pace = "–" if row.real_time_factor is None else f"{row.real_time_factor:.3f}"
     drivers = ", ".join(f"{arm} {who}" for arm, who in row.operators.items())
     return (path, row.outcome, row.verdict, str(row.ticks), pace, drivers, "; ".join(remarks))
+
+
+def model(file: EpisodeFile) -> str:
+    """Say how the compiled model in a file stands: intact, none, or why it cannot be used."""
+    try:
+        return f"intact, {len(file.model())} bytes"
+    except NotFound:
+        return "none"
+    except Corrupt as error:
+        return str(error)
 
 
 def details(result: Mapping[str, Any]) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 
 from mart.protocol.keys import Topic
 from mart.runtime.bus.base import Bus, Closable, Handler, Publisher, Request, Sample
+from mart.runtime.serving import send_reply
 
 _log = logging.getLogger(__name__)
 
@@ -37,7 +38,7 @@ class AsyncBus:
         """Answer requests. `answer` turns a request's payload into the reply's; it must not raise."""
 
         async def respond(request: Request) -> None:
-            request.reply(await answer(request.payload))
+            send_reply(request, await answer(request.payload))
 
         return self.bus.serve(topic, lambda request: self._soon(lambda: self.spawn(respond(request))))
 

@@ -47,10 +47,12 @@ def choose(episodes: Iterable[LabelledEpisode], wanted: EpisodeFilter) -> Export
 def read_data(episode: LabelledEpisode, task: Task) -> EpisodeData:
     """Read an episode into arrays, as the task's catalogue entry says.
 
-    Raises Corrupt where the file is damaged and InvalidInput, naming it, where it is not whole, not finite, or an
-    action is outside -1 … 1.
+    Raises Corrupt where the file is damaged, its model included, and InvalidInput, naming it, where it is not whole,
+    not finite, or an action is outside -1 … 1.
     """
-    data = episode.open().arrays(task)
+    file = episode.open()
+    file.check_model()
+    data = file.arrays(task)
     if (np.abs(data.actions) > 1.0).any():
         raise InvalidInput(f"{episode.file_path} cannot be exported: an action is outside -1 … 1.")
     return data

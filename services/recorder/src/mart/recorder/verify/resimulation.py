@@ -121,6 +121,7 @@ def compare(file: EpisodeFile, room: RoomRecord, resimulate: Resimulate) -> Iter
         raise Corrupt(
             f"{file.path} does not say its task, its rate and its model; it cannot be stepped again."
         )
+    EpisodeFile(file.path, {RoomRecord.NAME: room.to_strings()}).check_model()
     for stretch in stretches(file.states()):
         answered = resimulate(stretch.request(room)) if stretch.digests else b""
         if len(answered) != DIGEST_BYTES * len(stretch.digests):

@@ -5,16 +5,18 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
-import queue
 import threading
 from collections import Counter
+from collections.abc import Callable
 
-from mart.protocol import clock, codec, keys
+from mart.protocol import clock, keys
 from mart.protocol.errors import MartError
-from mart.protocol.messages import RolloutReply, RolloutRequest, error_message
+from mart.protocol.messages import RolloutReply, RolloutRequest
+from mart.protocol.queryables import ROLLOUT
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Request
 from mart.runtime.service import announced, connected
+from mart.runtime.serving import BoundedInbox, RequestAnswerer
 from mart.runtime.throttled_log import ThrottledLog
 from mart.sim.rollout.rollout_server import RolloutServer
 from mart.sim.settings import ReplicaSettings
@@ -23,35 +25,39 @@ from mart.sim.world.divergence import DivergenceArchive
 _log = logging.getLogger(__name__)
 
 _LONGEST_WAIT_S = 0.5  # so that a stop is noticed
+_MAX_WAITING = 256
 
 
 def serve_replica(settings: ReplicaSettings) -> None:
     """Answer rollout requests until the process is asked to stop."""
     os.nice(settings.niceness)
-    requests: queue.SimpleQueue[Request] = queue.SimpleQueue()
+    inbox = BoundedInbox[Request](_MAX_WAITING)
     archive = DivergenceArchive(settings.diverged_dir, settings.name, clock.wall_ns)
     with (
         connected(settings, ServiceKind.REPLICA, settings.name) as service,
-        contextlib.closing(service.bus.serve(keys.rollout(settings.name), requests.put)),
+        contextlib.closing(service.bus.serve(keys.rollout(settings.name), inbox.put)),
         announced(service),
     ):
-        _answer_all(RolloutServer(explain=archive.keep), requests, service.stop)
+        _answer_all(RolloutServer(explain=archive.keep), inbox, service.stop)
 
 
-def _answer_all(server: RolloutServer, requests: queue.SimpleQueue[Request], stop: threading.Event) -> None:
+def _answer_all(server: RolloutServer, inbox: BoundedInbox[Request], stop: threading.Event) -> None:
     refused: Counter[str] = Counter()
     throttled_log = ThrottledLog(_log)
+
+    def on_refused(error: MartError) -> None:
+        refused[str(error)] += 1
+
+    answerer = rollout_answerer(server, on_refused)
     while not stop.is_set():
-        with contextlib.suppress(queue.Empty):
-            request = requests.get(timeout=_LONGEST_WAIT_S)
-            reply = _answer(server, request.payload)
-            refused[reply.error.message] += bool(reply.error.message)
-            request.reply(codec.encode(reply))
+        request = inbox.take(_LONGEST_WAIT_S)
+        if request is not None:
+            answerer.respond(request)
         throttled_log.report(refused, clock.monotonic_s())
 
 
-def _answer(server: RolloutServer, payload: bytes) -> RolloutReply:
-    try:
-        return server.answer(codec.decode(RolloutRequest, payload), clock.monotonic_s())
-    except MartError as error:
-        return RolloutReply(error=error_message(error))
+def rollout_answerer(
+    server: RolloutServer, on_refused: Callable[[MartError], None] | None = None
+) -> RequestAnswerer[RolloutRequest, RolloutReply]:
+    """Return what answers encoded requests with `server`."""
+    return RequestAnswerer(ROLLOUT, lambda request: server.answer(request, clock.monotonic_s()), on_refused)

@@ -5,20 +5,17 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
-from typing import TypeVar
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import MartError
-from mart.protocol.messages import EpisodeRequest, Event, RoomReply, SeatRequest, error_message
+from mart.protocol.messages import EpisodeRequest, Event, RoomReply, SeatRequest
+from mart.protocol.queryables import EPISODE, SEAT
 from mart.runtime.bus import Bus, Closable, Request, Sample
+from mart.runtime.serving import RequestAnswerer, send_reply
 from mart.sim.room.room import Room
 from mart.sim.room.save_follower import SaveFollower
 from mart.sim.world import World
 from mart.sim.world.model_message import model_message
-
-R = TypeVar("R", SeatRequest, EpisodeRequest)
-
-MAX_REQUEST_BYTES = 4096
 
 
 class RoomServer:
@@ -46,6 +43,8 @@ class RoomServer:
             what: codec.encode(model_message(shown))
             for what, shown in ((b"", world), (keys.DETAILED, looks or world))
         }
+        self._seat = RequestAnswerer(SEAT, self._answer_seat, self._on_refused)
+        self._episode = RequestAnswerer(EPISODE, self._answer_episode, self._on_refused)
         self._open: list[Closable] = [
             SaveFollower(bus, name, self._on_saved, garbled),
             bus.serve(keys.seat(name), self._on_seat_request),
@@ -72,19 +71,19 @@ class RoomServer:
         self._submit(partial(self._room.episode_saved, saved))
 
     def _on_seat_request(self, request: Request) -> None:
-        self._submit(partial(self._answer, request, SeatRequest, self._room.answer_seat))
+        self._submit(partial(self._seat.respond, request))
 
     def _on_episode_request(self, request: Request) -> None:
-        self._submit(partial(self._answer, request, EpisodeRequest, self._room.answer_episode))
+        self._submit(partial(self._episode.respond, request))
 
     def _on_model_request(self, request: Request) -> None:
-        request.reply(self._models.get(request.payload, self._models[b""]))
+        send_reply(request, self._models.get(request.payload, self._models[b""]))
 
-    def _answer(self, request: Request, kind: type[R], answer: Callable[[R, float], RoomReply]) -> None:
-        """Answer a request; what cannot be decoded is refused and counted."""
-        try:
-            reply = answer(codec.decode(kind, request.payload, MAX_REQUEST_BYTES), self._now_s())
-        except MartError as error:
-            self._garbled["request"] += 1
-            reply = RoomReply(error=error_message(error))
-        request.reply(codec.encode(reply))
+    def _answer_seat(self, request: SeatRequest) -> RoomReply:
+        return self._room.answer_seat(request, self._now_s())
+
+    def _answer_episode(self, request: EpisodeRequest) -> RoomReply:
+        return self._room.answer_episode(request, self._now_s())
+
+    def _on_refused(self, _error: MartError) -> None:
+        self._garbled["request"] += 1

@@ -5,27 +5,32 @@ from __future__ import annotations
 import asyncio
 import contextlib
 
-from mart.protocol import codec, keys
-from mart.protocol.errors import MartError, Unavailable
-from mart.protocol.messages import OpenSeat, OpenSeatReply, error_message
+from mart.protocol import keys
+from mart.protocol.errors import Unavailable
+from mart.protocol.messages import OpenSeat, OpenSeatReply
+from mart.protocol.queryables import OPEN_SEAT
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.serving import AsyncRequestAnswerer
 from mart.teleop_gateway.change_signal import ChangeSignal
 from mart.teleop_gateway.served_seats import SeatAddress, SeatRegister
 
 OPEN_TIMEOUT_S = 5.0
 _ASK_AFTER_S = 0.5
-_MAX_REQUEST_BYTES = 1024
 
 
 class OpenSeatHandler:
-    """Know which seats' processes answer offers, whichever gateway runs them."""
+    """Know which seats' processes answer offers, whichever gateway runs them.
+
+    `answer` replies to an OpenSeat: with nothing once the seat can take an offer, with the error where it cannot.
+    """
 
     def __init__(self, bus: AsyncBus, register: SeatRegister) -> None:
         """Answer with `register`, which tells the newest epoch of every seat; call `on_change` whenever it has news."""
         self._bus, self._register = bus, register
         self._open: set[str] = set()  # ids of seats
         self._changed = ChangeSignal()
+        self.answer = AsyncRequestAnswerer(OPEN_SEAT, self._answer)
 
     def on_seat_token(self, key: str, alive: bool) -> None:
         """Take the news that the process of a seat came or went."""
@@ -36,14 +41,9 @@ class OpenSeatHandler:
         """Look anew whether what somebody waits for is there."""
         self._changed.tell()
 
-    async def answer(self, payload: bytes) -> bytes:
-        """Return the reply to an OpenSeat: empty once the seat can take an offer, the error where it cannot."""
-        try:
-            request = codec.decode(OpenSeat, payload, limit_bytes=_MAX_REQUEST_BYTES)
-            await self._await_open(SeatAddress(request.room, request.arm), request.seat_epoch)
-        except MartError as error:
-            return codec.encode(OpenSeatReply(error=error_message(error)))
-        return codec.encode(OpenSeatReply())
+    async def _answer(self, request: OpenSeat) -> OpenSeatReply:
+        await self._await_open(SeatAddress(request.room, request.arm), request.seat_epoch)
+        return OpenSeatReply()
 
     async def _await_open(self, seat: SeatAddress, epoch: int) -> None:
         try:

@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Awaitable, Callable
+from functools import partial
 
-from mart.protocol import clock, codec, keys
+from mart.protocol import clock, keys
 from mart.protocol.errors import MartError, Unavailable
-from mart.protocol.messages import Answer, Offer, error_message
+from mart.protocol.messages import Answer, Offer
+from mart.protocol.queryables import SIGNAL
 from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import Closable
 from mart.runtime.rate_limit import RateLimit
+from mart.runtime.serving import AsyncRequestAnswerer
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.webrtc.authorization import authorize_holder, authorize_offer
-from mart.teleop_gateway.webrtc.peer import MAX_SDP_CHARACTERS
 from mart.teleop_gateway.webrtc.peers import Peers
 
 _log = logging.getLogger(__name__)
 
 MAX_OFFERS_PER_S = 5
 _READY_TIMEOUT_S = 5.0
-_MAX_OFFER_BYTES = MAX_SDP_CHARACTERS + 4096
 
 
 class OfferHandler:
@@ -41,23 +41,18 @@ class OfferHandler:
             for role in Role
         ]
 
-    def _answering(self, role: Role) -> Callable[[bytes], Awaitable[bytes]]:
-        async def answer(payload: bytes) -> bytes:
-            try:
-                return codec.encode(Answer(sdp=await self._answer(role, payload)))
-            except MartError as error:
-                _log.info("An offer of a %s was refused: %s", role, error)
-                return codec.encode(Answer(error=error_message(error)))
+    def _answering(self, role: Role) -> AsyncRequestAnswerer[Offer, Answer]:
+        def on_refused(error: MartError) -> None:
+            _log.info("An offer of a %s was refused: %s", role, error)
 
-        return answer
+        return AsyncRequestAnswerer(SIGNAL, partial(self._answer, role), on_refused)
 
-    async def _answer(self, role: Role, payload: bytes) -> str:
+    async def _answer(self, role: Role, offer: Offer) -> Answer:
         if not self._limit.allows(clock.monotonic_s()):
             raise Unavailable(
                 f"More than {MAX_OFFERS_PER_S} offers a second came for this seat; wait a moment."
             )
-        offer = codec.decode(Offer, payload, limit_bytes=_MAX_OFFER_BYTES)
         claims = authorize_offer(offer.token, self._secret, self._seat, role)
         driving = await self._input.await_driving(claims.epoch, _READY_TIMEOUT_S)
         authorize_holder(claims, driving.seat_epoch)
-        return await self._peers.answer(role, offer.sdp)
+        return Answer(sdp=await self._peers.answer(role, offer.sdp))

@@ -17,6 +17,7 @@ from aiortc import (
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
+from mart.protocol.queryables import MAX_SDP_CHARACTERS
 from mart.protocol.tokens import Role
 from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.video.encoder import Codec
@@ -31,7 +32,6 @@ from mart.teleop_gateway.webrtc.track import EncodedTrack
 
 _log = logging.getLogger(__name__)
 
-MAX_SDP_CHARACTERS = 64 * 1024
 MAX_STATUS_PER_S = 50
 _STALE_BYTES = 4 * 1024  # a channel with this much waiting gets no more telemetry: the next is worth more
 _GONE = ("closed", "failed")

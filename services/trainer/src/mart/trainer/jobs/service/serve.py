@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
-import queue
 from collections.abc import Iterator
 
-from mart.protocol import clock, codec, keys
-from mart.protocol.errors import Conflict, MartError
-from mart.protocol.messages import TrainerReply, TrainerRequest, error_message
+from mart.protocol import clock, keys
+from mart.protocol.errors import Conflict
+from mart.protocol.messages import TrainerReply, TrainerRequest
+from mart.protocol.queryables import TRAINING
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Request
 from mart.runtime.service import announced, connected
+from mart.runtime.serving import BoundedInbox, RequestAnswerer
 from mart.trainer.jobs.executors.executor import Executor, JobEnded, OnEnded
 from mart.trainer.jobs.executors.local import LocalExecutor
 from mart.trainer.jobs.executors.ray import RayExecutor
@@ -22,20 +23,20 @@ from mart.trainer.jobs.service.settings import TrainerSettings
 from mart.trainer.jobs.service.videos import Videos
 from mart.trainer.jobs.table import JobTable
 
-MAX_REQUEST_BYTES = 64 * 1024
+_MAX_WAITING = 256
 _LONGEST_WAIT_S = 0.5  # so that a stop is noticed, and a cluster that is back
 
-Inbox = queue.SimpleQueue[Request | JobEnded]
+Inbox = BoundedInbox[Request | JobEnded]
 
 
 def serve_trainer(settings: TrainerSettings) -> None:
     """Serve until the process is asked to stop; jobs that run then are gone on with by the next trainer."""
-    inbox: Inbox = queue.SimpleQueue()
+    inbox = Inbox(_MAX_WAITING)
     with contextlib.ExitStack() as stack:
         service = stack.enter_context(connected(settings, ServiceKind.TRAINER, settings.trainer))
         stack.enter_context(_claimed(settings))
         table = stack.enter_context(contextlib.closing(JobTable(settings.jobs_path)))
-        executors = stack.enter_context(_executors(settings, inbox.put))
+        executors = stack.enter_context(_executors(settings, inbox.put_always))
         jobs = JobQueue(table, executors, settings.data_dir)
         videos = stack.enter_context(contextlib.closing(Videos(settings.data_dir / "logs" / "render.log")))
         handlers = TrainerHandlers(
@@ -44,25 +45,19 @@ def serve_trainer(settings: TrainerSettings) -> None:
         topic = keys.training(settings.trainer)
         stack.enter_context(contextlib.closing(service.bus.serve(topic, inbox.put)))
         stack.enter_context(announced(service))
+        answerer = trainer_answerer(handlers)
         while not service.stop.is_set():
             jobs.advance(clock.wall_ns())
-            with contextlib.suppress(queue.Empty):
-                _take(inbox.get(timeout=_LONGEST_WAIT_S), handlers, jobs)
+            item = inbox.take(_LONGEST_WAIT_S)
+            if isinstance(item, JobEnded):
+                jobs.end(item, clock.wall_ns())
+            elif item is not None:
+                answerer.respond(item)
 
 
-def _take(item: Request | JobEnded, handlers: TrainerHandlers, jobs: JobQueue) -> None:
-    if isinstance(item, JobEnded):
-        jobs.end(item, clock.wall_ns())
-    else:
-        item.reply(codec.encode(_answer(handlers, item.payload)))
-
-
-def _answer(handlers: TrainerHandlers, payload: bytes) -> TrainerReply:
-    try:
-        request = codec.decode(TrainerRequest, payload, MAX_REQUEST_BYTES)
-        return handlers.handle(request)
-    except MartError as error:
-        return TrainerReply(error=error_message(error))
+def trainer_answerer(handlers: TrainerHandlers) -> RequestAnswerer[TrainerRequest, TrainerReply]:
+    """Return what answers encoded requests with `handlers`."""
+    return RequestAnswerer(TRAINING, handlers.handle)
 
 
 @contextlib.contextmanager
