@@ -87,6 +87,7 @@ declare namespace Api {
     episodes_saved: number;
     episodes_good: number;
     plan: Plan | null;
+    stop: { arm: string; name: string } | null;
     still: number;
   }
 

@@ -3,7 +3,7 @@
 declare namespace StatusChannel {
   type Input = "keyboard" | "phone";
 
-  type LetGo = "" | "new" | "tracking" | "gap" | "jump" | "age" | "picture";
+  type LetGo = "" | "new" | "tracking" | "gap" | "jump" | "age" | "picture" | "stop";
 
   interface Latency {
     p50_ms: number;
@@ -19,6 +19,7 @@ declare namespace StatusChannel {
     engaged: boolean;
     let_go: LetGo;
     gripper: number;
+    gripper_set: number;
     holding: boolean;
     barrier: Messages.BarrierPhase;
     waiting: { arm: string; since_s: number }[];

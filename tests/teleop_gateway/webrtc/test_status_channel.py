@@ -53,6 +53,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "engaged": False,
         "let_go": "",
         "gripper": 0.25,
+        "gripper_set": 1,
         "holding": False,
         "barrier": "stalled",
         "waiting": [{"arm": "arm1", "since_s": 0.8}],

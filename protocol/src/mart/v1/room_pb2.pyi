@@ -121,8 +121,18 @@ class Plan(_message.Message):
     good: int
     def __init__(self, episodes: _Optional[int] = ..., good: _Optional[int] = ...) -> None: ...
 
+class EmergencyStop(_message.Message):
+    __slots__ = ("arm", "name", "wall_ns")
+    ARM_FIELD_NUMBER: _ClassVar[int]
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    WALL_NS_FIELD_NUMBER: _ClassVar[int]
+    arm: str
+    name: str
+    wall_ns: int
+    def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ...) -> None: ...
+
 class RoomStatus(_message.Message):
-    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan")
+    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop")
     ROOM_FIELD_NUMBER: _ClassVar[int]
     TASK_FIELD_NUMBER: _ClassVar[int]
     CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -139,6 +149,7 @@ class RoomStatus(_message.Message):
     BOOT_FIELD_NUMBER: _ClassVar[int]
     REJECTED_COMMANDS_FIELD_NUMBER: _ClassVar[int]
     PLAN_FIELD_NUMBER: _ClassVar[int]
+    STOP_FIELD_NUMBER: _ClassVar[int]
     room: str
     task: str
     control_hz: float
@@ -155,7 +166,8 @@ class RoomStatus(_message.Message):
     boot: int
     rejected_commands: int
     plan: Plan
-    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ...) -> None: ...
+    stop: EmergencyStop
+    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ...) -> None: ...
 
 class SeatRequest(_message.Message):
     __slots__ = ("claim", "release", "assign", "hand_back")
@@ -204,7 +216,7 @@ class SeatRequest(_message.Message):
     def __init__(self, claim: _Optional[_Union[SeatRequest.Claim, _Mapping]] = ..., release: _Optional[_Union[SeatRequest.Release, _Mapping]] = ..., assign: _Optional[_Union[SeatRequest.Assign, _Mapping]] = ..., hand_back: _Optional[_Union[SeatRequest.HandBack, _Mapping]] = ...) -> None: ...
 
 class EpisodeRequest(_message.Message):
-    __slots__ = ("ready", "finish", "reset")
+    __slots__ = ("ready", "finish", "reset", "stop", "go_on")
     class Ready(_message.Message):
         __slots__ = ("arm", "holder_id", "ready", "number")
         ARM_FIELD_NUMBER: _ClassVar[int]
@@ -228,13 +240,29 @@ class EpisodeRequest(_message.Message):
         HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
         holder_id: str
         def __init__(self, holder_id: _Optional[str] = ...) -> None: ...
+    class Stop(_message.Message):
+        __slots__ = ("holder_id", "name")
+        HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
+        NAME_FIELD_NUMBER: _ClassVar[int]
+        holder_id: str
+        name: str
+        def __init__(self, holder_id: _Optional[str] = ..., name: _Optional[str] = ...) -> None: ...
+    class GoOn(_message.Message):
+        __slots__ = ("name",)
+        NAME_FIELD_NUMBER: _ClassVar[int]
+        name: str
+        def __init__(self, name: _Optional[str] = ...) -> None: ...
     READY_FIELD_NUMBER: _ClassVar[int]
     FINISH_FIELD_NUMBER: _ClassVar[int]
     RESET_FIELD_NUMBER: _ClassVar[int]
+    STOP_FIELD_NUMBER: _ClassVar[int]
+    GO_ON_FIELD_NUMBER: _ClassVar[int]
     ready: EpisodeRequest.Ready
     finish: EpisodeRequest.Finish
     reset: EpisodeRequest.Reset
-    def __init__(self, ready: _Optional[_Union[EpisodeRequest.Ready, _Mapping]] = ..., finish: _Optional[_Union[EpisodeRequest.Finish, _Mapping]] = ..., reset: _Optional[_Union[EpisodeRequest.Reset, _Mapping]] = ...) -> None: ...
+    stop: EpisodeRequest.Stop
+    go_on: EpisodeRequest.GoOn
+    def __init__(self, ready: _Optional[_Union[EpisodeRequest.Ready, _Mapping]] = ..., finish: _Optional[_Union[EpisodeRequest.Finish, _Mapping]] = ..., reset: _Optional[_Union[EpisodeRequest.Reset, _Mapping]] = ..., stop: _Optional[_Union[EpisodeRequest.Stop, _Mapping]] = ..., go_on: _Optional[_Union[EpisodeRequest.GoOn, _Mapping]] = ...) -> None: ...
 
 class RoomsRequest(_message.Message):
     __slots__ = ("open", "close")

@@ -26,7 +26,9 @@ from mart.protocol.messages import (
 )
 from mart.sim.room import room_messages
 from mart.sim.room.barrier import FREED_AFTER_S, Barrier, Decision, TickInputs
+from mart.sim.room.command_age import CommandAge
 from mart.sim.room.command_validation import CommandRejected, CommandRejection, validate_command
+from mart.sim.room.emergency_stop import StopLatch
 from mart.sim.room.episode_state_machine import (
     BeginEpisode,
     Effect,
@@ -36,7 +38,7 @@ from mart.sim.room.episode_state_machine import (
     Terms,
 )
 from mart.sim.room.room_publisher import REPEAT_S, RoomPublisher
-from mart.sim.room.saved_room import SavedRoom
+from mart.sim.room.saved_room import SavedRoom, SavedStop
 from mart.sim.room.seats import SeatHolder, SeatTable
 from mart.sim.room.ticker import Ticker
 from mart.sim.world import Diverged, World
@@ -70,6 +72,7 @@ class Room:
         self._barrier = Barrier(world.arms, world.control_period_s / pace, now_s)
         for seat in self._seats:
             self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
+        self._age = CommandAge(world.control_hz)
         self._terms = terms
         self._time_limit_s = terms.time_limit_s or world.task.time_limit_s
         horizon_ticks = round(self._time_limit_s / world.control_period_s)
@@ -79,6 +82,9 @@ class Room:
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
         self._status_due_s = now_s
         self._repeat_due_s = now_s
+        self._stop = StopLatch(
+            self._barrier, self._seats, record.stop, self._stop_changed, now_s, paced=not terms.lockstep
+        )
         self._remember(record)
         self._do([ResetWorld(self._episode.seed)], now_s)
 
@@ -98,9 +104,14 @@ class Room:
             received = validate_command(payload, arm, at_s, at_wall_ns)
         except CommandRejected as error:
             self._barrier.rejected[error.reason] += 1
-        else:
-            if self._barrier.offer(received) is None:
-                self._ticker.aim(received)
+            return
+        reason = self._barrier.offer(received, in_time=self._age.allows(received, self._ticker.tick))
+        if reason is None:
+            self._ticker.aim(received)
+        elif reason is CommandRejection.OLD_STATE and self._age.worth_telling(received, self._ticker.tick):
+            self._tell(room_messages.old_commands(self._seats[arm], self._age.limit_ticks))
+        if received.emergency_stop:
+            self._stop.heard(received.arm)
 
     def answer_seat(self, request: SeatRequest, now_s: float) -> RoomReply:
         """Do what a seat request asks; the reply holds the status, and the seat or an error."""
@@ -116,7 +127,13 @@ class Room:
     def answer_episode(self, request: EpisodeRequest, now_s: float) -> RoomReply:
         """Do what an episode request asks; the reply holds the status, and an error where it was refused."""
         try:
-            self._do(self._episode.answer(request, self._seats, now_s), now_s)
+            match request.WhichOneof("what"):
+                case "stop":
+                    self._stop.press(request.stop, now_s)
+                case "go_on":
+                    self._stop.let_go(request.go_on)
+                case _:
+                    self._do(self._episode.answer(request, self._seats, now_s), now_s)
         except MartError as error:
             return RoomReply(error=error_message(error), status=self.status(now_s))
         self._status_due_s = now_s
@@ -163,6 +180,7 @@ class Room:
             boot=self._boot_ns,
             rejected_commands=self.rejected.total(),
             plan=room_messages.plan(self._record),
+            stop=self._stop.message(),
         )
 
     def _fire(self, inputs: TickInputs, now_s: float) -> None:
@@ -184,6 +202,7 @@ class Room:
                         self._ticker.reset(effect.seed, self._seats, self._episode, now_s), now_s
                     )
                     self._barrier.restart(now_s)
+                    self._age.world_reset(self._ticker.tick)
                     self._tell(Event(world_reset=Event.WorldReset(seed=effect.seed)))
                 case BeginEpisode():
                     self._start(effect, now_s)
@@ -212,17 +231,14 @@ class Room:
         self._barrier.restart(now_s)
 
     def _end(self, effect: EndEpisode) -> None:
-        self._tell(
-            Event(
-                episode_ended=Event.EpisodeEnded(
-                    number=effect.number,
-                    outcome=effect.outcome,
-                    ticks=effect.ticks,
-                    reason=effect.reason,
-                    last_tick=self._ticker.tick,
-                )
-            )
+        ended = Event.EpisodeEnded(
+            number=effect.number,
+            outcome=effect.outcome,
+            ticks=effect.ticks,
+            reason=effect.reason,
+            last_tick=self._ticker.tick,
         )
+        self._tell(Event(episode_ended=ended))
 
     def _give_up(self, arm: str, now_s: float) -> None:
         name = self._seats[arm].driver.called
@@ -237,6 +253,11 @@ class Room:
         self._tell(Event(seat_changed=self._seat_message(seat)))
         self._do(self._episode.seats_changed(self._seats, now_s), now_s)
         self._status_due_s = now_s
+
+    def _stop_changed(self, pressed: SavedStop | None, event: Event) -> None:
+        self._remember(self._record.with_changes(stop=pressed))
+        self._tell(event)
+        self._status_due_s = 0.0
 
     def _tell_barrier(self, decision: Decision) -> None:
         if decision.phase in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED):

@@ -127,3 +127,12 @@ def notice(level: str, text: str) -> Event:
     event.notice.level, event.notice.text = level, text
     setattr(event.notice, "from", "sim")  # a keyword in Python
     return event
+
+
+def old_commands(seat: SeatHolder, limit_ticks: int) -> Event:
+    """Return the event that tells people why a seat's commands are refused."""
+    return notice(
+        "warning",
+        f"{seat.driver.called} at {seat.arm} does not hear the room: commands made from a state more than "
+        f"{limit_ticks} ticks old are refused.",
+    )

@@ -1,4 +1,4 @@
-"""Keep what a room knows over a restart, a crash included: seed, count of episodes, seats with their epochs."""
+"""Keep what a room knows over a restart, a crash included: seed, count of episodes, seats with their epochs, a stop."""
 
 from __future__ import annotations
 
@@ -55,6 +55,16 @@ class SavedPlan(BaseModel):
     good_before: int = Field(ge=0)
 
 
+class SavedStop(BaseModel):
+    """Store an emergency stop that is on: `name` pressed it, at `arm` where they held a seat."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    arm: str
+    name: str
+    wall_ns: int = Field(ge=0)
+
+
 class SavedRoom(BaseModel):
     """Store one room: `episodes` is the newest number; `saved` and `good` count what the recorder reported."""
 
@@ -66,6 +76,7 @@ class SavedRoom(BaseModel):
     good: int = Field(0, ge=0)
     seats: tuple[SavedSeat, ...] = ()
     plan: SavedPlan | None = None
+    stop: SavedStop | None = None
 
     def planned(self, task: str, episodes: int | None) -> SavedRoom:
         """Return it with so many good episodes of this task wanted: the same plan goes on, another begins anew."""

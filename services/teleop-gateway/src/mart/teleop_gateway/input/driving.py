@@ -52,7 +52,8 @@ class Driving:
     `first_sequence` must be above every command's number of an earlier process for the same epoch: the sim takes only
     newer ones. `picture` is what the holder sees: while it stands still, no hand counts. gripper_told: what the gripper
     was asked for in the newest tick, by whoever drove then; None: unknown. holding: the gripper has taken hold of
-    something.
+    something. stopped: an emergency stop is on. gripper_set: how often the gripper was set by other than the device in
+    use: by a reset of the world, or by the device before.
     """
 
     arm: str
@@ -63,6 +64,9 @@ class Driving:
     active: InputDevice = InputDevice.KEYBOARD
     gripper_told: float | None = None
     holding: bool = False
+    stopped: bool = False
+    gripper_set: int = 0
+    _tick: int = 0
     _grip: GripperSample | None = None
     _sources: dict[InputDevice, _Source] = field(default_factory=dict)
     _rejected: Counter[str] = field(default_factory=Counter)
@@ -91,6 +95,7 @@ class Driving:
         if source is not self.active:
             self.active = source
             self.retarget.release()
+            self._set_gripper()
 
     def set_clock(self, source: InputDevice, offset_ns: int) -> None:
         """Take the gateway's clock minus the device's, nanoseconds."""
@@ -129,8 +134,10 @@ class Driving:
         self._target = replace(target, gripper=gripper)
         return self._command(hand, self._target, sent_ns, now_ns)
 
-    def see(self, arm: ArmState, sim_time_s: float) -> None:
+    def see(self, arm: ArmState, tick: int, sim_time_s: float, now_s: float) -> None:
         """Take how the arm is after the newest tick, whoever drove it."""
+        self._tick = tick
+        self.picture.on_state(tick, now_s)
         self.gripper_told = (arm.action[-1] + 1.0) / 2.0 if arm.action else arm.gripper
         grip = GripperSample(arm.gripper, self.gripper_told, sim_time_s)
         self.holding = bool(arm.action) and holds(self.holding, self._grip, grip)
@@ -139,18 +146,22 @@ class Driving:
     def _unless_blind(
         self, validator: FrameValidator, hand: HandSample, sent_ns: int, now_s: float, now_ns: int
     ) -> HandSample:
-        """Return the hand, let go where it is too old or its person sees nothing move."""
+        """Return the hand, let go where it is too old, its person sees nothing move, or everything is stopped."""
         if hand.clutch and sent_ns and now_ns - sent_ns > MAX_FRAME_AGE_NS:
             validator.rejected[FrameRejection.AGE] += 1
             return validator.let_go(hand, LetGo.AGE)
+        if self.stopped:
+            return validator.let_go(hand, LetGo.STOP)
         if hand.clutch and self.picture.stands_still(now_s):
             return validator.let_go(hand, LetGo.PICTURE)
         return hand
 
     def world_was_reset(self) -> None:
-        """Let go of everything: targets from before the reset mean nothing now."""
+        """Let go of everything: targets from before the reset mean nothing now. The gripper begins open."""
         self._target = None
         self.retarget.forget()
+        self.gripper_told = 0.0
+        self._set_gripper()
 
     def lost(self, now_s: float) -> bool:
         """Tell whether the input in use has been silent for too long."""
@@ -186,6 +197,12 @@ class Driving:
         """Return the number of the frame that became this command; None where it was not this process's."""
         return self._frame_numbers.get(sequence)
 
+    def _set_gripper(self) -> None:
+        """Tell that the gripper is not where a device left it: devices follow, and count once they say otherwise."""
+        self.gripper_set += 1
+        for peer in self._sources.values():
+            peer.grips = False
+
     def _keep_counts(self, source: InputDevice) -> None:
         if source in self._sources:
             self._rejected += _counts(self._sources[source].validator)
@@ -208,13 +225,19 @@ class Driving:
                 gateway_received_ns=now_ns,
             ),
             seen_tick=hand.frame.seen_tick,
+            state_tick=self._tick,
             emergency_stop=Flag.EMERGENCY_STOP in hand.frame.flags,
         )
 
 
 def _means_its_gripper(hand: HandSample, before: HandSample | None) -> bool:
-    """Tell whether a hand's gripper counts: who has just come does not know what it holds, and must drop nothing."""
-    return hand.clutch or (before is not None and hand.frame.gripper != before.frame.gripper)
+    """Tell whether a hand's gripper counts: who does not know what it holds must drop nothing.
+
+    It is meant where it changes, and where the clutch is pressed.
+    """
+    if before is None:
+        return hand.clutch
+    return (hand.clutch and not before.clutch) or hand.frame.gripper != before.frame.gripper
 
 
 def _counts(validator: FrameValidator) -> Counter[str]:

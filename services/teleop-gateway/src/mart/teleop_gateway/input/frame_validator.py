@@ -49,6 +49,7 @@ class LetGo(enum.StrEnum):
     JUMP = "jump"  # it was somewhere else at once
     AGE = "age"  # the frame was on its way for too long
     PICTURE = "picture"  # what the person drives by stood still
+    STOP = "stop"  # an emergency stop was on
 
 
 class _Rejected(Exception):

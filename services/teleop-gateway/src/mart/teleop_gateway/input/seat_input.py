@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import Unavailable
-from mart.protocol.messages import ArmState, Command, RoomStatus
+from mart.protocol.messages import BARRIER_PHASE_STOPPED, ArmState, Command, RoomStatus
 from mart.protocol.pose import Pose
 from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.change_signal import ChangeSignal
@@ -64,9 +64,11 @@ class SeatInput:
     # What the room says
 
     def on_status(self, status: RoomStatus) -> None:
-        """Take who holds the seat."""
+        """Take who holds the seat, and whether everything is stopped."""
         self._epoch = served_epochs(status).get(self._seat)
         self._renew()
+        if self.driving is not None:
+            self.driving.stopped = status.barrier == BARRIER_PHASE_STOPPED
 
     def on_camera_azimuth(self, azimuth_rad: float) -> None:
         """Take where the seat's camera looks: a hand's motion is turned by it."""
@@ -82,8 +84,7 @@ class SeatInput:
         known = None if was_reset else self._tool
         self._tool = known.after(tool_in_base, sim_time_s) if known else ToolMotion(tool_in_base, sim_time_s)
         if self.driving is not None:
-            self.driving.see(arm, sim_time_s)
-            self.driving.picture.on_state(tick, clock.monotonic_s())
+            self.driving.see(arm, tick, sim_time_s, clock.monotonic_s())
             if was_reset:
                 self.driving.world_was_reset()
 

@@ -121,6 +121,7 @@ def tick(
             "engaged": driving.engaged(now_s),
             "let_go": driving.let_go(now_s) or "",
             "gripper": round(driving.gripper, 3),
+            "gripper_set": driving.gripper_set,
             "holding": driving.holding,
             "barrier": barrier_word(room.barrier),
             "waiting": [{"arm": w.arm, "since_s": round(w.since_s, 2)} for w in room.waiting_for],

@@ -114,6 +114,21 @@ async def phone_token(room: str, arm: str, app: App, authorization: Authorizatio
     return {"token": _sign(app, replace(paired, epoch=seat.epoch)), "epoch": seat.epoch}
 
 
+@router.post("/rooms/{room}/seats/{arm}/stop")
+async def stop_by_phone(room: str, arm: str, app: App, authorization: Authorization = "") -> Json:
+    """Stop everything in the room of a phone, until somebody lets go; send its name."""
+    paired = _claims(app, room, arm, authorization)
+    await app.rooms.stop(room, paired.holder_id, _name_of(app, paired))
+    return {"room": room}
+
+
+@router.delete("/rooms/{room}/seats/{arm}/stop")
+async def let_go_of_stop_by_phone(room: str, arm: str, app: App, authorization: Authorization = "") -> Json:
+    """Let everything go on in the room of a phone, whoever stopped it; send its name."""
+    await app.rooms.let_go_of_stop(room, _name_of(app, _claims(app, room, arm, authorization)))
+    return {"room": room}
+
+
 @router.post("/rooms/{room}/seats/{arm}/offer")
 async def offer(room: str, arm: str, body: SdpOffer, app: App, authorization: Authorization = "") -> Json:
     """Have the seat's gateway answer an offer and send the answer."""
@@ -136,6 +151,12 @@ def _claims(app: AppState, room: str, arm: str, authorization: str) -> SeatToken
     if (claims.room, claims.arm) != (room, arm):
         raise Forbidden(f"This seat token is for {claims.arm} in {claims.room}, not for {arm} in {room}.")
     return claims
+
+
+def _name_of(app: AppState, paired: SeatToken) -> str:
+    """Return what others call whoever holds this token."""
+    seat = _seat(app, paired.room, paired.arm)
+    return seat.name if seat.holder_id == paired.holder_id and seat.name else "A phone"
 
 
 def _seat(app: AppState, room: str, arm: str) -> Seat:

@@ -8,6 +8,7 @@ const WHY = {
   jump: "The hand jumped.",
   age: "Your hand arrives more than a second late.",
   picture: "The picture stood still.",
+  stop: "Everything was stopped.",
 };
 
 /**
