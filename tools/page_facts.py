@@ -17,7 +17,7 @@ from pydantic import BaseModel
 
 from mart.platform.run.room_manager import MAX_EPISODES
 from mart.protocol.control_rate import OFFERED_CONTROL_HZ
-from mart.protocol.tasks import MAX_ARMS, Arm, get_task
+from mart.protocol.tasks import MAX_ARMS, Arm, get_task, task_names
 from mart.trainer.models.architecture import PAPER, ModelSpec
 from mart.trainer.train.presets import PRESETS
 from mart.v1.catalogue_pb2 import CatalogueReply
@@ -68,6 +68,8 @@ def _facts() -> Iterator[tuple[str, str, object]]:
     axes = {axis: get_args(ModelSpec.model_fields[axis].annotation) for axis in _AXES}
     yield "The arms that a task may have.", "ARMS", [arm.name for arm in _arms()]
     yield "The shape that stands for each arm.", "ARM_SYMBOLS", {arm.name: arm.symbol for arm in _arms()}
+    titles = {task: get_task(task).title for task in task_names()}
+    yield "The tasks as people call them.", "TASK_TITLES", titles
     yield "What partners can say by one press, in the order of the keys.", "CUES", _words(Cue.DESCRIPTOR)
     yield "ModelSpec architectures: who can plan, who can act, who can correct.", "MODEL_AXES", axes
     yield "The paper's models, in the order of its table.", "PAPER_MODELS", list(PAPER)

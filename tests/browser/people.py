@@ -96,8 +96,12 @@ class BrowserUser:
         return Phone(page)
 
     def press(self, command: str) -> None:
-        """A button of the status bar: ready, success, failure, discard."""
-        self.page.locator(f"#actions button[data-command={command}]").click()
+        """A button of the status bar: ready, success, failure, discard; what ends an episode is pressed twice."""
+        button = self.page.locator(f"#actions button[data-command={command}]")
+        button.click()
+        if command != "ready":
+            expect(button).to_contain_text("Press again")
+            button.click()
 
     def sees(self, label: str) -> None:
         """The status bar says so."""

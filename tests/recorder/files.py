@@ -49,6 +49,7 @@ def write_part(
 def _write_tick(file: EpisodeWriter, episode: EpisodeAccumulator, state: State) -> None:
     at_ns = synthetic.wall_ns(state.tick)
     command = synthetic.command(state.episode_tick + 1)
+    episode.add_command("arm0", command)
     file.add(command_entry("arm0", command, codec.encode(command), at_ns))
     video = synthetic.video(state.tick, is_key=state.tick % 10 == 0)
     file.add(video_entry("arm0", video, codec.encode(video), at_ns))

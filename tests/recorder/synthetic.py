@@ -134,6 +134,11 @@ def command(sequence: int, arm: str = "arm0") -> Command:
     return Command(arm=arm, seat_epoch=3, sequence=sequence, stamps=stamps, source=OPERATOR_HUMAN)
 
 
+def commands_of(state: State) -> list[Command]:
+    """The commands that a state names."""
+    return [command(arm.sequence, arm.arm) for arm in state.arms if arm.fresh]
+
+
 def started(number: int = 1, tick: int = 0) -> Event:
     return Event(
         wall_ns=wall_ns(tick),

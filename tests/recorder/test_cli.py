@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 
 from mart.episodes.labels import LabelKind, read
+from mart.protocol.messages import ENDED_BY_OPERATOR
+from mart.recorder.record.finalize import finalize
 from tests.recorder import synthetic
 from tests.recorder.conftest import Mart
-from tests.recorder.files import write_part
+from tests.recorder.files import by_toy_replica, write_part
 
 
 def test_list_json_has_what_scripts_ask_for(mart: Mart, path: Path) -> None:
@@ -36,6 +38,33 @@ def test_list_takes_files_and_folders(mart: Mart, path: Path, what: str) -> None
 def test_a_day_gets_no_catalogue_of_its_own(mart: Mart, path: Path) -> None:
     mart("episodes", "list", path.parent)
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
+
+
+def test_list_tells_a_success_that_was_only_said(mart: Mart) -> None:
+    states = synthetic.states(5)
+    for name in ("lift", "carry", "put"):
+        states[-1].progress.subtasks.add(name=name)
+    file, episode, facts = write_part(mart.episodes_dir, states)
+    end = synthetic.ended(5)
+    end.episode_ended.ended_by = ENDED_BY_OPERATOR
+    episode.add_event(end)
+    saved = finalize(file, episode, facts, mart.episodes_dir, by_toy_replica, repaired=False)
+    assert re.search(r"success .*said by an operator, 0 of 3 steps", mart("episodes", "list"))
+    shown = mart.json("episodes", "show", saved.path)
+    assert (shown["ended_by"], shown["subtasks_done"], shown["subtasks"]) == ("operator", 0, 3)
+
+
+def test_check_counts_what_a_file_lacks(mart: Mart, path: Path) -> None:
+    assert mart("episodes", "check", path) == f"{path}: whole.\n"
+    states = synthetic.states(5)
+    states[-1].arms[0].sequence = 99
+    file, episode, facts = write_part(mart.episodes_dir, [*synthetic.without(states, 3)])
+    saved = finalize(file, episode, facts, mart.episodes_dir, by_toy_replica, repaired=False)
+    lacking = mart.json("episodes", "check", saved.path, code=1)["episodes"]
+    assert [(one["missing_ticks"], one["missing_commands"], one["whole"]) for one in lacking] == [
+        (1, 2, False)
+    ]
+    assert "2 commands missing" in mart("episodes", "list", saved.path)
 
 
 def test_without_episodes_it_says_so(mart: Mart) -> None:

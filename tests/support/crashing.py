@@ -41,7 +41,7 @@ def kill_seat_process(platform: Platform, arm: str) -> None:
 
 
 def _service_pid(data_dir: Path, command: str) -> int:
-    supervisor = int((data_dir / "run" / "supervisord.pid").read_text())
+    supervisor = int(next(data_dir.glob("run/**/supervisord.pid")).read_text())
     (pid,) = (child for child in _children(supervisor) if command in _words(child)[:3])
     return pid
 

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from mart.platform.run.folder_claim import claim_holder
+from mart.platform.run.platform_processes import processes_of
 from mart.protocol import codec, keys
 from mart.protocol.messages import RoomsRequest, RoomStatus
 from mart.runtime.bus.zenoh_bus import ZenohBus
@@ -22,10 +24,7 @@ from tests.support.message_collector import MessageCollector
 _MART = str(Path(sys.executable).with_name("mart"))
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_it_serves_until_it_is_asked_to_stop_and_leaves_nothing_behind(
-    tmp_path: Path, number: signal.Signals
-) -> None:
+def test_it_serves_until_its_terminal_is_closed_and_leaves_nothing_behind(tmp_path: Path) -> None:
     port = free_port()
     environment = _environment(tmp_path)
     with _running([_MART, "run", "--json", "--port", str(port)], environment) as process:
@@ -41,12 +40,35 @@ def test_it_serves_until_it_is_asked_to_stop_and_leaves_nothing_behind(
             [_MART, "run", "--port", str(port)], env=environment, capture_output=True, text=True, check=False
         )
         assert second.returncode != 0
-        assert "is MART running already?" in second.stderr
-        children = _supervised(tmp_path)
-        assert len(children) == 10
-        process.send_signal(number)
+        assert f"process {process.pid} at https://localhost:{port}/" in second.stderr
+        assert len(_supervised(tmp_path)) == 10
+        mark = _mark(tmp_path)
+        process.send_signal(signal.SIGHUP)
         assert process.wait(60) == 0
-    assert not [pid for pid in children if Path(f"/proc/{pid}").exists()]
+    assert not processes_of(mark)
+
+
+@pytest.mark.timeout(180)
+def test_a_killed_one_leaves_nothing_in_the_way_of_the_next_and_a_killed_supervisor_is_told(
+    tmp_path: Path,
+) -> None:
+    command = [_MART, "run", "--json", "--port", str(free_port())]
+    environment = _environment(tmp_path)
+    with _running(command, environment) as process:
+        assert process.stdout is not None
+        assert json.loads(process.stdout.readline())["url"]
+        killed = _mark(tmp_path)
+        process.kill()
+    with _running(command, environment) as process:
+        assert process.stdout is not None
+        assert json.loads(process.stdout.readline())["url"]
+        assert not processes_of(killed)
+        mark = _mark(tmp_path)
+        os.kill(int((tmp_path / "run" / "supervisord.pid").read_text()), signal.SIGKILL)
+        assert process.stderr is not None
+        assert "supervisor of the services" in process.stderr.read()
+        assert process.wait(60) == 1
+    assert not processes_of(mark)
 
 
 def test_a_room_that_was_opened_comes_back_with_its_plan(tmp_path: Path) -> None:
@@ -76,11 +98,18 @@ def _environment(data_dir: Path) -> dict[str, str]:
 @contextlib.contextmanager
 def _running(command: list[str], environment: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
     """Ends with the test, also where that fails."""
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, text=True) as process:
         try:
             yield process
         finally:
             process.terminate()
+
+
+def _mark(data_dir: Path) -> str:
+    holder = claim_holder(data_dir / "run")
+    assert holder is not None
+    return holder.mark
 
 
 def _supervised(data_dir: Path) -> list[int]:

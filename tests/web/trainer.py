@@ -55,6 +55,7 @@ class Trainer:
         self.jobs = _jobs() if jobs else []
         self.promoted: dict[str, PromotedPolicy] = {}
         self.rendered = False
+        self.refusal = ""
         with contextlib.ExitStack() as opened:
             opened.enter_context(contextlib.closing(bus.serve(keys.training("trainer-1"), self._on_request)))
             opened.enter_context(
@@ -117,6 +118,8 @@ class Trainer:
         raise NotFound.named("job", id, (job.id for job in self.jobs))
 
     def _submit(self, submit: TrainerRequest.Submit) -> TrainerReply:
+        if self.refusal:
+            raise Conflict(self.refusal)
         new: list[Job] = []
         for model in submit.models:
             order = Order(model=model, task=submit.tasks[0])

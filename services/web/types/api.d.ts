@@ -56,6 +56,9 @@ declare namespace Api {
     elapsed_s: number;
     outcome: Messages.Outcome | "unspecified";
     reason: string;
+    ended_by: string;
+    ended_by_name: string;
+    ended_by_arm: string;
   }
 
   interface Subtask {
@@ -67,6 +70,23 @@ declare namespace Api {
   interface Plan {
     episodes: number;
     good: number;
+  }
+
+  interface SavedFile {
+    path: string;
+    verified: boolean;
+    verdict: string;
+    size_bytes: number;
+    outcome: Messages.Outcome | "unspecified";
+  }
+
+  interface LastEpisode {
+    number: number;
+    outcome: Messages.Outcome | "unspecified";
+    reason: string;
+    since_s: number;
+    epochs: Record<string, number>;
+    saved: SavedFile | null;
   }
 
   interface Room {
@@ -88,7 +108,9 @@ declare namespace Api {
     episodes_good: number;
     plan: Plan | null;
     stop: { arm: string; name: string } | null;
+    unrecorded: string;
     still: number;
+    last_episode: LastEpisode | null;
   }
 
   type EpisodeAction = "ready" | "unready" | "success" | "failure" | "discard" | "reset";
@@ -110,16 +132,11 @@ declare namespace Api {
     cue: Messages.Cue;
   }
 
-  interface EpisodeSaved {
+  interface EpisodeSaved extends SavedFile {
     id: number;
     room: string;
     kind: "episode_saved";
     number: number;
-    path: string;
-    verified: boolean;
-    verdict: string;
-    size_bytes: number;
-    outcome: Messages.Outcome | "unspecified";
   }
 
   type RoomEvent = Notice | CueGiven | EpisodeSaved;
@@ -137,6 +154,7 @@ declare namespace Api {
     token: string;
     role: PeerRole;
     epoch: number;
+    ice_servers: RTCIceServer[];
   }
 
   interface Pairing {

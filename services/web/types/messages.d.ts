@@ -165,6 +165,12 @@ declare namespace Messages {
     note: string;
     dropped: boolean;
     datasets: string[];
+    missing_commands?: number;
+    ended_by: string;
+    ended_by_name: string;
+    ended_by_arm: string;
+    subtasks_done?: number;
+    subtasks?: number;
   }
 
   interface RecordedView {

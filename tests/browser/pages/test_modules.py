@@ -94,6 +94,16 @@ def test_a_drag_is_followed_whole_but_never_in_a_jump(run: Run) -> None:
     assert hand["longest"] <= 0.8 * 0.016 * 1.001
 
 
+def test_a_drag_of_one_finger_two_or_with_shift_reaches_every_direction(run: Run) -> None:
+    def drag(fingers: int, turns: bool) -> Any:
+        asked = {"x": 0.1, "y": 0.2, "fingers": fingers, "turns": turns}
+        return run("drive/gestures.js", "({ dragOf }, drag) => Object.values(dragOf(drag)).flat()", asked)
+
+    assert drag(1, False) == pytest.approx([0.14, -0.28, 0, 0, 0, 0])
+    assert drag(2, False) == pytest.approx([0, 0, 0.14, 0, 0.25, 0])
+    assert drag(1, True) == pytest.approx([0, 0, 0, 1.0, 0.5, 0])
+
+
 def test_an_open_clutch_moves_nothing(run: Run) -> None:
     hand = moved(run, False, [1, 1, 1], [0.4, 0, 0])
     assert (hand["position"], hand["quaternion"]) == ([0, 0, 0], [1, 0, 0, 0])

@@ -106,7 +106,29 @@ def test_an_outcome_takes_two_presses_and_a_moving_hand_none(browser: Browser, p
         expect(label).to_have_text("Recording")
         page.keyboard.press("r")
         expect(label).to_have_text("Discarded")
-        expect(page.locator("#state-detail")).to_contain_text("labelled discarded")
+        expect(page.locator("#state-detail")).to_contain_text("left out of data sets")
+        page.get_by_role("button", name="Keep it, as failed").click()
+        expect(label).to_have_text("Failed")
+        expect(page.locator("#state-detail")).to_contain_text("Saved and verified")
+
+
+def test_what_was_looked_at_gives_space_back_to_the_arm(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        for _ in range(2):
+            page.locator("#health summary").click()
+        page.keyboard.down("Space")
+        expect(page.locator("#clutch")).to_have_text("Moving")
+        page.keyboard.up("Space")
+        assert not page.locator("#health").evaluate("details => details.open")
+
+
+def test_practice_is_reset_by_a_key(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        expect(page.locator("#subtasks li")).to_have_count(2)
+        with page.expect_response("**/api/rooms/room-1/episode") as answered:
+            page.keyboard.press("r")
+        assert answered.value.ok
+        assert answered.value.request.post_data_json == {"action": "reset", "arm": "arm0"}
 
 
 def test_help_and_gripper_have_keys(browser: Browser, platform: Platform) -> None:
@@ -138,6 +160,9 @@ def test_dragging_the_picture_moves_the_arm(browser: Browser, platform: Platform
         page.mouse.move(760, 380, steps=5)
         expect(page.locator("#clutch")).to_have_text("Moving")
         page.mouse.up()
+        expect(page.locator("#clutch")).to_contain_text("Hold space")
+        page.mouse.wheel(0, -200)
+        expect(page.locator("#clutch")).to_have_text("Moving")
         expect(page.locator("#clutch")).to_contain_text("Hold space")
 
 

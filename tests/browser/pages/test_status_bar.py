@@ -12,13 +12,16 @@ LIVE = {"state": "live", "problem": "", "role": "browser"}
 
 
 def seat(arm: str = "arm0", operator: str = "human", name: str = "Ana", **more: Any) -> dict[str, Any]:
-    return {"arm": arm, "operator": operator, "name": name, "ready": False, "mine": False, **more}
+    return {"arm": arm, "operator": operator, "name": name, "ready": False, "mine": False, "epoch": 7, **more}
 
 
 def room(*seats: dict[str, Any], phase: str = "practice", **episode: Any) -> dict[str, Any]:
     return {
         "seats": list(seats),
         "stale": False,
+        "last_episode": None,
+        "plan": None,
+        "progress": {"subtasks": [{"title": "Cube 0 is up", "done": False}] * 3, "success": False},
         "barrier": "running",
         "instruction": "Lift.",
         "time_limit_s": 15,
@@ -27,10 +30,11 @@ def room(*seats: dict[str, Any], phase: str = "practice", **episode: Any) -> dic
 
 
 def view(run: Run, the_room: dict[str, Any] | None, **more: Any) -> dict[str, Any]:
-    known = {"room": the_room, "seat": the_room and the_room["seats"][0], "link": LIVE, "saved": None, **more}
+    known = {"room": the_room, "seat": the_room and the_room["seats"][0], "link": LIVE, **more}
     shown: dict[str, Any] = run(
         "hud/status-bar-view.js", "({ statusBarView }, known) => statusBarView(known)", known
     )
+    shown["primary"] = [action["command"] for action in shown["actions"] if action.get("look") == "primary"]
     shown["actions"] = [action["command"] for action in shown["actions"]]
     return shown
 
@@ -40,12 +44,18 @@ RELIEVING = seat(mine=True, relieved="lifter")
 OUTCOMES = ["success", "failure", "discard"]
 READY = seat(mine=True, ready=True)
 SAVED = {"path": "episodes/x.mcap", "verified": True, "verdict": "", "size_bytes": 2_345_678}
+LAST = {"number": 1, "outcome": "failure", "reason": "time is up", "since_s": 1.0, "epochs": {"arm0": 7}}
+
+
+def after(*, saved: dict[str, Any] | None = SAVED, **last: Any) -> dict[str, Any]:
+    """A room in practice after an episode of the same people."""
+    return room(MINE) | {"last_episode": LAST | {"saved": saved} | last}
 
 
 @pytest.mark.parametrize(
     ("the_room", "label", "actions"),
     [
-        (room(MINE), "Practice", ["ready"]),
+        (room(MINE), "Practice", ["ready", "reset"]),
         (room(READY, seat("arm1", name="Ben")), "Ready", ["unready"]),
         (room(MINE, phase="countdown", remaining_s=2.2), "Starts in", []),
         (room(MINE, phase="recording", elapsed_s=42.9), "Recording", OUTCOMES),
@@ -54,12 +64,12 @@ SAVED = {"path": "episodes/x.mcap", "verified": True, "verdict": "", "size_bytes
         (room(seat(operator="script", name="")), "Practice", ["take", "ready"]),
         (room(seat(operator="policy", name="lifter"), phase="recording"), "Recording", ["take", *OUTCOMES]),
         (room(seat(operator="policy", name="lifter"), seat("arm1")), "Practice", ["take"]),
-        (room(RELIEVING), "Practice", ["ready", "back"]),
+        (room(RELIEVING), "Practice", ["ready", "reset", "back"]),
         (room(RELIEVING, phase="recording"), "Recording", [*OUTCOMES, "back"]),
         (room(seat(name="Ben")), "Watching", ["lobby"]),
         (room(seat(operator="hold", name=""), seat("arm1", mine=True)), "Watching", ["lobby"]),
         (None, "No such seat", ["lobby"]),
-        (room(MINE) | {"stale": True}, "The room is silent", []),
+        (room(MINE) | {"stale": True}, "The simulation does not answer", []),
         (room(MINE) | {"barrier": "stopped"}, "Stopped", []),
     ],
 )
@@ -90,8 +100,8 @@ def test_the_plan_is_told_and_stops_nobody(run: Run, plan: dict[str, int] | None
     for phase in ("practice", "countdown", "recording", "ended"):
         assert view(run, room(MINE, phase=phase) | {"plan": plan})["plan"] == words
     shown = view(run, room(MINE) | {"plan": plan})
-    assert shown["actions"] == ["ready"]
-    assert ("you may go on" in shown["detail"]) == ("recorded" in words)
+    assert shown["actions"] == ["ready", "reset"]
+    assert ("you may go on" in shown["hint"]) == ("recorded" in words)
 
 
 def test_people_are_named_when_they_wait_for_each_other(run: Run) -> None:
@@ -100,16 +110,46 @@ def test_people_are_named_when_they_wait_for_each_other(run: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    ("outcome", "label", "words"),
+    ("outcome", "label", "actions", "words"),
     [
-        ("success", "Success", "Saved and verified: episodes/x.mcap (2.3 MB)"),
-        ("unspecified", "Interrupted", "Saved and verified: episodes/x.mcap (2.3 MB)"),
-        ("discarded", "Discarded", "Kept, and labelled discarded: episodes/x.mcap (2.3 MB)"),
+        ("success", "Success", ["ready", "reset"], "Saved and verified: episodes/x.mcap (2.3 MB)."),
+        ("unspecified", "Interrupted", ["ready", "reset"], "Saved and verified: episodes/x.mcap (2.3 MB)."),
+        ("discarded", "Discarded", ["ready", "keep", "reset"], "left out of data sets: episodes/x.mcap"),
     ],
 )
-def test_after_an_episode_the_file_is_named(run: Run, outcome: str, label: str, words: str) -> None:
-    shown = view(run, room(MINE), saved=SAVED | {"outcome": outcome})
-    assert (shown["label"], shown["detail"], shown["actions"]) == (label, words, ["ready"])
+def test_after_an_episode_the_file_is_named(
+    run: Run, outcome: str, label: str, actions: list[str], words: str
+) -> None:
+    shown = view(run, after(outcome=outcome))
+    assert (shown["label"], shown["actions"]) == (label, actions)
+    assert words in shown["detail"]
+    assert shown["primary"] == ["ready"]
+
+
+def test_an_episode_is_told_from_its_end_until_the_next_one_begins(run: Run) -> None:
+    ended = view(run, room(MINE, phase="ended", outcome="failure", reason="time is up"))
+    saving, saved = view(run, after(saved=None)), view(run, after())
+    assert (ended["label"], ended["detail"]) == ("Failed", "Time is up. Saving…")
+    assert (saving["label"], saving["detail"]) == ("Failed", "Time is up. Saving…")
+    assert (saved["label"], saved["detail"][:32]) == ("Failed", "Time is up. Saved and verified: ")
+    assert "Not saved yet, 42.0 s" in view(run, after(saved=None, since_s=42.0))["detail"]
+
+
+def test_whoever_sits_down_afterwards_is_told_of_the_goal_instead(run: Run) -> None:
+    assert view(run, after(epochs={"arm0": 6}))["label"] == "Practice"
+
+
+def test_no_button_is_meant_while_it_records_and_open_steps_are_asked_about(run: Run) -> None:
+    recording = room(MINE, phase="recording")
+    assert view(run, recording)["primary"] == []
+    assert "0 of 3 steps are done" in view(run, recording, pending="success")["detail"]
+    assert "steps" not in view(run, recording, pending="failure")["detail"]
+
+
+def test_practice_says_the_goal_and_that_it_was_reached(run: Run) -> None:
+    assert view(run, room(MINE))["detail"] == "Lift."
+    reached = view(run, room(MINE), reached=True)
+    assert (reached["label"], reached["primary"]) == ("That is it!", ["ready"])
 
 
 def test_a_lost_connection_is_said(run: Run) -> None:
@@ -125,5 +165,6 @@ def test_a_replaced_page_waits_to_be_asked(run: Run) -> None:
 
 
 def test_a_newcomer_is_told_the_first_moves(run: Run) -> None:
-    assert "Hold space" in view(run, room(MINE), isNew=True)["detail"]
-    assert "Nothing is recorded" in view(run, room(MINE), isNew=False)["detail"]
+    assert "Hold space" in view(run, room(MINE), isNew=True)["hint"]
+    assert "Two fingers" in view(run, room(MINE), isNew=True, touch=True)["hint"]
+    assert "Nothing is recorded" in view(run, room(MINE), isNew=False)["hint"]

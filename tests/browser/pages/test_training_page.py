@@ -13,6 +13,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mart.protocol.messages import OPERATOR_POLICY
+from mart.protocol.tasks import get_task
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.ports import free_port
 from tests.browser.pages.joined import joined
@@ -64,9 +65,10 @@ def trainer(site: RunningSite) -> Iterator[Trainer]:
 
 
 def page_of(
-    browser: Browser, site: RunningSite, size: str = "wide", scheme: str = "light"
+    browser: Browser, site: RunningSite, size: str = "wide", scheme: str = "light", refused: bool = False
 ) -> AbstractContextManager[Page]:
-    return joined(browser, site.url, site.join_code, "training", size=size, scheme=scheme)
+    url, code = site.url, site.join_code
+    return joined(browser, url, code, "training", size=size, scheme=scheme, refused=refused)
 
 
 @pytest.mark.parametrize(("size", "scheme"), LOOKS)
@@ -126,6 +128,34 @@ def test_the_task_is_that_of_the_episodes(browser: Browser, site: RunningSite, t
         expect(task).to_have_value(OTHER_TASK)
 
 
+def test_a_refusal_stands_beside_the_button_until_the_form_changes(
+    browser: Browser, site: RunningSite, trainer: Trainer
+) -> None:
+    trainer.refusal = "There is no successful episode of this task; record some."
+    with page_of(browser, site, refused=True) as page:
+        page.get_by_role("button", name="Train r-HBC").click()
+        refusal = page.locator("#order").get_by_role("alert")
+        expect(refusal).to_have_text(trainer.refusal)
+        with page.expect_response("**/api/training/jobs"):  # what is asked every 2 s wipes nothing
+            pass
+        with page.expect_response("**/api/training/jobs"):
+            pass
+        expect(refusal).to_be_in_viewport()
+        page.get_by_label("Seeds").fill("2")
+        expect(refusal).to_have_text("")
+
+
+def test_only_tasks_of_the_chosen_episodes_can_be_trained(
+    browser: Browser, site: RunningSite, trainer: Trainer
+) -> None:
+    with page_of(browser, site) as page:
+        tasks = page.locator("#order select").nth(1)
+        expect(
+            tasks.locator("option", has_text=f"{get_task(OTHER_TASK).title}: no episodes here")
+        ).to_be_disabled()
+        expect(tasks.locator("option", has_text="Multi-cube lifting")).to_be_enabled()
+
+
 def test_a_checkpoint_is_promoted_and_seated(browser: Browser, site: RunningSite, trainer: Trainer) -> None:
     with page_of(browser, site) as page:
         page.locator(".run strong:text-is('d-HBC')").click()
@@ -136,6 +166,7 @@ def test_a_checkpoint_is_promoted_and_seated(browser: Browser, site: RunningSite
         page.get_by_role("button", name="Seat lifter").click()
         expect(page.get_by_label("Where lifter sits").locator("option")).to_have_count(1)
         assert site.room.seats["arm1"].operator == OPERATOR_POLICY
+        expect(page.locator(".policy")).to_contain_text("Drives the orange arm, room-1")
         page.goto(site.url)
         machine = page.get_by_label("Who drives the orange arm in room-1")
         expect(machine).to_have_value("policy lifter")

@@ -37,6 +37,8 @@ def test_episodes_are_added_up() -> None:
         "verified": 2,
         "mean_simulated_s": 4.25,
         "ticks": 340,
+        "missing_ticks": 0,
+        "missing_commands": 0,
         "wall_s": 8.0,
         "episodes_per_s": 0.5,
     }

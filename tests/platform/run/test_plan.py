@@ -31,12 +31,14 @@ def test_options_reach_the_commands() -> None:
 
 
 def test_in_lockstep_there_are_rooms_and_who_saves_and_nobody_who_looks() -> None:
-    options = PlatformOptions(Path("data"), task="t", seed=7, skill="novice", time_limit_s=12.5)
+    options = PlatformOptions(
+        Path("data"), room="collect-1", task="t", seed=7, skill="novice", time_limit_s=12.5
+    )
     plan = lockstep_processes(options, rooms=2)
     assert sorted(process.kind for process in plan) == ["recorder", "replica", "router", "sim", "sim"]
     sims = [" ".join(process.command) for process in plan if process.kind == "sim"]
     assert sims == [
-        f"sim --room room-{number} --task t --control-hz 20 --seed 7 --skill novice --time-limit-s 12.5 --lockstep"
+        f"sim --room collect-{number} --task t --control-hz 20 --seed 7 --skill novice --time-limit-s 12.5 --lockstep"
         for number in (1, 2)
     ]
 

@@ -23,7 +23,7 @@ from mart.platform.run.room_manager import (
 )
 from mart.platform.run.supervisor import Supervisor
 from mart.protocol import clock
-from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound
+from mart.protocol.errors import Conflict, InvalidInput, MartError, NotFound, Unavailable
 from mart.protocol.messages import (
     EPISODE_PHASE_RECORDING,
     OPERATOR_HUMAN,
@@ -227,3 +227,23 @@ def test_a_room_whose_sim_is_gone_can_be_closed_though_people_sat_there(
     statuses.hear(status_of("Ana"), clock.monotonic_s() - 2 * SILENCE_S)
     close(rooms, "room-1")
     assert rooms.names == []
+
+
+@pytest.mark.parametrize("failure", [OSError(28, "No space left on device"), Unavailable("It is gone.")])
+def test_a_room_that_the_supervisor_was_not_told_of_is_not_open(
+    rooms: RoomManager, supervisor: Supervisor, monkeypatch: pytest.MonkeyPatch, failure: Exception
+) -> None:
+    """Nor is one closed that still runs; and the next try may succeed."""
+
+    def fail() -> None:
+        raise failure
+
+    with monkeypatch.context() as broken:
+        broken.setattr(supervisor, "_update", fail)
+        with pytest.raises(Unavailable):
+            opened(rooms, room="lab")
+        with pytest.raises(Unavailable):
+            close(rooms, "room-1")
+    assert rooms.names == ["room-1"]
+    assert "sim-lab" not in supervisor.config.read_text()
+    assert opened(rooms, room="lab") == "lab"

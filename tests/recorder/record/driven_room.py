@@ -5,16 +5,21 @@ from __future__ import annotations
 from mart.episodes.mcap_entries import McapEntry
 from mart.protocol import codec, recording
 from mart.protocol.messages import (
+    Command,
     Event,
     RoomStatus,
     State,
 )
+from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.room_tracker import (
     CloseFile,
     FileAction,
     RoomTracker,
+    WriteEntry,
 )
 from tests.recorder import synthetic
+
+_STEP_S = 0.05
 
 
 class DrivenRoom:
@@ -26,12 +31,22 @@ class DrivenRoom:
         self.now_s = 0.0
 
     def state(self, state: State) -> None:
+        """The state comes just after the commands that it names."""
+        for command in synthetic.commands_of(state):
+            self.command(command)
+        self.only_state(state)
+
+    def only_state(self, state: State) -> None:
         at_ns = synthetic.wall_ns(state.tick)
         self.actions += self.tracker.state(state, codec.encode(state), at_ns, self.now_s)
 
     def states(self, states: list[State]) -> None:
         for state in states:
             self.state(state)
+
+    def command(self, command: Command) -> None:
+        at_ns = command.stamps.sent_ns
+        self.actions += self.tracker.command(command.arm, command, codec.encode(command), at_ns, self.now_s)
 
     def event(self, event: Event) -> None:
         self.actions += self.tracker.event(event, codec.encode(event), event.wall_ns, self.now_s)
@@ -40,11 +55,20 @@ class DrivenRoom:
         self.actions += self.tracker.status(status, self.now_s)
 
     def wait(self, duration_s: float) -> None:
-        self.now_s += duration_s
-        self.actions += self.tracker.advance(self.now_s)
+        """As a recorder does that is never still for long."""
+        end_s = self.now_s + duration_s
+        while self.now_s < end_s:
+            self.now_s = min(self.now_s + _STEP_S, end_s)
+            self.actions += self.tracker.advance(self.now_s)
 
     def entries(self, topic: str) -> list[McapEntry]:
-        return [action for action in self.actions if isinstance(action, McapEntry) and action.topic == topic]
+        written = [action.entry for action in self.actions if isinstance(action, WriteEntry)]
+        return [entry for entry in written if entry.topic == topic]
+
+    def sequences(self, episode: EpisodeAccumulator, topic: str) -> list[int]:
+        """The sequence of each message of a topic in the episode's file."""
+        written = [a for a in self.actions if isinstance(a, WriteEntry) and a.episode is episode]
+        return [action.entry.sequence for action in written if action.entry.topic == topic]
 
     @property
     def ticks(self) -> list[int]:
@@ -52,7 +76,7 @@ class DrivenRoom:
 
     @property
     def course(self) -> list[type]:
-        return [type(action) for action in self.actions if not isinstance(action, McapEntry)]
+        return [type(action) for action in self.actions if not isinstance(action, WriteEntry)]
 
     @property
     def closed(self) -> list[CloseFile]:

@@ -67,6 +67,8 @@ class RecordingSession:
 
     def states(self, states: list[State]) -> None:
         for state in states:
+            for command in synthetic.commands_of(state):
+                self.put(keys.command(synthetic.ROOM, command.arm), codec.encode(command))
             self.put(keys.state(synthetic.ROOM), codec.encode(state))
             self.recorder.step(0.0)
 

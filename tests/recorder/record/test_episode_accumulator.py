@@ -12,6 +12,9 @@ from hypothesis import strategies as st
 from mart.protocol.messages import (
     BARRIER_PHASE_PAUSED,
     BARRIER_PHASE_STALLED,
+    ENDED_BY_OPERATOR,
+    ENDED_BY_TASK,
+    EPISODE_PHASE_PRACTICE,
     OPERATOR_HOLD,
     OPERATOR_SCRIPT,
     Event,
@@ -61,6 +64,30 @@ def test_the_last_state_decides_whether_it_is_complete(last_tick: int) -> None:
     episode = folded(synthetic.states(20))
     episode.add_event(synthetic.ended(last_tick))
     assert episode.record(facts()).complete == (last_tick <= 20)
+
+
+def test_who_ended_an_episode_and_how_much_was_done_is_written_down() -> None:
+    states = synthetic.states(20)
+    for name in ("lift", "carry", "put"):
+        states[-1].progress.subtasks.add(name=name, done=name == "lift")
+    episode = folded(states)
+    end = synthetic.ended(20)
+    end.episode_ended.ended_by = ENDED_BY_OPERATOR
+    end.episode_ended.ended_by_name, end.episode_ended.ended_by_arm = "Ana", "arm0"
+    episode.add_event(end)
+    record = episode.record(facts())
+    assert (record.ended_by, record.ended_by_name, record.ended_by_arm) == ("operator", "Ana", "arm0")
+    assert (record.subtasks_done, record.subtasks) == (1, 3)
+
+
+def test_an_outcome_that_nobody_heard_is_learned_from_what_a_room_says_of_its_last_episode() -> None:
+    episode = folded(synthetic.states(20))
+    status = synthetic.episode_status(0, number=2, phase=EPISODE_PHASE_PRACTICE)
+    status.last_ended.CopyFrom(synthetic.ended(20).episode_ended)
+    status.last_ended.ended_by = ENDED_BY_TASK
+    episode.add_status(status)
+    record = episode.record(facts())
+    assert (record.outcome, record.ended_by, record.complete) == ("success", "task", True)
 
 
 def test_a_recorder_that_came_late_says_so() -> None:

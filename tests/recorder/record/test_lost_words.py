@@ -13,12 +13,8 @@ from mart.protocol.messages import (
     EpisodePhase,
     State,
 )
-from mart.recorder.record.room_tracker import (
-    GRACE_S,
-    LINGER_S,
-    CloseFile,
-    OpenFile,
-)
+from mart.recorder.record.episode_closing import GRACE_S, LINGER_S
+from mart.recorder.record.room_tracker import CloseFile, OpenFile
 from tests.recorder import synthetic
 from tests.recorder.record.driven_room import DrivenRoom, practice
 

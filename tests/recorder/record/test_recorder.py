@@ -16,6 +16,7 @@ from mart.protocol.keys import Topic
 from mart.protocol.messages import RoomStatus
 from mart.recorder.catalogue.episode_catalogue import FILE_NAME
 from mart.recorder.record.inbox import Inbox
+from mart.recorder.verify.file_check import check_file
 from mart.runtime.bus import Request
 from tests.recorder import synthetic
 from tests.recorder.files import write_part
@@ -46,18 +47,42 @@ def test_an_episode_is_recorded_verified_and_announced(session: RecordingSession
 
 def test_commands_and_video_of_the_room_are_in_the_file(session: RecordingSession) -> None:
     def one_of_each(sequence: int) -> None:
-        command, video = synthetic.command(sequence), synthetic.video(sequence, is_key=sequence == 1)
+        command, video = synthetic.command(sequence), synthetic.video(sequence, is_key=sequence == 0)
         session.put(keys.command(synthetic.ROOM, "arm0"), codec.encode(command))
         session.put(keys.video(synthetic.ROOM, "arm0"), codec.encode(video))
 
-    one_of_each(1)
+    one_of_each(0)
     session.states(synthetic.states(5))
-    one_of_each(2)
+    one_of_each(6)
     session.event(synthetic.ended(5))
     (event,) = session.told("episode_saved")
     file = EpisodeFile.open(session.data_dir / event.episode_saved.path)
-    assert [m.sequence for m in file.messages("/arm/arm0/command")] == [1, 2]
+    assert [m.sequence for m in file.messages("/arm/arm0/command")] == [0, 1, 2, 3, 4, 5, 6]
+    assert file.cadence.missing_commands == check_file(file.path).missing_commands == 0
     assert len(list(file.messages("/view/arm0/video"))) == 2
+
+
+def test_a_command_that_never_comes_is_counted_in_the_file_and_told(
+    session: RecordingSession, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("mart.recorder.record.episode_closing.GRACE_S", 0.2)
+    states = synthetic.states(5)
+    session.states(states[:3])
+    states[3].arms[0].sequence = 99
+    session.put(keys.state(synthetic.ROOM), codec.encode(states[3]))  # without the command that it names
+    for state in states[4:]:
+        state.arms[0].sequence += 100
+    session.states(states[4:])
+    session.event(synthetic.ended(5))
+    (event,) = session.told("episode_saved")
+    file = EpisodeFile.open(session.data_dir / event.episode_saved.path)
+    assert (
+        event.episode_saved.missing_commands
+        == file.cadence.missing_commands
+        == check_file(file.path).missing_commands
+        == 1
+    )
+    assert event.episode_saved.verified
 
 
 def test_each_episode_has_its_file_and_the_catalogue_knows_them(session: RecordingSession) -> None:
@@ -181,7 +206,7 @@ def test_a_full_disk_ends_that_recording_only(session: RecordingSession) -> None
     session.event(synthetic.started())
     states = synthetic.states(400)
     session.states(states[:100])
-    session.recorder._rooms[synthetic.ROOM].flush(0.0)
+    session.recorder._rooms[synthetic.ROOM]._flush(0.0)
     (part,) = session.data_dir.rglob("*.part")
     with no_file_larger_than(part.stat().st_size + 4000):
         session.states(states[100:])

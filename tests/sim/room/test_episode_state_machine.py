@@ -8,6 +8,10 @@ import pytest
 
 from mart.protocol.errors import Conflict, Forbidden, InvalidInput, NotFound
 from mart.protocol.messages import (
+    ENDED_BY_ABSENCE,
+    ENDED_BY_OPERATOR,
+    ENDED_BY_TASK,
+    ENDED_BY_TIME,
     EPISODE_PHASE_COUNTDOWN,
     EPISODE_PHASE_ENDED,
     EPISODE_PHASE_PRACTICE,
@@ -28,6 +32,7 @@ from mart.sim.room.episode_state_machine import (
     BeginEpisode,
     Effect,
     EndEpisode,
+    EpisodeEnder,
     EpisodeStateMachine,
     ResetWorld,
     seed_of,
@@ -35,6 +40,7 @@ from mart.sim.room.episode_state_machine import (
 from mart.sim.room.seats import SeatTable
 
 HORIZON = 20
+BY_TASK = EpisodeEnder(ENDED_BY_TASK)
 
 
 @pytest.fixture
@@ -103,8 +109,8 @@ def test_a_countdown_waits_for_whoever_is_missing(episode: EpisodeStateMachine, 
 @pytest.mark.parametrize(
     ("success", "failed", "ended"),
     [
-        (True, None, EndEpisode(1, OUTCOME_SUCCESS, 2, "the task is done")),
-        (False, "a cube fell off", EndEpisode(1, OUTCOME_FAILURE, 2, "a cube fell off")),
+        (True, None, EndEpisode(1, OUTCOME_SUCCESS, 2, "the task is done", BY_TASK)),
+        (False, "a cube fell off", EndEpisode(1, OUTCOME_FAILURE, 2, "a cube fell off", BY_TASK)),
     ],
 )
 def test_the_task_ends_an_episode(
@@ -121,7 +127,7 @@ def test_the_horizon_ends_an_episode(episode: EpisodeStateMachine, seats: SeatTa
     for _ in range(HORIZON - 1):
         assert episode.ticked(success=False, failed=None, now_s=4.0) == ()
     (ended,) = episode.ticked(success=False, failed=None, now_s=4.0)
-    assert ended == EndEpisode(1, OUTCOME_FAILURE, HORIZON, "time is up")
+    assert ended == EndEpisode(1, OUTCOME_FAILURE, HORIZON, "time is up", EpisodeEnder(ENDED_BY_TIME))
 
 
 def test_practice_returns_with_another_world_two_seconds_later(
@@ -143,9 +149,8 @@ def test_an_operator_ends_an_episode(
     episode: EpisodeStateMachine, seats: SeatTable, outcome: Outcome
 ) -> None:
     record(episode, seats)
-    assert episode.answer(finish("ben", outcome), seats, 4.0) == (
-        EndEpisode(1, outcome, 0, "said by an operator"),
-    )
+    (ended,) = episode.answer(finish("ben", outcome), seats, 4.0)
+    assert ended == EndEpisode(1, outcome, 0, "said by Ben", EpisodeEnder(ENDED_BY_OPERATOR, "Ben", "arm1"))
 
 
 def test_what_ended_does_not_end_again(episode: EpisodeStateMachine, seats: SeatTable) -> None:
@@ -222,7 +227,8 @@ def test_a_recording_that_everyone_left_is_discarded(episode: EpisodeStateMachin
     record(episode, seats)
     seats.release("arm0", "ana")
     seats.release("arm1", "ben")
-    assert episode.seats_changed(seats, 4.0) == (EndEpisode(1, OUTCOME_DISCARDED, 0, "everyone left"),)
+    (ended,) = episode.seats_changed(seats, 4.0)
+    assert ended == EndEpisode(1, OUTCOME_DISCARDED, 0, "everyone left", EpisodeEnder(ENDED_BY_ABSENCE))
 
 
 def test_readiness_counts_in_practice_only(episode: EpisodeStateMachine, seats: SeatTable) -> None:
@@ -240,7 +246,8 @@ def test_a_reset_in_practice_gives_another_world(episode: EpisodeStateMachine, s
 def test_a_reset_discards_a_recording(episode: EpisodeStateMachine, seats: SeatTable) -> None:
     record(episode, seats)
     ended, again = episode.answer(reset("ana"), seats, 4.0)
-    assert ended == EndEpisode(1, OUTCOME_DISCARDED, 0, "reset by an operator")
+    by_ana = EpisodeEnder(ENDED_BY_OPERATOR, "Ana", "arm0")
+    assert ended == EndEpisode(1, OUTCOME_DISCARDED, 0, "reset by Ana", by_ana)
     assert isinstance(again, ResetWorld)
 
 
@@ -250,7 +257,9 @@ def test_without_people_anybody_may_start_and_finish(episode: EpisodeStateMachin
     seats.claim("arm1", "policy-1", "BC-RNN", OPERATOR_POLICY)
     assert len(episode.answer(ready("arm0", ""), seats, 0.0)) == 1
     episode.advance(everyone_present=True, now_s=COUNTDOWN_S)
-    assert len(episode.answer(finish("", OUTCOME_SUCCESS), seats, 4.0)) == 1
+    (ended,) = episode.answer(finish("", OUTCOME_SUCCESS), seats, 4.0)
+    by_somebody = EpisodeEnder(ENDED_BY_OPERATOR)
+    assert ended == EndEpisode(1, OUTCOME_SUCCESS, 0, "said by an operator", by_somebody)
 
 
 def test_nothing_is_recorded_while_nobody_drives(episode: EpisodeStateMachine) -> None:

@@ -65,7 +65,7 @@ class Leavers:
 
 async def seated() -> tuple[Peers, Leavers]:
     """A browser that was heard at 100 s, a phone at 90 s, and a viewer at 89 s."""
-    peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), ())
+    peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
     leavers = Leavers()
     peers.attach(leavers)
     for role in (Role.BROWSER, Role.PHONE, Role.VIEWER):

@@ -13,6 +13,7 @@ from mart.protocol.tokens import Role, SeatToken, sign, verify
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.base import Request
 from mart.runtime.bus.memory import MemoryBus
+from mart.runtime.ice_servers import IceSettings
 from mart.web.api.app_state import AppState
 from tests.web.conftest import Client, Enter
 from tests.web.room import Room
@@ -227,3 +228,21 @@ async def test_a_phone_that_cannot_reach_this_computer_is_told(
     object.__setattr__(app_state, "lan_host", "")
     pairing = (await (await seated(enter)).post(f"{SEAT}/pair")).json()
     assert "--host 0.0.0.0" in pairing["hint"]
+
+
+async def test_everybody_is_told_of_the_relays_and_their_credentials(
+    enter: Enter, gateway: Gateway, app_state: AppState
+) -> None:
+    ice = IceSettings(ice_servers='["stun:a.org", "turn:b.org"]', turn_secret="north")
+    object.__setattr__(app_state, "ice", ice)
+    ana = await seated(enter)
+    code = (await ana.post(f"{SEAT}/pair")).json()["code"]
+    phone = (await ana.post("/api/pair", json={"code": code})).json()
+    bearer = {"Authorization": f"Bearer {phone['token']}"}
+    renewed = (await ana.get(f"{SEAT}/phone-token", headers=bearer)).json()
+    for told in ((await ana.get(f"{SEAT}/token")).json(), phone, renewed):
+        stun, turn = told["ice_servers"]
+        assert stun == {"urls": "stun:a.org"}
+        assert turn["urls"] == "turn:b.org"
+        assert turn["username"].endswith(":mart")
+        assert turn["credential"]

@@ -8,7 +8,7 @@ import pytest
 
 from mart.protocol.messages import Event
 from mart.web.api.app_state import AppState
-from mart.web.lobby.health_findings import delays, machine, rooms, services
+from mart.web.lobby.health_findings import RelayCheck, delays, machine, relays, rooms, services
 from mart.web.lobby.room_json import Json
 from tests.web.conftest import Enter
 from tests.web.room import Room
@@ -77,3 +77,14 @@ async def test_who_has_joined_sees_it(enter: Enter, room: Room, app_state: AppSt
     assert areas["delays"]["found"] == "40 ms typical, 95 % under 60 ms"
     assert areas["rooms"]["name"] == "room-1"
     assert "good for 39" in areas["machine"]["found"]
+
+
+def test_a_relay_that_gives_nothing_is_a_finding() -> None:
+    asked = {
+        "stun:a.org": RelayCheck(True, "sees us at 10.0.0.7"),
+        "turn:b.org": RelayCheck(False, "turn:b.org refuses the credentials."),
+    }
+    well, amiss = relays(asked)
+    assert (well.found, well.mend) == ("stun:a.org sees us at 10.0.0.7", "")
+    assert amiss.found == "turn:b.org refuses the credentials."
+    assert "MART_ICE_SERVERS" in amiss.mend

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
 import sys
@@ -43,7 +44,9 @@ _CONTROL_HZ_OPTION = click.option(
 @click.option(
     "--host", default="127.0.0.1", show_default=True, help="0.0.0.0 lets phones and other laptops in."
 )
-@click.option("--port", default=8443, show_default=True, help="Port of the pages.")
+@click.option(
+    "--port", default=8443, show_default=True, type=click.IntRange(1, 65_535), help="Port of the pages."
+)
 @click.option(
     "--public-host", default="", help="Name or address that people and phones use, where it isn't --host."
 )
@@ -84,7 +87,20 @@ def run(
         text = f"\n  Lobby      {platform.url}\n  Join code  {platform.join_code}\n\nCtrl-C stops everything."
         print_result(result, text, as_json)
         stop.wait()
-        click.echo("Stopping MART …", err=True)
+        with contextlib.suppress(OSError):  # a terminal that was closed
+            click.echo("Stopping MART …", err=True)
+
+
+@click.command()
+@json_option
+def stop(as_json: bool) -> None:
+    """Stop the platform that runs with this data folder (MART_DATA_DIR), also what a killed one has left."""
+    from mart.platform.run.stop import stop_platforms
+    from mart.runtime.settings import Settings
+
+    stopped = stop_platforms(Settings().data_dir)
+    told = [{"pid": holder.pid, "url": holder.url} for holder in stopped]
+    print_result({"stopped": told}, "\n".join(f"Stopped {holder.in_words()}." for holder in stopped), as_json)
 
 
 @click.command()

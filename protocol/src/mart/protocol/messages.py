@@ -8,7 +8,7 @@ import numpy as np
 
 from mart.protocol.errors import InvalidInput, MartError, from_wire
 from mart.protocol.pose import Pose
-from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind
+from mart.protocol.vocabulary import EpisodeEndedBy, EpisodeOutcome, OperatorKind
 from mart.v1.catalogue_pb2 import (
     CatalogueReply,
     CatalogueRequest,
@@ -38,6 +38,12 @@ from mart.v1.room_pb2 import (
     BARRIER_PHASE_STOPPED,
     CUE_GO,
     CUE_WAIT,
+    ENDED_BY_ABSENCE,
+    ENDED_BY_OPERATOR,
+    ENDED_BY_ROOM,
+    ENDED_BY_TASK,
+    ENDED_BY_TIME,
+    ENDED_BY_UNSPECIFIED,
     EPISODE_PHASE_COUNTDOWN,
     EPISODE_PHASE_ENDED,
     EPISODE_PHASE_PRACTICE,
@@ -49,6 +55,7 @@ from mart.v1.room_pb2 import (
     BarrierPhase,
     Cue,
     EmergencyStop,
+    EndedBy,
     Episode,
     EpisodePhase,
     EpisodeRequest,
@@ -56,6 +63,7 @@ from mart.v1.room_pb2 import (
     Event,
     Outcome,
     Plan,
+    RecordingReport,
     RoomReply,
     RoomsRequest,
     RoomStatus,
@@ -93,6 +101,12 @@ __all__ = [
     "BARRIER_PHASE_STOPPED",
     "CUE_GO",
     "CUE_WAIT",
+    "ENDED_BY_ABSENCE",
+    "ENDED_BY_OPERATOR",
+    "ENDED_BY_ROOM",
+    "ENDED_BY_TASK",
+    "ENDED_BY_TIME",
+    "ENDED_BY_UNSPECIFIED",
     "EPISODE_PHASE_COUNTDOWN",
     "EPISODE_PHASE_ENDED",
     "EPISODE_PHASE_PRACTICE",
@@ -122,6 +136,7 @@ __all__ = [
     "Curve",
     "DataSet",
     "EmergencyStop",
+    "EndedBy",
     "Episode",
     "EpisodePhase",
     "EpisodeRequest",
@@ -148,6 +163,7 @@ __all__ = [
     "Progress",
     "RecordedEpisode",
     "RecordedView",
+    "RecordingReport",
     "Rollout",
     "RolloutReply",
     "RolloutRequest",
@@ -169,6 +185,7 @@ __all__ = [
     "barrier_word",
     "cue_from_word",
     "cue_word",
+    "ended_by_word",
     "error_message",
     "job_state_word",
     "operator_from_word",
@@ -234,6 +251,13 @@ def job_state_word(state: JobState) -> str:
 def cue_word(cue: Cue) -> str:
     """Return the word for a cue: have_it, go, wait, slower or thanks."""
     return _word(Cue.Name(cue), "CUE_")
+
+
+def ended_by_word(ended_by: EndedBy) -> EpisodeEndedBy | None:
+    """Return the word for what ended an episode, None where nothing says so."""
+    if ended_by == ENDED_BY_UNSPECIFIED:
+        return None
+    return EpisodeEndedBy(_word(EndedBy.Name(ended_by), "ENDED_BY_"))
 
 
 def operator_from_word(word: str) -> Operator:

@@ -84,6 +84,11 @@ class EpisodeRecord(Record):
     last_tick: int
     outcome: str  # success, failure, discarded or unspecified
     reason: str
+    ended_by: str | None = None  # task, time, operator, absence or room
+    ended_by_name: str | None = None  # who said how it ended, as others see them
+    ended_by_arm: str | None = None  # the arm that they drove
+    subtasks_done: int | None = None  # in the last state
+    subtasks: int | None = None  # of the task
     interrupted: bool  # the room was paused meanwhile
     complete: bool  # every state from the reset to the outcome is in the file
     repaired: bool = False  # put together from what a crash had left
@@ -120,6 +125,7 @@ class CadenceRecord(Record):
     tick_interval_p95_ms: float | None = None
     tick_interval_max_ms: float | None = None
     video_dropped: int = 0  # frames that the recorder could not keep up with
+    missing_commands: int | None = None  # that states name and the file lacks
     messages_lost: int = 0  # states, commands and events that it could not keep up with
     waited_for_s: Mapping[str, float] = Field(default_factory=dict)
     motion_to_photon_p50_ms: Mapping[str, float] = Field(default_factory=dict)  # the seat's newest report

@@ -45,6 +45,16 @@ class EpisodeOutcome(StrEnum):
     DISCARDED = "discarded"
 
 
+class EpisodeEndedBy(StrEnum):
+    """Name what brought an episode to its end."""
+
+    TASK = "task"  # it was done, or could no longer be
+    TIME = "time"  # the time limit passed
+    OPERATOR = "operator"  # somebody said so
+    ABSENCE = "absence"  # everybody left
+    ROOM = "room"  # the world could not go on
+
+
 class Verdict(StrEnum):
     """Name what re-simulation said about an episode file."""
 

@@ -32,6 +32,15 @@ class Outcome(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     OUTCOME_FAILURE: _ClassVar[Outcome]
     OUTCOME_DISCARDED: _ClassVar[Outcome]
 
+class EndedBy(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    ENDED_BY_UNSPECIFIED: _ClassVar[EndedBy]
+    ENDED_BY_TASK: _ClassVar[EndedBy]
+    ENDED_BY_TIME: _ClassVar[EndedBy]
+    ENDED_BY_OPERATOR: _ClassVar[EndedBy]
+    ENDED_BY_ABSENCE: _ClassVar[EndedBy]
+    ENDED_BY_ROOM: _ClassVar[EndedBy]
+
 class Cue(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
     CUE_UNSPECIFIED: _ClassVar[Cue]
@@ -54,6 +63,12 @@ OUTCOME_UNSPECIFIED: Outcome
 OUTCOME_SUCCESS: Outcome
 OUTCOME_FAILURE: Outcome
 OUTCOME_DISCARDED: Outcome
+ENDED_BY_UNSPECIFIED: EndedBy
+ENDED_BY_TASK: EndedBy
+ENDED_BY_TIME: EndedBy
+ENDED_BY_OPERATOR: EndedBy
+ENDED_BY_ABSENCE: EndedBy
+ENDED_BY_ROOM: EndedBy
 CUE_UNSPECIFIED: Cue
 CUE_HAVE_IT: Cue
 CUE_GO: Cue
@@ -92,7 +107,7 @@ class Waiting(_message.Message):
     def __init__(self, arm: _Optional[str] = ..., since_s: _Optional[float] = ...) -> None: ...
 
 class Episode(_message.Message):
-    __slots__ = ("number", "phase", "remaining_s", "ticks", "elapsed_s", "outcome", "seed", "interrupted", "reason")
+    __slots__ = ("number", "phase", "remaining_s", "ticks", "elapsed_s", "outcome", "seed", "interrupted", "reason", "ended_by", "ended_by_name", "ended_by_arm")
     NUMBER_FIELD_NUMBER: _ClassVar[int]
     PHASE_FIELD_NUMBER: _ClassVar[int]
     REMAINING_S_FIELD_NUMBER: _ClassVar[int]
@@ -102,6 +117,9 @@ class Episode(_message.Message):
     SEED_FIELD_NUMBER: _ClassVar[int]
     INTERRUPTED_FIELD_NUMBER: _ClassVar[int]
     REASON_FIELD_NUMBER: _ClassVar[int]
+    ENDED_BY_FIELD_NUMBER: _ClassVar[int]
+    ENDED_BY_NAME_FIELD_NUMBER: _ClassVar[int]
+    ENDED_BY_ARM_FIELD_NUMBER: _ClassVar[int]
     number: int
     phase: EpisodePhase
     remaining_s: float
@@ -111,7 +129,10 @@ class Episode(_message.Message):
     seed: int
     interrupted: bool
     reason: str
-    def __init__(self, number: _Optional[int] = ..., phase: _Optional[_Union[EpisodePhase, str]] = ..., remaining_s: _Optional[float] = ..., ticks: _Optional[int] = ..., elapsed_s: _Optional[float] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., seed: _Optional[int] = ..., interrupted: _Optional[bool] = ..., reason: _Optional[str] = ...) -> None: ...
+    ended_by: EndedBy
+    ended_by_name: str
+    ended_by_arm: str
+    def __init__(self, number: _Optional[int] = ..., phase: _Optional[_Union[EpisodePhase, str]] = ..., remaining_s: _Optional[float] = ..., ticks: _Optional[int] = ..., elapsed_s: _Optional[float] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., seed: _Optional[int] = ..., interrupted: _Optional[bool] = ..., reason: _Optional[str] = ..., ended_by: _Optional[_Union[EndedBy, str]] = ..., ended_by_name: _Optional[str] = ..., ended_by_arm: _Optional[str] = ...) -> None: ...
 
 class Plan(_message.Message):
     __slots__ = ("episodes", "good")
@@ -132,7 +153,7 @@ class EmergencyStop(_message.Message):
     def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ...) -> None: ...
 
 class RoomStatus(_message.Message):
-    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop")
+    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded")
     ROOM_FIELD_NUMBER: _ClassVar[int]
     TASK_FIELD_NUMBER: _ClassVar[int]
     CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -150,6 +171,8 @@ class RoomStatus(_message.Message):
     REJECTED_COMMANDS_FIELD_NUMBER: _ClassVar[int]
     PLAN_FIELD_NUMBER: _ClassVar[int]
     STOP_FIELD_NUMBER: _ClassVar[int]
+    LAST_ENDED_FIELD_NUMBER: _ClassVar[int]
+    UNRECORDED_FIELD_NUMBER: _ClassVar[int]
     room: str
     task: str
     control_hz: float
@@ -167,7 +190,9 @@ class RoomStatus(_message.Message):
     rejected_commands: int
     plan: Plan
     stop: EmergencyStop
-    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ...) -> None: ...
+    last_ended: Event.EpisodeEnded
+    unrecorded: str
+    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ...) -> None: ...
 
 class SeatRequest(_message.Message):
     __slots__ = ("claim", "release", "assign", "hand_back")
@@ -337,33 +362,47 @@ class Event(_message.Message):
         time_limit_s: float
         def __init__(self, number: _Optional[int] = ..., seed: _Optional[int] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., model_sha256: _Optional[str] = ..., lockstep: _Optional[bool] = ..., skill: _Optional[str] = ..., time_limit_s: _Optional[float] = ...) -> None: ...
     class EpisodeEnded(_message.Message):
-        __slots__ = ("number", "outcome", "ticks", "reason", "last_tick")
+        __slots__ = ("number", "outcome", "ticks", "reason", "last_tick", "ended_by", "ended_by_name", "ended_by_arm", "subtasks_done", "subtasks")
         NUMBER_FIELD_NUMBER: _ClassVar[int]
         OUTCOME_FIELD_NUMBER: _ClassVar[int]
         TICKS_FIELD_NUMBER: _ClassVar[int]
         REASON_FIELD_NUMBER: _ClassVar[int]
         LAST_TICK_FIELD_NUMBER: _ClassVar[int]
+        ENDED_BY_FIELD_NUMBER: _ClassVar[int]
+        ENDED_BY_NAME_FIELD_NUMBER: _ClassVar[int]
+        ENDED_BY_ARM_FIELD_NUMBER: _ClassVar[int]
+        SUBTASKS_DONE_FIELD_NUMBER: _ClassVar[int]
+        SUBTASKS_FIELD_NUMBER: _ClassVar[int]
         number: int
         outcome: Outcome
         ticks: int
         reason: str
         last_tick: int
-        def __init__(self, number: _Optional[int] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., ticks: _Optional[int] = ..., reason: _Optional[str] = ..., last_tick: _Optional[int] = ...) -> None: ...
+        ended_by: EndedBy
+        ended_by_name: str
+        ended_by_arm: str
+        subtasks_done: int
+        subtasks: int
+        def __init__(self, number: _Optional[int] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., ticks: _Optional[int] = ..., reason: _Optional[str] = ..., last_tick: _Optional[int] = ..., ended_by: _Optional[_Union[EndedBy, str]] = ..., ended_by_name: _Optional[str] = ..., ended_by_arm: _Optional[str] = ..., subtasks_done: _Optional[int] = ..., subtasks: _Optional[int] = ...) -> None: ...
     class EpisodeSaved(_message.Message):
-        __slots__ = ("number", "path", "verified", "verdict", "size_bytes", "outcome")
+        __slots__ = ("number", "path", "verified", "verdict", "size_bytes", "outcome", "missing_ticks", "missing_commands")
         NUMBER_FIELD_NUMBER: _ClassVar[int]
         PATH_FIELD_NUMBER: _ClassVar[int]
         VERIFIED_FIELD_NUMBER: _ClassVar[int]
         VERDICT_FIELD_NUMBER: _ClassVar[int]
         SIZE_BYTES_FIELD_NUMBER: _ClassVar[int]
         OUTCOME_FIELD_NUMBER: _ClassVar[int]
+        MISSING_TICKS_FIELD_NUMBER: _ClassVar[int]
+        MISSING_COMMANDS_FIELD_NUMBER: _ClassVar[int]
         number: int
         path: str
         verified: bool
         verdict: str
         size_bytes: int
         outcome: Outcome
-        def __init__(self, number: _Optional[int] = ..., path: _Optional[str] = ..., verified: _Optional[bool] = ..., verdict: _Optional[str] = ..., size_bytes: _Optional[int] = ..., outcome: _Optional[_Union[Outcome, str]] = ...) -> None: ...
+        missing_ticks: int
+        missing_commands: int
+        def __init__(self, number: _Optional[int] = ..., path: _Optional[str] = ..., verified: _Optional[bool] = ..., verdict: _Optional[str] = ..., size_bytes: _Optional[int] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., missing_ticks: _Optional[int] = ..., missing_commands: _Optional[int] = ...) -> None: ...
     class WorldReset(_message.Message):
         __slots__ = ("seed",)
         SEED_FIELD_NUMBER: _ClassVar[int]
@@ -429,3 +468,15 @@ class Event(_message.Message):
     latency: Event.Latency
     cue_given: Event.CueGiven
     def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ..., latency: _Optional[_Union[Event.Latency, _Mapping]] = ..., cue_given: _Optional[_Union[Event.CueGiven, _Mapping]] = ...) -> None: ...
+
+class RecordingReport(_message.Message):
+    __slots__ = ("recorder", "boot", "episode", "last_tick")
+    RECORDER_FIELD_NUMBER: _ClassVar[int]
+    BOOT_FIELD_NUMBER: _ClassVar[int]
+    EPISODE_FIELD_NUMBER: _ClassVar[int]
+    LAST_TICK_FIELD_NUMBER: _ClassVar[int]
+    recorder: str
+    boot: int
+    episode: int
+    last_tick: int
+    def __init__(self, recorder: _Optional[str] = ..., boot: _Optional[int] = ..., episode: _Optional[int] = ..., last_tick: _Optional[int] = ...) -> None: ...

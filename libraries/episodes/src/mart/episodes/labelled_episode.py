@@ -18,6 +18,8 @@ class LabelledEpisode(BaseModel):
 
     path: below the folder of its labels, as labels name it. file_path: where it lies, as it was asked for.
     outcome, verdict: as labelled, else as recorded. operators: who drove each arm (`human Ana | tick 57: hold`).
+    ended_by: task, time, operator, absence or room; None where nobody wrote it down. subtasks_done: in the last state.
+    missing_commands: how many commands the states name and the file lacks; None where nobody counted.
     error: why the file cannot be used; what else it says is not known then. dropped: nobody shall learn from it.
     """
 
@@ -34,6 +36,11 @@ class LabelledEpisode(BaseModel):
     outcome: str = EpisodeOutcome.UNSPECIFIED.value
     verdict: str = Verdict.UNVERIFIED.value
     reason: str = ""
+    ended_by: str | None = None
+    ended_by_name: str | None = None
+    ended_by_arm: str | None = None
+    subtasks_done: int | None = None
+    subtasks: int | None = None
     ticks: int = 0
     simulated_s: float = 0.0
     seed: int | None = None
@@ -42,6 +49,7 @@ class LabelledEpisode(BaseModel):
     time_limit_s: float | None = None
     real_time_factor: float | None = None
     missing_ticks: int = 0
+    missing_commands: int | None = None
     waited_s: float = 0.0
     started_ns: int = 0
     complete: bool = False
@@ -101,7 +109,8 @@ def describe(file_path: Path, path: str) -> LabelledEpisode:
         update=known
         | {"verdict": verdict, "operators": operators.to_strings()}
         | {"real_time_factor": cadence.real_time_factor}
-        | {"missing_ticks": cadence.missing_ticks, "waited_s": cadence.waited_s}
+        | {"missing_ticks": cadence.missing_ticks, "missing_commands": cadence.missing_commands}
+        | {"waited_s": cadence.waited_s}
         | {"simulated_s": episode.ticks / episode.control_hz if episode.control_hz else 0.0}
     )
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from mart.protocol.errors import InvalidInput
 from mart.render.compiled_model import viewpoint_id
+from mart.render.drop_shadows import DropShadows
 from mart.render.gl_context import open_context
 
 Image = NDArray[np.uint8]
@@ -27,6 +28,7 @@ class Renderer:
         """Raise NotFound for an unknown viewpoint, InvalidInput for an impossible size, Unavailable without OpenGL."""
         self._model = model
         self._data = mujoco.MjData(model)
+        self._shadows = DropShadows(model)
         self._camera = mujoco.MjvCamera()
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
         self._camera.fixedcamid = viewpoint_id(model, viewpoint)
@@ -97,6 +99,7 @@ class Renderer:
         mujoco.mj_setState(self._model, self._data, numbers, _STATE)
         # No mj_forward: pictures need where things are, not the forces between them.
         mujoco.mj_kinematics(self._model, self._data)
+        self._shadows.lift(self._data)
         mujoco.mj_comPos(self._model, self._data)  # what tracking cameras and lights look at
         mujoco.mj_camlight(self._model, self._data)
 

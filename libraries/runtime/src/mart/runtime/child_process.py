@@ -1,7 +1,8 @@
 """Start commands that end with the process that started them, also where that one is killed.
 
-`python -m mart.runtime.child_process PARENT COMMAND …` asks the kernel for it and becomes COMMAND (Linux: prctl(2),
-PR_SET_PDEATHSIG). The kernel means the thread that started it: start from one that lives as long as it should.
+`python -m mart.runtime.child_process PARENT SIGNAL COMMAND …` asks the kernel for it and becomes COMMAND (Linux:
+prctl(2), PR_SET_PDEATHSIG). The kernel means the thread that started it: start from one that lives as long as it
+should.
 """
 
 from __future__ import annotations
@@ -22,14 +23,20 @@ MART = Path(sys.executable).with_name("mart")
 
 
 def start_child(
-    command: Sequence[str | Path], log: IO[bytes], environment: Mapping[str, str], *, piped: bool = False
+    command: Sequence[str | Path],
+    log: IO[bytes],
+    environment: Mapping[str, str],
+    *,
+    piped: bool = False,
+    death_signal: signal.Signals = signal.SIGKILL,
 ) -> subprocess.Popen[bytes]:
     """Start a command that dies with this process, in a process group of its own.
 
     environment: goes on top of ours. log: takes its output; where it is `piped`, standard input and output are pipes
-    and only errors go there.
+    and only errors go there. death_signal: what it is sent when this process dies; one that has something to put in
+    order gets SIGTERM.
     """
-    bound = [sys.executable, "-m", __name__, str(os.getpid()), *map(str, command)]
+    bound = [sys.executable, "-m", __name__, str(os.getpid()), str(int(death_signal)), *map(str, command)]
     return subprocess.Popen(  # noqa: S603 - our own command, from our own environment
         bound,
         env={**os.environ, **environment},
@@ -50,11 +57,11 @@ def stop_child(process: subprocess.Popen[bytes], timeout_s: float = _STOP_TIMEOU
         process.wait()
 
 
-def _become(parent: int, command: list[str]) -> None:
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+def _become(parent: int, death_signal: int, command: list[str]) -> None:
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, death_signal)
     if os.getppid() == parent:  # else it died before we could ask
         os.execv(command[0], command)  # noqa: S606 - see start_child
 
 
 if __name__ == "__main__":
-    _become(int(sys.argv[1]), sys.argv[2:])
+    _become(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3:])

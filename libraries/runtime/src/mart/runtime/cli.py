@@ -5,9 +5,12 @@ A failure is one line on standard error and an exit code that is not 0.
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
 import signal
 import sys
+import traceback
 from collections.abc import Mapping
 from importlib.metadata import entry_points
 from typing import Any
@@ -15,6 +18,8 @@ from typing import Any
 import click
 
 from mart.protocol.errors import MartError
+from mart.runtime.stop_signals import stop_signals
+from mart.runtime.supervision import SUPERVISOR_PID, end_with_supervisor
 
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object on standard output."
@@ -57,8 +62,10 @@ def print_result(result: Mapping[str, Any], text: str, as_json: bool) -> None:
 
 
 def main() -> None:
-    # Asked to end by a supervisor, a command unwinds as it does on Ctrl-C: what it started is stopped.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    end_with_supervisor()
+    # Asked to end by a supervisor or a closed terminal, a command unwinds as on Ctrl-C: what it started is stopped.
+    for number in stop_signals():
+        signal.signal(number, signal.default_int_handler)
     try:
         code = cli(standalone_mode=False)
     except MartError as error:
@@ -67,10 +74,24 @@ def main() -> None:
         _fail(error.format_message(), error.exit_code)
     except (click.Abort, KeyboardInterrupt):
         _fail("Stopped.", 130)
+    except BrokenPipeError:  # whoever read what we print has heard enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(1)
+    except OSError as error:
+        if SUPERVISOR_PID in os.environ:  # a service's log tells all
+            traceback.print_exc()
+        _fail(_in_words(error), 1)
     else:
         sys.exit(code if isinstance(code, int) else 0)
 
 
+def _in_words(error: OSError) -> str:
+    """Return a sentence for a file or a device that failed."""
+    reason = error.strerror or type(error).__name__
+    return f"{error.filename}: {reason}." if error.filename else f"The system refused: {reason}."
+
+
 def _fail(sentence: str, code: int) -> None:
-    click.echo(f"mart: {sentence}", err=True)
+    with contextlib.suppress(OSError):  # a terminal that was closed
+        click.echo(f"mart: {sentence}", err=True)
     sys.exit(code)

@@ -18,9 +18,9 @@ from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import Bus
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.settings import Settings
+from mart.runtime.stop_signals import stop_signals
 
 _log = logging.getLogger(__name__)
-_STOP_SIGNALS = (signal.SIGTERM, signal.SIGINT)
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def stop_requested() -> Iterator[threading.Event]:
     def request_stop(_number: int, _frame: FrameType | None) -> None:
         stop.set()
 
-    before = {number: signal.signal(number, request_stop) for number in _STOP_SIGNALS}
+    before = {number: signal.signal(number, request_stop) for number in stop_signals()}
     try:
         yield stop
     finally:
@@ -94,7 +94,7 @@ def run_async(
         loop = asyncio.get_running_loop()
         with contextlib.closing(await asyncio.to_thread(ZenohBus.connect, settings.router)) as bus:
             task = asyncio.ensure_future(main(AsyncService(kind, id, AsyncBus(bus, loop))))
-            for number in _STOP_SIGNALS:
+            for number in stop_signals():
                 loop.add_signal_handler(number, task.cancel)
             with contextlib.suppress(asyncio.CancelledError):
                 await task

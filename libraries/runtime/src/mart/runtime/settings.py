@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import Field, ValidationError
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
 
 from mart.protocol.errors import InvalidInput
 
@@ -26,6 +26,11 @@ class Settings(BaseSettings):
             super().__init__(**options)
         except ValidationError as error:
             raise InvalidInput(_sentence(error)) from error
+        except SettingsError as error:  # a list or an object that is no JSON
+            name = str(error).partition('"')[2].partition('"')[0]
+            raise InvalidInput(
+                f"MART_{name.upper()} is no JSON; see --help for what it may be, or unset it."
+            ) from error
 
     @property
     def episodes_dir(self) -> Path:

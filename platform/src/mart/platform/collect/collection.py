@@ -78,9 +78,11 @@ def collect_in_lockstep(spec: CollectionSpec) -> Iterator[CollectedEpisode]:
 
 
 def _private_options(spec: CollectionSpec) -> PlatformOptions:
-    """On free ports, beside any other platform that runs here."""
+    """On free ports and with rooms of its own, beside any other platform that runs here, also in the same folder."""
     return PlatformOptions(
         data_dir=spec.out,
+        name="collect",
+        room="collect-1",
         router=f"tcp/127.0.0.1:{free_port()}",
         port=free_port(),
         task=spec.task,

@@ -7,9 +7,7 @@ picture. Only the brain is a script, which sees what that arm's operator sees.
 from __future__ import annotations
 
 import contextlib
-import os
 import subprocess
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,13 +21,12 @@ from mart.platform.run.running import Platform
 from mart.protocol import clock
 from mart.protocol.errors import Forbidden, Unavailable
 from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
+from mart.runtime.child_process import MART, start_child, stop_child
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
-_MART = Path(sys.executable).with_name("mart")
 _NAMES = ("Ana", "Ben", "Cleo", "Dan")
-_STOP_TIMEOUT_S = 10.0
 _SEAT_TIMEOUT_S = 60.0  # PyTorch takes seconds to load
 _LOOK_EVERY_S = 0.2
 
@@ -131,20 +128,8 @@ def _last_line(log: Path) -> str:
 @contextlib.contextmanager
 def _running(platform: Platform, command: Sequence[str], name: str) -> Iterator[subprocess.Popen[bytes]]:
     with (platform.logs_dir / f"{name}.log").open("ab") as log:
-        process = subprocess.Popen(  # noqa: S603 - our own command, from our own environment
-            [str(_MART), *command],
-            env={**os.environ, **environment(platform.options)},
-            stdin=subprocess.DEVNULL,
-            stdout=log,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-        )
+        process = start_child([MART, *command], log, environment(platform.options))
     try:
         yield process
     finally:
-        process.terminate()
-        try:
-            process.wait(_STOP_TIMEOUT_S)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        stop_child(process)

@@ -33,6 +33,8 @@ class CollectedEpisode:
     simulated_s: float
     real_time_factor: float | None
     verdict: Verdict
+    missing_ticks: int = 0
+    missing_commands: int | None = None
     latencies: tuple[Event.Latency, ...] = ()
 
     @property
@@ -56,6 +58,8 @@ class CollectedEpisode:
             "motion_to_photon_p50_ms": round(worst.p50_ms, 1) if worst else None,
             "motion_to_photon_p95_ms": round(worst.p95_ms, 1) if worst else None,
             "motion_to_photon": {latency.arm: _latency_json(latency) for latency in self.latencies},
+            "missing_ticks": self.missing_ticks,
+            "missing_commands": self.missing_commands,
             "verified": self.verified,
             "verdict": self.verdict,
         }
@@ -99,6 +103,8 @@ def read_collected(path: Path, data_dir: Path) -> CollectedEpisode:
         simulated_s=episode.ticks / (episode.control_hz or DEFAULT_CONTROL_HZ),
         real_time_factor=cadence.real_time_factor,
         verdict=file.verification.verdict,
+        missing_ticks=cadence.missing_ticks,
+        missing_commands=cadence.missing_commands,
         latencies=tuple(
             Event.Latency(arm=arm, p50_ms=p50_ms, p95_ms=cadence.motion_to_photon_p95_ms.get(arm, p50_ms))
             for arm, p50_ms in sorted(cadence.motion_to_photon_p50_ms.items())

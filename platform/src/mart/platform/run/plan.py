@@ -32,7 +32,10 @@ class Process:
 
 @dataclass(frozen=True)
 class PlatformOptions:
-    """One platform. `host` is where the pages listen: 127.0.0.1 keeps them on this computer."""
+    """One platform. `host` is where the pages listen: 127.0.0.1 keeps them on this computer.
+
+    name: of a platform beside another in the same data folder: its claim, supervisor's files and logs lie apart.
+    """
 
     data_dir: Path
     router: str = "tcp/127.0.0.1:7447"
@@ -47,6 +50,20 @@ class PlatformOptions:
     episodes: int | None = None
     time_limit_s: float | None = None
     environment: Mapping[str, str] = field(default_factory=dict)
+    name: str = ""
+
+    @property
+    def url(self) -> str:
+        name = self.public_host.split(",")[0] or self.host
+        return f"https://{'localhost' if name == '127.0.0.1' else name}:{self.port}/"
+
+    @property
+    def run_dir(self) -> Path:
+        return self.data_dir / "run" / self.name
+
+    @property
+    def logs_dir(self) -> Path:
+        return self.data_dir / "logs" / self.name
 
 
 def processes(options: PlatformOptions) -> tuple[Process, ...]:
@@ -73,8 +90,12 @@ def training_processes(options: PlatformOptions) -> tuple[Process, ...]:
 
 
 def lockstep_processes(options: PlatformOptions, rooms: int) -> tuple[Process, ...]:
-    """What episodes need that nobody watches: rooms that drive themselves, and who records and verifies."""
-    names = [f"room-{number + 1}" for number in range(rooms)]
+    """What episodes need that nobody watches: rooms that drive themselves, and who records and verifies.
+
+    The first is the options' room, `collect-1`; the others count on.
+    """
+    family = options.room.rpartition("-")[0]
+    names = [f"{family}-{number + 1}" for number in range(rooms)]
     return (_ROUTER, _REPLICA, _RECORDER, *(_sim(options, name, "--lockstep") for name in names))
 
 

@@ -2,33 +2,44 @@
 
 from __future__ import annotations
 
+import contextlib
+import http.client
 import subprocess
 import sys
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
+from xmlrpc.client import Error, ServerProxy
+
+from supervisor.xmlrpc import SupervisorTransport
 
 from mart.platform.run.plan import (
     PlatformOptions,
     Process,
 )
-from mart.protocol.errors import Unavailable
+from mart.protocol.errors import MartError, Unavailable
+from mart.runtime.atomic_file import write_atomically
 
 # A recorder that is verifying an episode gets time to close its file.
 _STOP_TIMEOUT_S = 30
-BIN = Path(sys.executable).parent
+_TOLD_TIMEOUT_S = _STOP_TIMEOUT_S + 10  # it answers when what was to stop has stopped
+_BIN = Path(sys.executable).parent
+_LOG_TAIL_BYTES = 16 * 1024
+_REFUSAL = "mart: "  # how a command begins the sentence with which it ends
 
 
 class Supervisor:
-    """The processes that supervisord keeps running, and its file of them; others may come and go meanwhile."""
+    """The processes that supervisord keeps running, and its file of them; others may come and go meanwhile.
+
+    Raises Unavailable where supervisord cannot be told; nothing has changed then.
+    """
 
     def __init__(self, options: PlatformOptions, plan: tuple[Process, ...], socket: Path) -> None:
         self._options, self._socket = options, socket
         self._programs = {process.name: (order, process) for order, process in enumerate(plan)}
         self._last = len(plan)
-        run_dir = options.data_dir / "run"
-        logs_dir(options).mkdir(parents=True, exist_ok=True)
-        run_dir.mkdir(parents=True, exist_ok=True)
-        self.config = run_dir / "supervisord.conf"
+        options.logs_dir.mkdir(parents=True, exist_ok=True)
+        self.config = options.run_dir / "supervisord.conf"
         self._write()
 
     @property
@@ -37,30 +48,66 @@ class Supervisor:
 
     def add(self, process: Process) -> None:
         """Starts it, and again whenever it dies."""
-        self._programs[process.name] = self._last, process
-        self._update()
+        self._change({**self._programs, process.name: (self._last, process)})
 
     def remove(self, name: str) -> None:
         """Stops it for good. The others keep their order: what supervisord finds changed it would start anew."""
-        del self._programs[name]
-        self._update()
+        self._change({other: program for other, program in self._programs.items() if other != name})
+
+    def refusals(self) -> dict[str, str]:
+        """Return the sentence with which each process ended that has ended since it was first started, by its name."""
+        transport: Any = SupervisorTransport(None, None, f"unix://{self._socket}")
+        told: list[dict[str, Any]] = []
+        with contextlib.closing(transport), contextlib.suppress(OSError, Error, http.client.HTTPException):
+            remote: Any = ServerProxy("http://127.0.0.1", transport=transport)
+            told = remote.supervisor.getAllProcessInfo()
+        names = [info["name"] for info in told if info["stop"] and info["name"] in self._programs]
+        return {name: sentence for name in names if (sentence := self._last_refusal(name))}
+
+    def _last_refusal(self, name: str) -> str:
+        with contextlib.suppress(OSError):
+            content = _log_path(self._options, name).read_bytes()[-_LOG_TAIL_BYTES:].decode(errors="replace")
+            for line in reversed(content.splitlines()):
+                if line.startswith(_REFUSAL):
+                    return line.removeprefix(_REFUSAL)
+        return ""
+
+    def _change(self, programs: dict[str, tuple[int, Process]]) -> None:
+        before, self._programs = self._programs, programs
+        try:
+            self._update()
+        except (OSError, MartError) as error:
+            self._programs = before
+            with contextlib.suppress(OSError):  # a disk that is full; the next change writes it whole
+                self._write()
+            if isinstance(error, MartError):
+                raise
+            raise Unavailable(
+                f"The supervisor could not be told: {error.strerror}; see `mart doctor`."
+            ) from error
 
     def _update(self) -> None:
         self._write()
-        command = [str(BIN / "supervisorctl"), "--configuration", str(self.config), "update"]
-        done = subprocess.run(command, check=False, capture_output=True, text=True)  # noqa: S603
+        command = [str(_BIN / "supervisorctl"), "--configuration", str(self.config), "update"]
+        try:
+            done = subprocess.run(  # noqa: S603
+                command, check=False, capture_output=True, text=True, timeout=_TOLD_TIMEOUT_S
+            )
+        except subprocess.TimeoutExpired as error:
+            raise Unavailable(f"The supervisor did not answer for {_TOLD_TIMEOUT_S} s.") from error
         if done.returncode:
             raise Unavailable(
                 f"The supervisor could not be told: {done.stdout.strip() or done.stderr.strip()}."
             )
 
     def _write(self) -> None:
-        self.config.write_text(configuration(self._options, self._programs.values(), self._socket))
+        text = configuration(self._options, self._programs.values(), self._socket)
+        write_atomically(self.config, text.encode())
 
 
 def configuration(options: PlatformOptions, programs: Iterable[tuple[int, Process]], socket: Path) -> str:
     """The text of supervisord.conf: each process with its place in the order of starting; supervisorctl's socket."""
-    run_dir = (options.data_dir / "run").resolve()
+    run_dir = options.run_dir.resolve()
     head = f"""[supervisord]
 logfile={_escaped(run_dir / "supervisord.log")}
 pidfile={_escaped(run_dir / "supervisord.pid")}
@@ -79,7 +126,7 @@ serverurl=unix://{socket}
 
 
 def _program(options: PlatformOptions, process: Process, order: int) -> str:
-    command = " ".join(f'"{_escaped(word)}"' for word in (str(BIN / "mart"), *process.command))
+    command = " ".join(f'"{_escaped(word)}"' for word in (str(_BIN / "mart"), *process.command))
     return f"""
 [program:{process.name}]
 command={command}
@@ -90,7 +137,7 @@ stopwaitsecs={_STOP_TIMEOUT_S}
 stopasgroup=true
 killasgroup=true
 redirect_stderr=true
-stdout_logfile={_escaped(logs_dir(options).resolve() / f"{process.name}.log")}
+stdout_logfile={_escaped(_log_path(options, process.name))}
 stdout_logfile_maxbytes=10MB
 stdout_logfile_backups=2
 """
@@ -100,5 +147,5 @@ def _escaped(value: Path | str) -> str:
     return str(value).replace("%", "%%").replace('"', r"\"")
 
 
-def logs_dir(options: PlatformOptions) -> Path:
-    return options.data_dir / "logs"
+def _log_path(options: PlatformOptions, name: str) -> Path:
+    return options.logs_dir.resolve() / f"{name}.log"

@@ -104,6 +104,20 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
 
 
 @episodes.command()
+@_paths
+@json_option
+def check(paths: tuple[Path, ...], as_json: bool) -> int:
+    """Read episodes whole, without a replica: is every byte sound, and are all ticks and commands there?"""
+    from mart.episodes.folder import episode_files
+    from mart.recorder import formatting
+    from mart.recorder.verify.file_check import check_file
+
+    found = [check_file(path) for path in episode_files(_given(paths))]
+    print_result(*formatting.checked(found), as_json)
+    return 0 if all(one.is_whole for one in found) else 1
+
+
+@episodes.command()
 @_path
 @_replica
 @json_option

@@ -11,8 +11,10 @@ from mart.episodes.datasets import NamedDataSet
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, NotFound
+from mart.protocol.vocabulary import EpisodeEndedBy
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.repair.repair import RepairResult
+from mart.recorder.verify.file_check import FileCheck
 from mart.recorder.verify.resimulation import ComparedStretch
 
 _COLUMNS = ("path", "outcome", "verdict", "ticks", "real time", "operators", "")
@@ -40,14 +42,26 @@ def _cells(path: str, row: LabelledEpisode) -> tuple[str, ...]:
         return (path, "–", "–", "–", "–", "–", row.error)
     marks = {
         "incomplete": not row.complete,
+        f"{row.missing_commands} commands missing": row.missing_commands,
         "repaired": row.repaired,
         "paused": row.interrupted,
         "dropped": row.dropped,
     }
-    remarks = [word for word, holds in marks.items() if holds] + ([row.note] if row.note else [])
+    remarks = [ending(row)] if ending(row) else []
+    remarks += [word for word, holds in marks.items() if holds] + ([row.note] if row.note else [])
     pace = "–" if row.real_time_factor is None else f"{row.real_time_factor:.3f}"
     drivers = ", ".join(f"{arm} {who}" for arm, who in row.operators.items())
     return (path, row.outcome, row.verdict, str(row.ticks), pace, drivers, "; ".join(remarks))
+
+
+def ending(row: LabelledEpisode) -> str:
+    """Return who ended an episode and how much of its task was done, where that does not go without saying."""
+    parts = (
+        [f"said by {row.ended_by_name or 'an operator'}"] if row.ended_by == EpisodeEndedBy.OPERATOR else []
+    )
+    if row.subtasks is not None and row.subtasks_done is not None and row.subtasks_done < row.subtasks:
+        parts.append(f"{row.subtasks_done} of {row.subtasks} steps")
+    return ", ".join(parts)
 
 
 def model(file: EpisodeFile) -> str:
@@ -91,6 +105,31 @@ def _agreement(stretch: ComparedStretch) -> str:
         return "the same, bit for bit"
     ticks = ", ".join(map(str, stretch.different[:10])) + (", …" if len(stretch.different) > 10 else "")
     return f"{len(stretch.different)} differ: {ticks}"
+
+
+def checked(files: Sequence[FileCheck]) -> tuple[dict[str, Any], str]:
+    """Return what `check` found, as JSON and in words."""
+    told = [
+        {
+            "path": str(one.path),
+            "whole": one.is_whole,
+            "missing_ticks": one.missing_ticks,
+            "missing_commands": one.missing_commands,
+            "error": one.error,
+        }
+        for one in files
+    ]
+    lines = [f"{one.path}: {_lacks(one)}." for one in files]
+    whole = sum(one.is_whole for one in files)
+    lines += [f"{whole} of {len(files)} are whole."] if len(files) > 1 else []
+    return {"episodes": told}, "\n".join(lines) or "There are no episodes."
+
+
+def _lacks(one: FileCheck) -> str:
+    if one.error is not None:
+        return one.error.rstrip(".")
+    missing = {"ticks": one.missing_ticks, "commands": one.missing_commands}
+    return ", ".join(f"{count} {what} are missing" for what, count in missing.items() if count) or "whole"
 
 
 def repaired(repaired: Sequence[RepairResult]) -> tuple[dict[str, Any], str]:

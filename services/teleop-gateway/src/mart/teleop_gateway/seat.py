@@ -27,6 +27,7 @@ from mart.teleop_gateway.video.picture_relay import PictureRelay
 from mart.teleop_gateway.video.quality import QUALITIES
 from mart.teleop_gateway.video.video_publisher import VideoPublisher
 from mart.teleop_gateway.video.view_manager import ViewManager
+from mart.teleop_gateway.webrtc.ice_watch import IceWatch
 from mart.teleop_gateway.webrtc.offer_handler import OfferHandler
 from mart.teleop_gateway.webrtc.peer_messages import PeerMessages
 from mart.teleop_gateway.webrtc.peers import Peers
@@ -48,7 +49,8 @@ class Seat:
         self._bus, self._address = bus, address
         self._latency = MotionToPhoton(address.arm)
         self._events = SeatEvents(bus, address)
-        self._peers = Peers(bus, settings.ice_servers)
+        self._ice = IceWatch(settings)
+        self._peers = Peers(bus, self._ice.usable)
         self._input = SeatInput(
             bus,
             address,
@@ -89,6 +91,7 @@ class Seat:
 
     async def run(self) -> None:
         """Serve until cancelled."""
+        await self._ice.check()
         with contextlib.ExitStack() as stack:
             for opened in self._open():
                 stack.callback(opened.close)
@@ -97,7 +100,9 @@ class Seat:
                 token = keys.alive(ServiceKind.SEAT, self._address.id)
                 with contextlib.closing(self._bus.announce(token)):
                     await asyncio.gather(
-                        self._broadcaster.run(), report_latency(self._latency, self._events.latency)
+                        self._broadcaster.run(),
+                        report_latency(self._latency, self._events.latency),
+                        self._ice.run(),
                     )
             finally:
                 await self._peers.close()

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from mart.runtime.settings import Settings
+from mart.runtime.ice_servers import IceSettings
 from mart.teleop_gateway.video.quality import QualityName
 
 
-class GatewaySettings(Settings):
+class GatewaySettings(IceSettings):
     """Hold what a gateway and its seat processes can be told."""
 
-    ice_servers: tuple[str, ...] = Field((), description="STUN and TURN URLs; none on one network.")
     hand_scale: float = Field(
         1.0, gt=0, le=4, description="Metres of tool motion for each metre of hand motion."
     )

@@ -21,7 +21,7 @@ from mart.protocol.recording import SUFFIX
 _log = logging.getLogger(__name__)
 
 FILE_NAME = "catalogue.sqlite"
-_VERSION = 3  # of what a row holds: another one is thrown away and derived anew
+_VERSION = 4  # of what a row holds: another one is thrown away and derived anew
 _SCHEMA = "CREATE TABLE episode (path TEXT PRIMARY KEY, size INTEGER, modified_ns INTEGER, row TEXT)"
 
 

@@ -45,6 +45,8 @@ class Announcer:
             verified=verification.verdict is Verdict.VERIFIED,
             verdict=verification.verdict.value,
             size_bytes=saved.size_bytes,
+            missing_ticks=saved.cadence.missing_ticks,
+            missing_commands=saved.cadence.missing_commands or 0,
         )
         if episode.outcome != EpisodeOutcome.UNSPECIFIED:
             told.outcome = outcome_from_word(episode.outcome)
@@ -72,4 +74,6 @@ def _in_words(saved: SavedEpisode) -> str:
         f"{episode.outcome}{'' if episode.complete else ', incomplete'}",
         f"{saved.verification.verdict.value} ({saved.verification.detail})",
     ]
+    lacks = {"ticks": saved.cadence.missing_ticks, "commands": saved.cadence.missing_commands}
+    parts += [f"{count} {what} are missing" for what, count in lacks.items() if count]
     return ", ".join(parts)

@@ -8,40 +8,36 @@ room's status, which is repeated, or, where nobody said anything, the last state
 
 from __future__ import annotations
 
-from array import array
 from collections import defaultdict
-from dataclasses import dataclass
 
 import numpy as np
 
+from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import (
     BARRIER_PHASE_PAUSED,
     BARRIER_PHASE_STOPPED,
     EPISODE_PHASE_ENDED,
     EPISODE_PHASE_PRACTICE,
     EPISODE_PHASE_RECORDING,
-    OUTCOME_FAILURE,
-    OUTCOME_SUCCESS,
     OUTCOME_UNSPECIFIED,
     ArmState,
+    Command,
     Event,
-    Outcome,
     RoomStatus,
     State,
+    ended_by_word,
     operator_word,
     outcome_word,
 )
 from mart.protocol.recording import CadenceRecord, EpisodeRecord, OperatorsRecord, Shift
+from mart.recorder.record.command_ledger import CommandLedger
+from mart.recorder.record.episode_ending import EpisodeEnding, ending_of
 from mart.recorder.record.room_facts import RoomFacts
+from mart.recorder.record.tick_clock import TickClock
 
-
-@dataclass(frozen=True)
-class EpisodeEnding:
-    """Say how an episode ended, and with which tick of its room."""
-
-    outcome: Outcome
-    reason: str
-    last_tick: int
+_UNPACED_HZ = 5000.0  # no machine ticks faster
+_SLACK_S = 2.0
+_TICKS_AHEAD = 10
 
 
 class EpisodeAccumulator:
@@ -61,8 +57,9 @@ class EpisodeAccumulator:
         self.missing_ticks = 0
         self.video_dropped = 0
         self.messages_lost = 0
+        self._commands = CommandLedger()
         self._first = self._last = first
-        self._clock = _TickClock()
+        self._clock = TickClock()
         self._waited_s: dict[str, float] = defaultdict(float)
         self._latency: dict[str, Event.Latency] = {}
         self._shifts: dict[str, list[tuple[int, int, ArmState]]] = defaultdict(list)  # (tick, epoch, arm)
@@ -87,9 +84,34 @@ class EpisodeAccumulator:
         """Whether the outcome is known and its last state has arrived."""
         return self.ended is not None and self._last.tick >= self.ended.last_tick
 
+    @property
+    def missing_commands(self) -> int:
+        """How many commands its states name that have not come."""
+        return self._commands.missing
+
+    def awaits(self, arm: str, command: Command) -> bool:
+        """Tell whether a state names this command and it has not come."""
+        return self._commands.awaits(arm, command)
+
+    def add_command(self, arm: str, command: Command) -> None:
+        """Take a command for an arm that is written into the file."""
+        self._commands.add_command(arm, command)
+
     def belongs(self, state: State) -> bool:
         """Tell whether a state is one of this episode."""
         return state.boot == self.boot and state.episode == self.number
+
+    def require_near(self, state: State, elapsed_s: float) -> None:
+        """Raise InvalidInput where a state of this episode leaps beyond what `elapsed_s` since the newest permits."""
+        paced = self.started is not None and not self.started.lockstep and self.started.control_hz > 0
+        most_hz = self.started.control_hz if self.started is not None and paced else _UNPACED_HZ
+        permitted = _TICKS_AHEAD + (elapsed_s + _SLACK_S) * most_hz
+        began = self._first.tick - self._first.episode_tick
+        if state.tick - self._last.tick > permitted or state.tick - state.episode_tick != began:
+            raise InvalidInput(
+                f"A state of tick {state.tick} came {elapsed_s:.1f} s after that of tick {self._last.tick}, "
+                f"in an episode that began at tick {began}."
+            )
 
     def add_state(self, state: State) -> bool:
         """Add a state, and tell whether it is news: one that repeats or precedes the newest is not."""
@@ -97,6 +119,7 @@ class EpisodeAccumulator:
             return False
         if self.states:
             self.missing_ticks += state.tick - self._last.tick - 1
+            self._commands.add_state(state)
         self.states += 1
         self._last = state
         self._clock.add(state)
@@ -111,8 +134,7 @@ class EpisodeAccumulator:
         if event.HasField("episode_started") and event.episode_started.number == self.number:
             self.started, self.seed = event.episode_started, event.episode_started.seed
         elif event.HasField("episode_ended") and event.episode_ended.number == self.number:
-            said = event.episode_ended
-            self.ended = EpisodeEnding(said.outcome, said.reason, said.last_tick)
+            self.ended = EpisodeEnding.of(event.episode_ended, event.episode_ended.last_tick)
         elif event.HasField("barrier_changed"):
             self.interrupted |= event.barrier_changed.phase in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED)
         elif event.HasField("latency") and _is_usable(event.latency) and event.latency.arm in self.arms:
@@ -121,7 +143,12 @@ class EpisodeAccumulator:
     def add_status(self, status: RoomStatus) -> None:
         """Learn what a room's status says of this episode; being repeated, it makes up for an event that was lost."""
         said = status.episode
-        if status.boot != self.boot or said.number != self.number:
+        if status.boot != self.boot:
+            return
+        last = status.last_ended
+        if last.number == self.number and self.ended is None and last.outcome != OUTCOME_UNSPECIFIED:
+            self.ended = EpisodeEnding.of(last, last.last_tick)
+        if said.number != self.number:
             return
         if said.phase not in (EPISODE_PHASE_RECORDING, EPISODE_PHASE_ENDED):
             return
@@ -129,7 +156,7 @@ class EpisodeAccumulator:
         self.seed = said.seed if self.seed is None else self.seed
         if said.phase == EPISODE_PHASE_ENDED and self.ended is None and said.outcome != OUTCOME_UNSPECIFIED:
             last_tick = self._first.tick - self._first.episode_tick + said.ticks
-            self.ended = EpisodeEnding(said.outcome, said.reason, last_tick)
+            self.ended = EpisodeEnding.of(said, last_tick)
 
     def is_past(self, status: RoomStatus) -> bool:
         """Tell whether the room has gone on: it practises again after this episode, or is at a later one."""
@@ -141,11 +168,12 @@ class EpisodeAccumulator:
         """Decide how it ended where nobody said so: by its last state, else it is unfinished for this reason."""
         self.unfinished_reason = unfinished_reason
         if self.ended is None:
-            self.ended = _ending_of(self._last, self.started)
+            self.ended = ending_of(self._last, self.started)
 
     def record(self, facts: RoomFacts, repaired: bool = False) -> EpisodeRecord:
         """Return the record `mart.episode`. repaired: whether it is put together from what a crash had left."""
         started, ended = self.started, self.ended
+        subtasks = [subtask.done for subtask in self._last.progress.subtasks]
         return EpisodeRecord(
             room=self.room,
             number=self.number,
@@ -163,6 +191,11 @@ class EpisodeAccumulator:
             last_tick=self._last.tick,
             outcome=outcome_word(ended.outcome if ended else OUTCOME_UNSPECIFIED),
             reason=ended.reason if ended else self.unfinished_reason,
+            ended_by=ended_by_word(ended.ended_by) if ended else None,
+            ended_by_name=(ended and ended.ended_by_name) or None,
+            ended_by_arm=(ended and ended.ended_by_arm) or None,
+            subtasks_done=sum(subtasks) if subtasks else None,
+            subtasks=len(subtasks) or None,
             interrupted=self.interrupted,
             complete=self.has_all and not self.missing_ticks and self._first.episode_tick == 0,
             repaired=repaired,
@@ -172,6 +205,7 @@ class EpisodeAccumulator:
         """Return the record `mart.cadence`."""
         return self._clock.cadence(
             missing_ticks=self.missing_ticks,
+            missing_commands=self.missing_commands,
             waited_s=float(sum(self._waited_s.values())),
             waited_for_s={arm: self._waited_s.get(arm, 0.0) for arm in self.arms},
             motion_to_photon_p50_ms={arm: latency.p50_ms for arm, latency in self._latency.items()},
@@ -197,47 +231,5 @@ class EpisodeAccumulator:
             shifts.append((state.episode_tick, arm.seat_epoch, arm))
 
 
-def _ending_of(last: State, started: Event.EpisodeStarted | None) -> EpisodeEnding | None:
-    """Return the ending that a last state implies: a room ends an episode at the tick on which its task is decided."""
-    if last.progress.success:
-        return EpisodeEnding(OUTCOME_SUCCESS, "the task is done", last.tick)
-    if last.progress.failed:
-        return EpisodeEnding(OUTCOME_FAILURE, last.progress.failed, last.tick)
-    limit_ticks = round(started.time_limit_s * started.control_hz) if started is not None else 0
-    if limit_ticks and last.episode_tick >= limit_ticks:
-        return EpisodeEnding(OUTCOME_FAILURE, "time is up", last.tick)
-    return None
-
-
 def _is_usable(latency: Event.Latency) -> bool:
     return bool(np.isfinite([latency.p50_ms, latency.p95_ms]).all())
-
-
-class _TickClock:
-    """Keep when ticks fired. The first state of an episode is a reset and no tick, so it does not count."""
-
-    def __init__(self) -> None:
-        self._fired_ns = array("Q")
-        self._sim_s = array("d")
-
-    def add(self, state: State) -> None:
-        if state.episode_tick > 0 and state.stamps.fired_ns:
-            self._fired_ns.append(state.stamps.fired_ns)
-            self._sim_s.append(state.sim_time_s)
-
-    def cadence(self, **known: object) -> CadenceRecord:
-        if len(self._fired_ns) < 2:
-            return CadenceRecord(wall_s=0.0, sim_s=0.0, **known)
-        fired_ns = np.array(self._fired_ns, dtype=np.int64)
-        intervals_ms = np.diff(fired_ns) / 1e6
-        wall_s = float(fired_ns[-1] - fired_ns[0]) / 1e9
-        sim_s = self._sim_s[-1] - self._sim_s[0]
-        return CadenceRecord(
-            real_time_factor=sim_s / wall_s if wall_s > 0 else None,
-            wall_s=wall_s,
-            sim_s=sim_s,
-            tick_interval_p50_ms=float(np.percentile(intervals_ms, 50)),
-            tick_interval_p95_ms=float(np.percentile(intervals_ms, 95)),
-            tick_interval_max_ms=float(intervals_ms.max()),
-            **known,
-        )

@@ -19,6 +19,7 @@ from mart.protocol.recording import (
     PART_SUFFIX,
     SUFFIX,
     VERSIONS,
+    CadenceRecord,
     EpisodeRecord,
     RoomRecord,
     VerificationRecord,
@@ -39,6 +40,7 @@ class SavedEpisode:
 
     path: Path
     episode: EpisodeRecord
+    cadence: CadenceRecord
     verification: VerificationRecord
     size_bytes: int
 
@@ -60,14 +62,14 @@ def finalize(
         file.describe(facts.record())
     file.flush()
     verification = verify(EpisodeFile(file.path, {}), facts.record())
-    record = episode.record(facts, repaired)
-    for known in (record, episode.cadence(), episode.operators(facts), verification):
+    record, cadence = episode.record(facts, repaired), episode.cadence()
+    for known in (record, cadence, episode.operators(facts), verification):
         file.add_record(known.NAME, known.to_strings())
     file.add_record(VERSIONS, versions())
     file.finish()
     EpisodeFile(file.path, {}).check(file.messages)
     file.move_to(free_path(root, record))
-    return SavedEpisode(file.path, record, verification, file.path.stat().st_size)
+    return SavedEpisode(file.path, record, cadence, verification, file.path.stat().st_size)
 
 
 def part_path(root: Path, episode: EpisodeAccumulator, facts: RoomFacts) -> Path:

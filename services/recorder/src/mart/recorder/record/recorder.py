@@ -9,12 +9,12 @@ from mart.protocol import clock, keys
 from mart.protocol.errors import InvalidInput
 from mart.recorder.record.announcer import Announcer
 from mart.recorder.record.arrival_decoder import UnusableArrivals
+from mart.recorder.record.episode_closing import SILENCE_S
 from mart.recorder.record.finalize import VerifyFile
 from mart.recorder.record.finalize_worker import FinalizeWorker, TidyFolder
 from mart.recorder.record.inbox import Inbox, InboxBatch
 from mart.recorder.record.room_models import RoomModels
 from mart.recorder.record.room_recording import RecordingTools, RoomRecording
-from mart.recorder.record.room_tracker import SILENCE_S
 from mart.runtime.bus import Bus
 
 _STEP_S = 0.05
@@ -82,7 +82,7 @@ class Recorder:
         self._rooms = {
             name: room
             for name, room in self._rooms.items()
-            if room.file is not None or now_s - room.heard_s <= SILENCE_S
+            if room.is_writing or now_s - room.heard_s <= SILENCE_S
         }
 
     def _report_losses(self, batch: InboxBatch) -> None:

@@ -41,13 +41,18 @@ class RoomRecording:
     """Write the episodes of one room, one file after another. A full disk ends the file at hand, never the room."""
 
     def __init__(self, room: str, tools: RecordingTools) -> None:
-        self.file: EpisodeWriter | None = None
+        self._files: dict[EpisodeAccumulator, EpisodeWriter] = {}
         self.heard_s = 0.0
         self._room = room
         self._tools = tools
         self._tracker = RoomTracker(room)
         self._boot = 0
         self._flushed_s = 0.0
+
+    @property
+    def is_writing(self) -> bool:
+        """Whether a file is open."""
+        return bool(self._files)
 
     def take(self, arrival: BusArrival, now_s: float) -> None:
         """Write what has arrived, if it belongs into a file. Raises InvalidInput for what cannot be used."""
@@ -57,18 +62,18 @@ class RoomRecording:
     def advance(self, now_s: float) -> None:
         """Do what it is time for: close a file that is over, bring an open one onto the disk."""
         self._apply(self._tracker.advance(now_s))
-        if self.file is not None and now_s - self._flushed_s >= FLUSH_S:
-            self.flush(now_s)
+        if self._files and now_s - self._flushed_s >= FLUSH_S:
+            self._flush(now_s)
 
-    def flush(self, now_s: float) -> None:
-        """Bring the open file onto the disk, with what is known about the room by now."""
-        assert self.file is not None
+    def _flush(self, now_s: float) -> None:
+        """Bring the open files onto the disk, with what is known about the room by now."""
         self._flushed_s = now_s
-        try:
-            describe_room(self.file, self._tracker.facts, self._tools.models.known(self._room, self._boot))
-            self.file.flush()
-        except OSError as error:
-            self._give_up(error)
+        for episode, file in list(self._files.items()):
+            try:
+                describe_room(file, self._tracker.facts, self._tools.models.known(self._room, self._boot))
+                file.flush()
+            except OSError as error:
+                self._give_up(episode, error)
 
     def finish(self, reason: str) -> None:
         """End what is being recorded; the file says why it was not finished."""
@@ -77,7 +82,7 @@ class RoomRecording:
     def count_losses(self, messages: int, frames: int, text: str) -> None:
         """Note in the open file what the recorder could not keep up with, and tell the room in these words."""
         self._tracker.lost(messages, frames)
-        if self.file is not None:
+        if self._files:
             self._tools.announcer.notice(self._room, "error" if messages else "warning", text)
 
     def _decide(self, message: ArrivedMessage, arrival: BusArrival, now_s: float) -> Sequence[FileAction]:
@@ -92,7 +97,7 @@ class RoomRecording:
             case Event():
                 return self._tracker.event(message, payload, arrived_ns, now_s)
             case Command():
-                return self._tracker.command(keys.arm_of(arrival.key), message, payload, arrived_ns)
+                return self._tracker.command(keys.arm_of(arrival.key), message, payload, arrived_ns, now_s)
             case _:
                 return self._tracker.video(keys.camera_of(arrival.key), message, payload, arrived_ns)
 
@@ -106,22 +111,21 @@ class RoomRecording:
             try:
                 self._act(action)
             except OSError as error:
-                self._give_up(error)
-                return
+                self._give_up(action.episode, error)
 
     def _act(self, action: FileAction) -> None:
         if isinstance(action, OpenFile):
             self._open(action.episode)
         elif isinstance(action, CloseFile):
             self._close(action.episode)
-        elif self.file is not None:
-            self.file.add(action)
+        elif action.episode in self._files:
+            self._files[action.episode].add(action.entry)
 
     def _open(self, episode: EpisodeAccumulator) -> None:
-        self.file = None
-        self.file = EpisodeWriter(part_path(self._tools.root, episode, self._tracker.facts))
+        file = EpisodeWriter(part_path(self._tools.root, episode, self._tracker.facts))
+        self._files[episode] = file
         self._flushed_s = float("-inf")  # the first state is on the disk at once
-        _log.info("%s: recording episode %d into %s", episode.room, episode.number, self.file.path)
+        _log.info("%s: recording episode %d into %s", episode.room, episode.number, file.path)
         if self._tools.models.known(self._room, episode.boot) is None:
             self._tools.finalizer.fetch_model(self._room, episode.boot)  # the first answer may have been lost
         free = shutil.disk_usage(self._tools.root).free
@@ -130,7 +134,7 @@ class RoomRecording:
             self._tools.announcer.notice(episode.room, "warning", text)
 
     def _close(self, episode: EpisodeAccumulator) -> None:
-        file, self.file = self.file, None
+        file = self._files.pop(episode, None)
         if file is None:
             return
         if episode.is_glimpse:
@@ -138,14 +142,12 @@ class RoomRecording:
         else:
             self._tools.finalizer.finalize(file, episode, copy.deepcopy(self._tracker.facts))
 
-    def _give_up(self, error: OSError) -> None:
+    def _give_up(self, episode: EpisodeAccumulator, error: OSError) -> None:
         """Leave this episode: the disk is full or broken. The room and its next episode go on."""
-        episode, file = self._tracker.episode, self.file
-        self._tracker.abandon()
-        self.file = None
+        self._tracker.abandon(episode)
+        file = self._files.pop(episode, None)
         if file is not None:
             file.abandon()
-        number = f" {episode.number}" if episode is not None else ""
         where = f" What was written until now is in {file.path}." if file is not None else ""
-        text = f"Recording of episode{number} stopped: {error.strerror}.{where} The next one is tried again."
+        text = f"Recording of episode {episode.number} stopped: {error.strerror}.{where} The next one is tried again."
         self._tools.announcer.notice(self._room, "error", text)

@@ -75,12 +75,12 @@ def _adopt(part: Path, root: Path) -> RepairResult | None:
     try:
         file = EpisodeFile.open(part)
         file.check()
-        episode, verification = file.episode, file.verification
+        episode, cadence, verification = file.episode, file.cadence, file.verification
     except Corrupt:
         return None
     path = free_path(root, episode)
     path.parent.mkdir(parents=True, exist_ok=True)
-    saved = SavedEpisode(part.rename(path), episode, verification, path.stat().st_size)
+    saved = SavedEpisode(part.rename(path), episode, cadence, verification, path.stat().st_size)
     return RepairResult(part, saved, "It was complete and only lacked its name.")
 
 
@@ -120,7 +120,7 @@ class _Mended:
         self.episode: EpisodeAccumulator | None = None
         self.facts = RoomFacts("")
         self._file = file
-        self._early: list[Event] = []  # events before the first state
+        self._early: list[Event | Command] = []  # before the first state
 
     def add(self, found: SalvagedMessage | Attachment | Metadata) -> None:
         if isinstance(found, SalvagedMessage):
@@ -146,25 +146,30 @@ class _Mended:
                 McapEntry(found.topic, kind, found.payload, found.arrived_ns, found.sent_ns, found.sequence)
             )
         if kind is Event:
-            self._add_event(codec.decode(Event, found.payload))
+            event = codec.decode(Event, found.payload)
+            self.facts.learn_event(event)
+            self._tell(event)
+        elif kind is Command:
+            self._tell(codec.decode(Command, found.payload))
 
     def _add_state(self, found: SalvagedMessage) -> None:
         state = codec.decode(State, found.payload)
         if self.episode is None:
             self.facts.room = state.room
             self.episode = EpisodeAccumulator(state)
-            for event in self._early:
-                self.episode.add_event(event)
+            for early in self._early:
+                self._tell(early)
         self.episode.add_state(state)
         for entry in state_entries(state, found.payload, found.arrived_ns, self.facts.task):
             self._file.add(entry)
 
-    def _add_event(self, event: Event) -> None:
-        self.facts.learn_event(event)
+    def _tell(self, said: Event | Command) -> None:
         if self.episode is None:
-            self._early.append(event)
+            self._early.append(said)
+        elif isinstance(said, Event):
+            self.episode.add_event(said)
         else:
-            self.episode.add_event(event)
+            self.episode.add_command(said.arm, said)
 
 
 @contextmanager

@@ -16,6 +16,11 @@ import numpy as np
 
 from mart.protocol.errors import Conflict, Forbidden, InvalidInput
 from mart.protocol.messages import (
+    ENDED_BY_ABSENCE,
+    ENDED_BY_OPERATOR,
+    ENDED_BY_TASK,
+    ENDED_BY_TIME,
+    ENDED_BY_UNSPECIFIED,
     EPISODE_PHASE_COUNTDOWN,
     EPISODE_PHASE_ENDED,
     EPISODE_PHASE_PRACTICE,
@@ -26,6 +31,7 @@ from mart.protocol.messages import (
     OUTCOME_FAILURE,
     OUTCOME_SUCCESS,
     OUTCOME_UNSPECIFIED,
+    EndedBy,
     EpisodePhase,
     EpisodeRequest,
     Outcome,
@@ -62,6 +68,15 @@ class BeginEpisode:
 
 
 @dataclass(frozen=True)
+class EpisodeEnder:
+    """Tell what brought an episode to its end; of an operator, the name that others see and the arm."""
+
+    by: EndedBy = ENDED_BY_UNSPECIFIED
+    name: str = ""
+    arm: str = ""
+
+
+@dataclass(frozen=True)
 class EndEpisode:
     """Ask for the recording to end with this outcome."""
 
@@ -69,6 +84,7 @@ class EndEpisode:
     outcome: Outcome
     ticks: int
     reason: str
+    ender: EpisodeEnder
 
 
 Effect = ResetWorld | BeginEpisode | EndEpisode
@@ -90,6 +106,7 @@ class EpisodeStateMachine:
         self.ticks = 0
         self.outcome: Outcome = OUTCOME_UNSPECIFIED
         self.reason = ""
+        self.ender = EpisodeEnder()
         self.interrupted = False
         self._room_seed = room_seed
         self._horizon_ticks = horizon_ticks
@@ -135,9 +152,9 @@ class EpisodeStateMachine:
         """Void all readiness, because somebody came, left or was replaced."""
         self._ready = frozenset()
         if self.phase == EPISODE_PHASE_COUNTDOWN:
-            return self.abandon(OUTCOME_DISCARDED, "the seats changed", now_s)
+            return self.abandon(OUTCOME_DISCARDED, "the seats changed", EpisodeEnder(ENDED_BY_ABSENCE), now_s)
         if self.recording and all(seat.operator == OPERATOR_HOLD for seat in seats):
-            return self.end(OUTCOME_DISCARDED, "everyone left", now_s)
+            return self.end(OUTCOME_DISCARDED, "everyone left", EpisodeEnder(ENDED_BY_ABSENCE), now_s)
         return ()
 
     def advance(self, everyone_present: bool, now_s: float) -> Sequence[Effect]:
@@ -157,28 +174,28 @@ class EpisodeStateMachine:
             return ()
         self.ticks += 1
         if success:
-            return self.end(OUTCOME_SUCCESS, "the task is done", now_s)
+            return self.end(OUTCOME_SUCCESS, "the task is done", EpisodeEnder(ENDED_BY_TASK), now_s)
         if failed:
-            return self.end(OUTCOME_FAILURE, failed, now_s)
+            return self.end(OUTCOME_FAILURE, failed, EpisodeEnder(ENDED_BY_TASK), now_s)
         if self.ticks >= self._horizon_ticks:
-            return self.end(OUTCOME_FAILURE, "time is up", now_s)
+            return self.end(OUTCOME_FAILURE, "time is up", EpisodeEnder(ENDED_BY_TIME), now_s)
         return ()
 
     def interrupt(self) -> None:
         """Mark a recording as interrupted, because the room was paused or stopped."""
         self.interrupted = self.interrupted or self.recording
 
-    def end(self, outcome: Outcome, reason: str, now_s: float) -> Sequence[Effect]:
+    def end(self, outcome: Outcome, reason: str, ender: EpisodeEnder, now_s: float) -> Sequence[Effect]:
         """End the recording with this outcome."""
         self.phase = EPISODE_PHASE_ENDED
-        self.outcome, self.reason = outcome, reason
+        self.outcome, self.reason, self.ender = outcome, reason, ender
         self._until_s = now_s + ENDED_S
-        return (EndEpisode(self.number, outcome, self.ticks, reason),)
+        return (EndEpisode(self.number, outcome, self.ticks, reason, ender),)
 
-    def abandon(self, outcome: Outcome, reason: str, now_s: float) -> Sequence[Effect]:
+    def abandon(self, outcome: Outcome, reason: str, ender: EpisodeEnder, now_s: float) -> Sequence[Effect]:
         """Go back to practice with a fresh world at once; a recording ends with this outcome."""
         if self.recording:
-            return (*self.end(outcome, reason, now_s), *self._practice())
+            return (*self.end(outcome, reason, ender, now_s), *self._practice())
         if self.phase == EPISODE_PHASE_COUNTDOWN:
             self.number -= 1  # this episode never began; its number is free again
         return self._practice()
@@ -212,11 +229,13 @@ class EpisodeStateMachine:
             raise InvalidInput(
                 "An outcome that does not exist was given; it must be success, failure or discarded."
             )
-        return self.end(finish.outcome, "said by an operator", now_s)
+        ender = _operator(seats, finish.holder_id)
+        return self.end(finish.outcome, f"said by {ender.name or 'an operator'}", ender, now_s)
 
     def _answer_reset(self, reset: EpisodeRequest.Reset, seats: SeatTable, now_s: float) -> Sequence[Effect]:
         _require_say(seats, tuple(seats), reset.holder_id)
-        return self.abandon(OUTCOME_DISCARDED, "reset by an operator", now_s)
+        ender = _operator(seats, reset.holder_id)
+        return self.abandon(OUTCOME_DISCARDED, f"reset by {ender.name or 'an operator'}", ender, now_s)
 
     def _count_down(self, number: int, now_s: float) -> Sequence[Effect]:
         self.number = number or self.number + 1
@@ -234,6 +253,7 @@ class EpisodeStateMachine:
     def _begin(self, phase: EpisodePhase, seed: int) -> None:
         self.phase, self.seed, self.ticks = phase, seed, 0
         self.outcome, self.reason, self.interrupted = OUTCOME_UNSPECIFIED, "", False
+        self.ender = EpisodeEnder()
         self._ready = frozenset()
         self._until_s = 0.0
 
@@ -244,3 +264,13 @@ def _require_say(seats: SeatTable, about: tuple[SeatHolder, ...], holder_id: str
         return
     if holder_id or seats.of_operator(OPERATOR_HUMAN):
         raise Forbidden("This is decided by those who drive; take a seat to have a say.")
+
+
+def _operator(seats: SeatTable, holder_id: str) -> EpisodeEnder:
+    """Return who says something: the holder of a seat, or somebody without a name where no human sits."""
+    held = seats.of_holder(holder_id)
+    return (
+        EpisodeEnder(ENDED_BY_OPERATOR, held[0].name, held[0].arm)
+        if held
+        else EpisodeEnder(ENDED_BY_OPERATOR)
+    )

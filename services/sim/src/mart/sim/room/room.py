@@ -11,6 +11,7 @@ from mart.protocol.messages import (
     BARRIER_PHASE_PAUSED,
     BARRIER_PHASE_RUNNING,
     BARRIER_PHASE_STOPPED,
+    ENDED_BY_ROOM,
     EPISODE_PHASE_PRACTICE,
     OPERATOR_HOLD,
     OUTCOME_FAILURE,
@@ -33,6 +34,7 @@ from mart.sim.room.episode_state_machine import (
     BeginEpisode,
     Effect,
     EndEpisode,
+    EpisodeEnder,
     EpisodeStateMachine,
     ResetWorld,
     Terms,
@@ -78,6 +80,7 @@ class Room:
         horizon_ticks = round(self._time_limit_s / world.control_period_s)
         self._episode = EpisodeStateMachine(record.seed, horizon_ticks, record.episodes)
         self._ticker = Ticker(name, world, self._boot_ns, now_s)
+        self._last_ended: Event.EpisodeEnded | None = None
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
         self._status_due_s = now_s
@@ -181,6 +184,7 @@ class Room:
             rejected_commands=self.rejected.total(),
             plan=room_messages.plan(self._record),
             stop=self._stop.message(),
+            last_ended=self._last_ended,
         )
 
     def _fire(self, inputs: TickInputs, now_s: float) -> None:
@@ -188,7 +192,8 @@ class Room:
             state = self._ticker.advance(inputs, self._seats, self._episode, now_s)
         except Diverged as error:
             self._tell(room_messages.notice("warning", self._explain(error)))
-            self._do(self._episode.abandon(OUTCOME_FAILURE, "the physics diverged", now_s), now_s)
+            ender = EpisodeEnder(ENDED_BY_ROOM)
+            self._do(self._episode.abandon(OUTCOME_FAILURE, "the physics diverged", ender, now_s), now_s)
             return
         self._tell_state(state, now_s)
         progress = state.progress
@@ -231,14 +236,8 @@ class Room:
         self._barrier.restart(now_s)
 
     def _end(self, effect: EndEpisode) -> None:
-        ended = Event.EpisodeEnded(
-            number=effect.number,
-            outcome=effect.outcome,
-            ticks=effect.ticks,
-            reason=effect.reason,
-            last_tick=self._ticker.tick,
-        )
-        self._tell(Event(episode_ended=ended))
+        self._last_ended = room_messages.episode_ended(effect, self._ticker.tick, self._ticker.progress)
+        self._tell(Event(episode_ended=self._last_ended))
 
     def _give_up(self, arm: str, now_s: float) -> None:
         name = self._seats[arm].driver.called

@@ -17,7 +17,7 @@ from mart.protocol.messages import (
     Waiting,
 )
 from mart.sim.room.command_validation import ReceivedCommand
-from mart.sim.room.episode_state_machine import EpisodeStateMachine
+from mart.sim.room.episode_state_machine import EndEpisode, EpisodeStateMachine
 from mart.sim.room.saved_room import SavedRoom
 from mart.sim.room.seats import SeatHolder
 from mart.sim.world import TaskProgress
@@ -102,6 +102,26 @@ def episode(episode: EpisodeStateMachine, control_period_s: float, now_s: float)
         seed=episode.seed,
         interrupted=episode.interrupted,
         reason=episode.reason,
+        ended_by=episode.ender.by,
+        ended_by_name=episode.ender.name,
+        ended_by_arm=episode.ender.arm,
+    )
+
+
+def episode_ended(effect: EndEpisode, last_tick: int, progress: TaskProgress | None) -> Event.EpisodeEnded:
+    """Return what is said of an episode that has ended. progress: of the task in the last state."""
+    subtasks = progress.subtasks if progress is not None else {}
+    return Event.EpisodeEnded(
+        number=effect.number,
+        outcome=effect.outcome,
+        ticks=effect.ticks,
+        reason=effect.reason,
+        last_tick=last_tick,
+        ended_by=effect.ender.by,
+        ended_by_name=effect.ender.name,
+        ended_by_arm=effect.ender.arm,
+        subtasks_done=sum(subtasks.values()),
+        subtasks=len(subtasks),
     )
 
 

@@ -19,6 +19,7 @@ from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
 from mart.protocol.queryables import MAX_SDP_CHARACTERS
 from mart.protocol.tokens import Role
+from mart.runtime.ice_servers import IceServer
 from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.webrtc.aiortc_hooks import (
@@ -56,7 +57,7 @@ class PeerListener(Protocol):
 class Peer:
     """Hold one connection: answer its offer, then let it run; `close` ends it, also when it is already gone."""
 
-    def __init__(self, role: Role, listener: PeerListener, ice_servers: Sequence[str] = ()) -> None:
+    def __init__(self, role: Role, listener: PeerListener, ice_servers: Sequence[IceServer] = ()) -> None:
         offer_playout_delay()
         self.role = role
         self.codec: Codec | None = None
@@ -67,7 +68,7 @@ class Peer:
         self._status_rate = RateLimit(MAX_STATUS_PER_S)
         self._status: RTCDataChannel | None = None
         # An empty list, or aiortc asks a public STUN server and waits for it.
-        self._connection = RTCPeerConnection(RTCConfiguration([RTCIceServer(url) for url in ice_servers]))
+        self._connection = RTCPeerConnection(RTCConfiguration([*map(_as_aiortc, ice_servers)]))
         self._connection.on("datachannel", self._on_channel)
         self._connection.on("connectionstatechange", self._on_state)
 
@@ -149,3 +150,7 @@ class Peer:
         _log.debug("%s: %s", self.role, self._connection.connectionState)
         if self._connection.connectionState in _GONE:
             self._listener.on_gone(self)
+
+
+def _as_aiortc(server: IceServer) -> RTCIceServer:
+    return RTCIceServer(server.url, server.username or None, server.credential or None)

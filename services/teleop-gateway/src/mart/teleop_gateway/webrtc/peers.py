@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from typing import Protocol
 
 from mart.protocol.errors import Conflict
 from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.ice_servers import IceServer
 from mart.teleop_gateway.video.encoder import Codec, EncodedPicture
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
@@ -47,8 +48,8 @@ class PeersListener(Protocol):
 class Peers:
     """Let peers in, tell and show all of them things, and let them go. Attach a listener before the first offer."""
 
-    def __init__(self, bus: AsyncBus, ice_servers: Sequence[str]) -> None:
-        """Keep a seat's peers. `ice_servers` are STUN and TURN URLs."""
+    def __init__(self, bus: AsyncBus, ice_servers: Callable[[], Sequence[IceServer]]) -> None:
+        """Keep a seat's peers. `ice_servers` returns the STUN and TURN servers that answer now."""
         self._bus = bus
         self._ice_servers = ice_servers
         self._listener: PeersListener | None = None
@@ -70,7 +71,7 @@ class Peers:
         """
         if role is Role.VIEWER and len(self._viewers) >= MAX_VIEWERS:
             raise Conflict(f"{MAX_VIEWERS} viewers watch this seat already; wait until one leaves.")
-        peer = Peer(role, self, self._ice_servers)
+        peer = Peer(role, self, self._ice_servers())
         sdp = await peer.answer(offer_sdp)
         if role in self._driving:
             for _ in range(_GOODBYES):

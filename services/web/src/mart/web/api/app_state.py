@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mart.runtime.bus.aio import AsyncBus
+from mart.runtime.ice_servers import IceSettings
 from mart.web.access.pairing_codes import PairingCodes
 from mart.web.access.request_limits import RequestLimit
 from mart.web.access.user_sessions import UserSessions
@@ -14,6 +15,7 @@ from mart.web.clients.gateway_client import GatewayClient
 from mart.web.clients.platform_client import PlatformClient
 from mart.web.clients.room_client import RoomRequester
 from mart.web.clients.trainer_client import TrainerClient
+from mart.web.lobby.health_findings import RelayCheck
 from mart.web.lobby.lobby import Lobby
 
 
@@ -30,6 +32,7 @@ class AppState:
     """What all routes share; its maker closes what can be closed.
 
     `names`: what this site is called. `lan_host`: what a phone may call it; empty where it cannot reach it.
+    `ice`: the STUN and TURN servers that pages may use. `relays`: what became of asking them last, by URL.
     """
 
     bus: AsyncBus
@@ -44,6 +47,8 @@ class AppState:
     pairing_codes: PairingCodes = field(default_factory=PairingCodes)
     wrong_codes: RequestLimit = field(default_factory=_wrong_codes)
     offers: RequestLimit = field(default_factory=_offers)
+    ice: IceSettings = field(default_factory=IceSettings)
+    relays: dict[str, RelayCheck] = field(default_factory=dict)
 
     @property
     def rooms(self) -> RoomRequester:

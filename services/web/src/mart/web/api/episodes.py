@@ -85,7 +85,10 @@ async def label(path: Path, body: LabelRequest, app: App, _user: JoinedUser) -> 
     """Write down what somebody says of an episode."""
     said = body.model_dump(exclude_none=True)
     request = CatalogueRequest(label=CatalogueRequest.Label(path=path, **said))
-    return {"episode": _episode_json((await app.catalogue.ask(request)).episode)}
+    labelled = (await app.catalogue.ask(request)).episode
+    if body.outcome is not None:
+        app.lobby.see_label(labelled.path, body.outcome)
+    return {"episode": _episode_json(labelled)}
 
 
 @router.get("/episode/file")

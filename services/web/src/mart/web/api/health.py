@@ -11,7 +11,7 @@ from mart.protocol import clock
 from mart.protocol.vocabulary import ServiceKind
 from mart.web.access.certificate import days_left
 from mart.web.api.dependencies import App, JoinedUser, now_unix_s
-from mart.web.lobby.health_findings import delays, machine, rooms, services
+from mart.web.lobby.health_findings import delays, machine, relays, rooms, services
 from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api/health")
@@ -34,5 +34,6 @@ async def findings(app: App, _user: JoinedUser) -> Json:
         *rooms(app.lobby.rooms_json("", clock.monotonic_s())),
         *delays(app.lobby.latencies.fresh(clock.monotonic_s())),
         *machine(shutil.disk_usage(app.data_dir).free, days_left(app.certificate, now_unix_s())),
+        *relays(app.relays),
     )
     return {"findings": [asdict(finding) for finding in known]}

@@ -52,7 +52,7 @@ async def token(room: str, arm: str, app: App, user: JoinedUser) -> Json:
     signed = _sign(
         app, SeatToken(room, arm, seat.epoch, role, user.holder_id, now_unix_s() + _BROWSER_TOKEN_S)
     )
-    return {"token": signed, "role": role.value, "epoch": seat.epoch}
+    return {"token": signed, "role": role.value, "epoch": seat.epoch, "ice_servers": _ice_servers(app)}
 
 
 @router.post("/rooms/{room}/seats/{arm}/pair")
@@ -93,6 +93,7 @@ async def redeem(body: PairingRequest, app: App, address: Address) -> Json:
         "epoch": pairing.epoch,
         "name": pairing.name,
         "role": Role.PHONE.value,
+        "ice_servers": _ice_servers(app),
     }
 
 
@@ -111,7 +112,8 @@ async def phone_token(room: str, arm: str, app: App, authorization: Authorizatio
         raise Conflict(
             f"{driver} drives {arm} now; this phone goes on when the person who paired it takes the seat again."
         )
-    return {"token": _sign(app, replace(paired, epoch=seat.epoch)), "epoch": seat.epoch}
+    renewed = _sign(app, replace(paired, epoch=seat.epoch))
+    return {"token": renewed, "epoch": seat.epoch, "ice_servers": _ice_servers(app)}
 
 
 @router.post("/rooms/{room}/seats/{arm}/stop")
@@ -139,6 +141,11 @@ async def offer(room: str, arm: str, body: SdpOffer, app: App, authorization: Au
         )
     app.offers.spend(f"{seat_token.holder_id} {seat_token.role}", clock.monotonic_s())
     return {"sdp": await app.gateways.answer_offer(seat_token, _bearer(authorization), body.sdp)}
+
+
+def _ice_servers(app: AppState) -> list[dict[str, str]]:
+    """As a browser's RTCPeerConnection takes them, with credentials that are good for a session."""
+    return [server.as_json() for server in app.ice.ice_servers_at(now_unix_s())]
 
 
 def _bearer(authorization: str) -> str:

@@ -19,6 +19,7 @@ from mart.web.access.user_sessions import UserSessions
 from mart.web.api.app_state import AppState
 from mart.web.app.application import create_app
 from mart.web.app.certificate_renewal import keep_renewed, now
+from mart.web.app.relay_checks import keep_checking
 from mart.web.app.security_middleware import MAX_BODY_BYTES
 from mart.web.app.settings import WebSettings
 from mart.web.clients.missed_saves import MissedSaves
@@ -61,9 +62,11 @@ async def serve(
             lan_host=_lan_host(settings),
             data_dir=settings.data_dir,
             certificate=settings.certificate or settings.certificates_dir / "site.pem",
+            ice=settings,
         )
         config, background = _configured(settings, state)
-        tasks = [service.bus.spawn(work) for work in (*background, feed.keep_asking(), _missed(state))]
+        background += [feed.keep_asking(), _missed(state), keep_checking(settings, state.relays)]
+        tasks = [service.bus.spawn(work) for work in background]
         try:
             await feed.settled()
             # Whoever comes before the server is quite up waits in the listener's queue.

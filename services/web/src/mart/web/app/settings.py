@@ -6,10 +6,10 @@ from pathlib import Path
 
 from pydantic import Field
 
-from mart.runtime.settings import Settings
+from mart.runtime.ice_servers import IceSettings
 
 
-class WebSettings(Settings):
+class WebSettings(IceSettings):
     """Settings of the web service, from the environment or the command line."""
 
     web_host: str = Field(

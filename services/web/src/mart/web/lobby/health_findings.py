@@ -26,6 +26,14 @@ class HealthFinding:
 
 
 @dataclass(frozen=True)
+class RelayCheck:
+    """What became of asking a STUN or TURN server: what it gave, or why it gave nothing, in words."""
+
+    ok: bool
+    found: str
+
+
+@dataclass(frozen=True)
 class _Part:
     kind: ServiceKind
     name: str
@@ -104,3 +112,11 @@ def machine(free_bytes: int, certificate_days: float | None) -> Iterator[HealthF
         soon = certificate_days < CERTIFICATE_DAYS
         mend = "Put a new one at MART_CERTIFICATE and restart `mart web`." if soon else ""
         yield HealthFinding("machine", "Certificate", f"good for {certificate_days:.0f} days", mend)
+
+
+def relays(checks: Mapping[str, RelayCheck]) -> Iterator[HealthFinding]:
+    """Yield what is known of each STUN and TURN server; `checks`: by its URL."""
+    for url, check in checks.items():
+        kind = "Relay (TURN)" if url.startswith("turn") else "Address (STUN)"
+        mend = "" if check.ok else "Connections across networks may fail; see MART_ICE_SERVERS."
+        yield HealthFinding("machine", kind, check.found if not check.ok else f"{url} {check.found}", mend)

@@ -7,6 +7,7 @@ from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Event, RoomStatus
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.awaited_saves import AwaitedSaves
+from mart.web.lobby.last_episodes import LastEpisodes
 from mart.web.lobby.listeners import LobbyListeners
 from mart.web.lobby.live_services import LiveServices, service_of
 from mart.web.lobby.room_json import Json, event_json, status_json
@@ -26,6 +27,7 @@ class Lobby:
         self.thumbnails = Thumbnails()
         self.latencies = SeatLatencies()
         self.awaited_saves = AwaitedSaves()
+        self.last_episodes = LastEpisodes()
         self.listeners = LobbyListeners()
 
     def see_status(self, status: RoomStatus, now_s: float) -> None:
@@ -33,6 +35,7 @@ class Lobby:
         _in_words(status)
         if self.rooms.see(status, now_s):
             self.awaited_saves.see_status(status, now_s)
+            self.last_episodes.see_status(status, now_s)
             self.listeners.tell_change()
 
     def see_event(self, event: Event, now_s: float, wall_ns: int) -> None:
@@ -46,8 +49,15 @@ class Lobby:
                 self.latencies.see(event.room, event.latency, now_s)
             case "episode_saved":
                 self.awaited_saves.see_saved(event.room, event.episode_saved.number)
+                seats = self.rooms.seats(event.room)
+                self.last_episodes.see_saved(event.room, event.episode_saved, seats, now_s)
         if told is not None:
             self.listeners.tell_event(told, wall_ns)
+
+    def see_label(self, path: str, outcome: str) -> None:
+        """Take in that somebody has said how the episode at `path`, below the folder of episodes, ended."""
+        self.last_episodes.see_label(path, outcome)
+        self.listeners.tell_change()
 
     def see_alive(self, key: str, alive: bool) -> None:
         """Take in that the service of the liveliness key `key` came or went."""
@@ -77,6 +87,7 @@ class Lobby:
             **status_json(status, holder_id),
             "stale": self.rooms.is_stale(room, now_s),
             "still": self.thumbnails.number(room, now_s),
+            "last_episode": self.last_episodes.json(room, now_s),
         }
 
 

@@ -11,6 +11,7 @@ from mart.protocol.messages import (
     Seat,
     barrier_word,
     cue_word,
+    ended_by_word,
     operator_word,
     outcome_word,
     phase_word,
@@ -86,6 +87,7 @@ def status_json(status: RoomStatus, holder_id: str) -> Json:
         "episodes_good": status.episodes_good,
         "plan": _plan_json(status),
         "stop": _stop_json(status),
+        "unrecorded": status.unrecorded,
     }
 
 
@@ -133,4 +135,7 @@ def _episode_json(status: RoomStatus) -> Json:
         "elapsed_s": episode.elapsed_s,
         "outcome": outcome_word(episode.outcome),
         "reason": episode.reason,
+        "ended_by": ended_by_word(episode.ended_by) or "",
+        "ended_by_name": episode.ended_by_name,
+        "ended_by_arm": episode.ended_by_arm,
     }

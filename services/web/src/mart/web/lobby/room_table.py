@@ -68,6 +68,11 @@ class RoomTable:
                 return seat
         raise NotFound.named("arm", arm, (seat.arm for seat in status.seats))
 
+    def seats(self, room: str) -> tuple[Seat, ...]:
+        """Return the seats of `room`, none where it is not known."""
+        known = self._rooms.get(room)
+        return () if known is None else tuple(known.status.seats)
+
     def is_stale(self, room: str, now_s: float) -> bool:
         """Whether `room` is silent, or its sim is gone."""
         known = self._rooms[room]

@@ -135,7 +135,7 @@ export const redeemPairing = (code) => request("POST", "/pair", { code });
 
 /**
  * Renews a paired phone's token.
- * @type {(room: string, arm: string, token: string) => Promise<{ token: string, epoch: number }>}
+ * @type {(room: string, arm: string, token: string) => Promise<Omit<Api.SeatToken, "role">>}
  */
 export const phoneToken = (room, arm, token) =>
   request("GET", `${seatPath(room, arm)}/phone-token`, undefined, bearer(token));

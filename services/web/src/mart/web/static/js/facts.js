@@ -6,6 +6,15 @@ export const ARMS = /** @type {const} */ (["arm0", "arm1", "arm2", "arm3"]);
 /** The shape that stands for each arm. */
 export const ARM_SYMBOLS = /** @type {const} */ ({ arm0: "circle", arm1: "square", arm2: "triangle", arm3: "diamond" });
 
+/** The tasks as people call them. */
+export const TASK_TITLES = /** @type {const} */ ({
+  two_arm_drink_tray_lifting: "Drink tray lifting",
+  two_arm_multi_cube_lifting: "Multi-cube lifting",
+  two_arm_pick_place_handover: "Pick-place handover",
+  two_arm_table_assembly: "Table assembly",
+  three_arm_lift_wiping: "Lift and wipe",
+});
+
 /** What partners can say by one press, in the order of the keys. */
 export const CUES = /** @type {const} */ (["have_it", "go", "wait", "slower", "thanks"]);
 

@@ -25,6 +25,13 @@ export function sentence(name) {
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
+/** "time is up" → "Time is up."; nothing stays nothing. @type {(text: string) => string} */
+export function asSentence(text) {
+  if (!text) return "";
+  const begun = text.charAt(0).toUpperCase() + text.slice(1);
+  return /[.!?…]$/.test(begun) ? begun : `${begun}.`;
+}
+
 /** How an episode ended; nothing while it has not. @type {(outcome: Messages.Outcome | "unspecified") => string} */
 export const outcomeText = (outcome) =>
   ({ success: "Success", failure: "Failed", discarded: "Discarded", unspecified: "" })[outcome] ?? "";

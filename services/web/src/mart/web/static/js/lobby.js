@@ -13,6 +13,8 @@ import { roomCard } from "./room-card.js";
 
 const NAME_KEY = "mart.name";
 const POLICIES_MS = 5000;
+const PATIENCE_MS = 4000;
+const ASK_AGAIN_MS = 300;
 const LOST = "The connection to the server is lost; it comes back by itself.";
 
 const form = byId("join", HTMLFormElement);
@@ -136,9 +138,22 @@ const seatsOf = (list) => list.flatMap((room) => room.seats.map((seat) => ({ roo
 const ownSeat = () => seatsOf(rooms).find(({ seat }) => seat.mine);
 const firstFreeSeat = () => seatsOf(rooms.filter((room) => !room.stale)).find(({ seat }) => isFree(seat));
 
+/** A room that is late by a moment is waited for: on a busy machine it looks as if it had no seat. */
+async function seatToTry() {
+  const untilMs = performance.now() + PATIENCE_MS;
+  for (;;) {
+    const target = ownSeat() ?? firstFreeSeat();
+    if (target || performance.now() > untilMs) return target;
+    await new Promise((resolve) => {
+      setTimeout(resolve, ASK_AGAIN_MS);
+    });
+    ({ rooms } = await api.rooms());
+  }
+}
+
 /** Takes the first free seat, lets scripts drive the others that nobody drives, and goes there. */
 async function tryIt() {
-  const target = ownSeat() ?? firstFreeSeat();
+  const target = await seatToTry();
   if (!target) throw new Error("No seat is free at the moment; one shows up here as soon as it is.");
   const { room, seat } = target;
   if (!seat.mine) {

@@ -21,7 +21,8 @@ import { toLobby } from "./member.js";
 /** @import { ActionCommand } from "./hud/status-bar-view.js" */
 
 const NOTICE_MS = 6000;
-const MOVED_KEY = "mart.moved";
+const RECORDED_KEY = "mart.recorded";
+const FINGERS = matchMedia("(hover: none) and (pointer: coarse)");
 const [, , roomName = "", , armId = ""] = location.pathname.split("/").map(decodeURIComponent);
 const video = byId("video", HTMLVideoElement);
 
@@ -33,7 +34,7 @@ let noticeTimer = 0;
 let followed = 0; // the seat epoch that the connection is for
 
 const confirm = new Confirm(() => render());
-const statusBar = new StatusBar((command) => run(command));
+const statusBar = new StatusBar((command) => press(command));
 const panel = new InputPanel(roomName, armId, (error) => notice(api.messageOf(error)));
 const input = new KeyboardMouseInput(byId("picture"), onKey);
 const link = new SeatLink({
@@ -75,11 +76,12 @@ function begin() {
 }
 
 /**
- * A button that was pressed with the pointer gives the keys back to the arm.
+ * What was pressed with the pointer gives the keys back to the arm.
  * @param {MouseEvent} event
  */
 function letGoOfButton({ detail, target }) {
-  if (detail > 0 && target instanceof Element) target.closest("button")?.blur();
+  const pressed = detail > 0 && target instanceof Element && target.closest("button, summary");
+  if (pressed instanceof HTMLElement) pressed.blur();
 }
 
 const ownSeat = () => room?.seats.find((seat) => seat.arm === armId);
@@ -108,7 +110,6 @@ function follow(seat) {
 /** @param {Api.RoomEvent} event */
 function onEvent(event) {
   if (event.room !== roomName) return;
-  if (event.kind === "episode_saved") statusBar.onSaved(event);
   if (event.kind === "cue_given") cues.onGiven(event, room);
   if (event.kind === "notice") notice(event.text);
   render();
@@ -118,14 +119,15 @@ function onEvent(event) {
 function onStatus(tick) {
   if (status === null) input.adoptGripper(tick.gripper);
   status = tick;
-  if (tick.engaged) localStorage.setItem(MOVED_KEY, "yes");
+  if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
   render();
 }
 
 function render() {
   const seat = ownSeat();
   const mine = seat?.mine ?? false;
-  statusBar.update({ room, seat, link, pending: confirm.pending, isNew: !localStorage.getItem(MOVED_KEY) });
+  const isNew = !localStorage.getItem(RECORDED_KEY);
+  statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches });
   showLatency(status, room);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
@@ -157,14 +159,25 @@ function showPicture(seat) {
 }
 
 /**
- * A key was pressed: some have to be pressed twice.
+ * A key was pressed; R discards a recording and resets a practice.
  * @param {Command} command
  */
 function onKey(command) {
   const wanted = command === "next" ? statusBar.next() : command;
   if (!wanted) return;
-  if (["success", "failure", "discard", "back"].includes(wanted) && !statusBar.offers(wanted)) return;
-  if (confirm.press(wanted)) run(wanted);
+  if (wanted === "discard" && statusBar.offers("reset")) press("reset");
+  else if (!isOffered(wanted) || statusBar.offers(wanted)) press(wanted);
+}
+
+/** Whether it can be done only while a button for it is shown. @param {string} command */
+const isOffered = (command) => ["success", "failure", "discard", "back"].includes(command);
+
+/**
+ * A key or a button of the status bar was pressed: some have to be pressed twice.
+ * @param {Exclude<Command, "next"> | ActionCommand} command
+ */
+function press(command) {
+  if (confirm.press(command)) run(command);
 }
 
 /** @type {Partial<Record<Messages.Operator, string>>} */
@@ -182,6 +195,7 @@ const ACTIONS = {
   help: () => panel.toggleHelp(),
   lobby: toLobby,
   here: () => link.connect(),
+  keep: keepDiscarded,
   take: () => api.takeSeat(roomName, armId),
   back: () => api.handBack(roomName, armId),
   leave: async () => {
@@ -189,6 +203,12 @@ const ACTIONS = {
     toLobby();
   },
 };
+
+/** The last episode was discarded, and is to be there all the same. */
+async function keepDiscarded() {
+  const saved = room?.last_episode?.saved;
+  if (saved) await api.labelEpisode(saved.path.replace(/^episodes\//, ""), { outcome: "failure" });
+}
 
 /** @param {Exclude<Command, "next"> | ActionCommand} command */
 async function run(command) {

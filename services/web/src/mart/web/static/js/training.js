@@ -10,6 +10,7 @@ import { OrderForm } from "./training/order-form.js";
 import { PolicyList } from "./training/policy-list.js";
 import { RunList } from "./training/run-list.js";
 import { RunView } from "./training/run-view.js";
+import { deviceText } from "./training/formatting.js";
 
 const REFRESH_MS = 2000;
 const WIDE = "(min-width: 64rem)";
@@ -58,7 +59,7 @@ async function load() {
  */
 function show(choices, jobs) {
   say("");
-  setText(byId("page-text"), choices.device === "cpu" ? "Trains on the processor." : `Trains on ${choices.device}.`);
+  setText(byId("page-text"), deviceText(choices.device));
   if (first) newTraining.open = jobs.length === 0 || matchMedia(WIDE).matches;
   first = false;
   form.show(choices);
@@ -69,7 +70,7 @@ function show(choices, jobs) {
 
 /** @param {Api.TrainingOrder} order */
 async function submit(order) {
-  await attempt(async () => {
+  return refusalOf(async () => {
     const { jobs } = await api.train(order);
     comparison.select(jobs.slice(0, comparison.most).map((job) => job.id));
     if (!matchMedia(WIDE).matches) newTraining.open = false;
@@ -78,17 +79,17 @@ async function submit(order) {
 
 /** @type {(job: string, action: "cancel" | "retry") => Promise<boolean>} */
 function act(job, action) {
-  return attempt(() => api.actOnJob(job, action));
+  return attempt("run-message", () => api.actOnJob(job, action));
 }
 
 /** @type {(promotion: Api.Promotion) => Promise<boolean>} */
 function promote(promotion) {
-  return attempt(() => api.promote(promotion));
+  return attempt("run-message", () => api.promote(promotion));
 }
 
 /** @type {(policy: string) => Promise<boolean>} */
 function withdraw(policy) {
-  return attempt(() => api.withdraw(policy));
+  return attempt("policies-message", () => api.withdraw(policy));
 }
 
 /**
@@ -96,28 +97,39 @@ function withdraw(policy) {
  * @type {(policy: string, room: string, arms: string[]) => Promise<boolean>}
  */
 function seat(policy, room, arms) {
-  return attempt(async () => {
+  return attempt("policies-message", async () => {
     for (const arm of arms) await api.takeSeat(room, arm, "policy", policy);
   });
 }
 
 /**
- * Runs what a press asked for, shows its failure, and then what holds; true where it worked.
- * @type {api.Attempt}
+ * Runs what a press asked for and says its failure beside it, until the next press; true where it worked.
+ * @param {string} place the id of the message beside what was pressed
+ * @param {() => unknown} action
  */
-async function attempt(action) {
+async function attempt(place, action) {
+  setText(byId(place), "");
+  const refusal = await refusalOf(action);
+  setText(byId(place), refusal);
+  if (refusal) byId(place).scrollIntoView({ block: "nearest" });
+  return refusal === "";
+}
+
+/**
+ * Runs what a press asked for and shows what holds then; answers why it failed, with nothing where it did not.
+ * @param {() => unknown} action
+ */
+async function refusalOf(action) {
   try {
     await action();
   } catch (error) {
-    say(api.messageOf(error));
-    byId("page-message").scrollIntoView({ block: "nearest" });
-    return false;
+    return api.messageOf(error);
   }
   await refresh();
-  return true;
+  return "";
 }
 
-/** @param {string} text */
+/** What keeps the page from knowing. @param {string} text */
 function say(text) {
   setText(byId("page-message"), text);
 }

@@ -1,6 +1,6 @@
-// Keys that end something have to be pressed twice: the same letters move the arm while space is held.
+// What ends something for everybody has to be pressed twice, by key and by finger: letters move the arm, too.
 
-const WITHIN_MS = 2000;
+const WITHIN_MS = 3000;
 const TWICE = new Set(["success", "failure", "discard", "leave"]);
 
 /** Knows which command waits for its second press (`pending`, empty for none). */

@@ -16,15 +16,25 @@ const KEYS = [
   ["Q E", "Up, down"],
   ["↑ ↓ ← → Z X", "Turn"],
   ["Shift", "Slowly"],
+  ["Drag", "The picture: left, right, up, down; with Shift or the right button: turn"],
+  ["Wheel", "Over the picture, at any time: away, towards you"],
   ["G", "Close or open the gripper"],
   ["N", "Next: ready, again"],
-  ["S F R", "With space let go, twice: success, failed, discard"],
+  ["R", "In practice: reset the scene"],
+  ["S F R", "While it records, with space let go, twice: success, failed, discard"],
   ["B", "Hand the arm back to the policy or script"],
   ["P", "Stop everything, and go on"],
   ["Q", "With space let go, twice: leave the seat"],
   [CUES.map((_, index) => index + 1).join(" "), `To your partners: ${CUES.map(cueText).join(", ")}`],
   ["?", "These keys"],
 ];
+
+const FINGERS = matchMedia("(hover: none) and (pointer: coarse)");
+const HAND_HERE = FINGERS.matches ? "Fingers on the picture" : "Keyboard and mouse";
+const HOW_TO_MOVE = {
+  mouse: "Hold space, or drag the picture; the wheel goes away and back.",
+  touch: "Drag the picture; with two fingers up and down: away and towards you, sideways: turn.",
+};
 
 /** Shows the input of one's own arm, pairs phones, and lists the keys. */
 export class InputPanel {
@@ -110,7 +120,7 @@ export class InputPanel {
  * @param {boolean} byPhone
  */
 function showInput(phone, byPhone) {
-  setText(byId("input"), byPhone ? phoneText(phone) : "Keyboard and mouse");
+  setText(byId("input"), byPhone ? phoneText(phone) : HAND_HERE);
   setText(byId("switch"), byPhone ? "Use the keyboard" : "Use the phone");
   setText(byId("pair"), phone ? "Pair another phone" : "Pair a phone");
   setShown(byId("switch"), phone !== null || byPhone);
@@ -124,7 +134,7 @@ function showInput(phone, byPhone) {
  * @param {boolean} byPhone
  */
 function showHand({ gripper, stopped, engaged, letGo }, byPhone) {
-  const how = byPhone ? "Hold the phone's lower part to move." : "Hold space or drag the picture to move.";
+  const how = byPhone ? "Hold the phone's lower part to move." : HOW_TO_MOVE[FINGERS.matches ? "touch" : "mouse"];
   setText(byId("clutch"), engaged ? "Moving" : letGoText(letGo) || how);
   setText(byId("gripper"), `${gripper > 0.5 ? "Open" : "Close"} gripper`);
   setText(byId("stop"), stopped ? "Go on" : "Stop everything");

@@ -2,15 +2,16 @@
 
 import { holderName, isMachine, theArm } from "../arms.js";
 import { LinkState } from "../link/seat-link.js";
-import { clockTime, fileSize, outcomeText, planText } from "../formatting.js";
+import { asSentence, clockTime, outcomeText, planText } from "../formatting.js";
+import { canBeKept, lastEpisodeOf, lastLabel, lastText } from "./last-episode.js";
 
 /** @import { State } from "../link/seat-link.js" */
 
-/** @typedef {Api.EpisodeAction | "take" | "back" | "here" | "lobby"} ActionCommand */
+/** @typedef {Api.EpisodeAction | "take" | "back" | "here" | "lobby" | "keep"} ActionCommand */
 
 /**
- * A button. `key`: the key that does the same, empty for none.
- * @typedef {{ command: ActionCommand, text: string, key: string, primary?: boolean }} Action
+ * A button. `key`: the key that does the same, empty for none; `look`: the next action's, or that of a seldom one.
+ * @typedef {{ command: ActionCommand, text: string, key: string, look?: "primary" | "quiet" }} Action
  */
 
 /**
@@ -20,35 +21,40 @@ import { clockTime, fileSize, outcomeText, planText } from "../formatting.js";
  * @property {string} figure
  * @property {string} limit
  * @property {string} detail
+ * @property {string} [hint] what helps to begin
  * @property {boolean} recording
  * @property {Action[]} actions
  */
 
 /**
- * What is known. `room` is null while it is not, `saved` is the newest saved episode of this room, `isNew`: whoever
- * looks has not moved the arm yet.
+ * What is known. `room` is null while it is not; `pending`: what has to be pressed once more; `isNew`: whoever looks
+ * has not recorded yet; `touch`: with fingers; `reached`: the goal was just seen reached in practice.
  * @typedef {object} Known
  * @property {Api.Room | null} room
  * @property {Api.Seat | undefined} seat one's own
  * @property {{ state: State, problem: string }} link
- * @property {Api.EpisodeSaved | null} saved
+ * @property {string} [pending]
  * @property {boolean} [isNew]
+ * @property {boolean} [touch]
+ * @property {boolean} [reached]
  */
 
 /** @satisfies {Record<string, Action>} */
 const ACTIONS = {
-  ready: { command: "ready", text: "Ready", key: "N", primary: true },
-  again: { command: "ready", text: "Again", key: "N", primary: true },
+  ready: { command: "ready", text: "Ready", key: "N", look: "primary" },
+  again: { command: "ready", text: "Again", key: "N", look: "primary" },
   unready: { command: "unready", text: "Not ready yet", key: "N" },
-  success: { command: "success", text: "Success", key: "S", primary: true },
+  success: { command: "success", text: "Success", key: "S" },
   failure: { command: "failure", text: "Failed", key: "F" },
   discard: { command: "discard", text: "Discard", key: "R" },
-  take: { command: "take", text: "Take this seat", key: "N", primary: true },
-  over: { command: "take", text: "Take over", key: "N", primary: true },
+  keep: { command: "keep", text: "Keep it, as failed", key: "" },
+  reset: { command: "reset", text: "Reset the scene", key: "R", look: "quiet" },
+  take: { command: "take", text: "Take this seat", key: "N", look: "primary" },
+  over: { command: "take", text: "Take over", key: "N", look: "primary" },
   back: { command: "back", text: "Hand back", key: "B" },
   record: { command: "ready", text: "Record", key: "" },
-  here: { command: "here", text: "Drive here", key: "N", primary: true },
-  lobby: { command: "lobby", text: "Go to the lobby", key: "N", primary: true },
+  here: { command: "here", text: "Drive here", key: "N", look: "primary" },
+  lobby: { command: "lobby", text: "Go to the lobby", key: "N", look: "primary" },
 };
 
 /**
@@ -63,62 +69,87 @@ export function statusBarView(known) {
  * @param {Known} known
  * @returns {View}
  */
-function whatHappens({ room, seat, link, saved, isNew = false }) {
+function whatHappens(known) {
+  const { room, seat, link } = known;
   if (!room || !seat) {
     return view("No such seat", "This room is not open, or it has no such arm.", [ACTIONS.lobby]);
   }
-  if (room.stale) return view("The room is silent", "It comes back by itself when its simulation runs again.");
+  if (room.stale) return view("The simulation does not answer", "It goes on by itself when the simulation runs again.");
   if (!seat.mine) return watching(room, seat);
   if (link.state === LinkState.REPLACED) {
     return view("Driven elsewhere", "Another window of yours drives this arm.", [ACTIONS.here]);
   }
   if (link.state !== LinkState.LIVE) return offline(link);
   if (room.barrier === "stopped") return view("Stopped", "An emergency stop is on; whoever pressed it lets go.");
-  const shown = PHASES[room.episode.phase](room, seat, saved, isNew);
+  const shown = PHASES[room.episode.phase](room, seat, known);
   return seat.relieved ? { ...shown, actions: [...shown.actions, ACTIONS.back] } : shown;
 }
 
 const RECORDING = [ACTIONS.success, ACTIONS.failure, ACTIONS.discard];
-const FIRST_MOVES = "Hold space; W A S D move the arm over the table, Q lifts, E lowers. G works the gripper.";
+const FIRST_MOVES = "Hold space: W A S D move over the table, Q lifts, E lowers, arrows turn. G works the gripper.";
+const FIRST_TOUCHES = "Drag the picture to move. Two fingers: up and down go away and towards you, sideways turns.";
+const UNRECORDED = "Nothing is recorded until everybody is ready.";
+
+/** @typedef {Pick<Known, "pending" | "isNew" | "touch" | "reached">} Looking */
 
 /**
  * What is shown to the holder of a seat.
- * @typedef {(room: Api.Room, seat: Api.Seat, saved: Api.EpisodeSaved | null, isNew: boolean) => View} PhaseView
+ * @typedef {(room: Api.Room, seat: Api.Seat, looking: Looking) => View} PhaseView
  */
 
 /** @type {Record<Messages.EpisodePhase, PhaseView>} */
 const PHASES = {
-  practice(room, seat, saved, isNew) {
+  practice(room, seat, looking) {
     const others = room.seats.filter((other) => other.operator === "human" && !other.mine);
     if (seat.ready) {
       const late = others.filter((other) => !other.ready).map((other) => other.name);
-      return view("Ready", late.length ? `Waiting for ${late.join(" and ")}` : "Starting…", [ACTIONS.unready]);
+      return view("Ready", late.length ? `Waiting for ${late.join(" and ")}.` : "Starting…", [ACTIONS.unready]);
     }
+    const shown = practice(room, seat, looking);
     const eager = others.filter((other) => other.ready).map((other) => other.name);
-    if (eager.length) {
-      const are = eager.length > 1 ? "are" : "is";
-      return view("Practice", `${eager.join(" and ")} ${are} ready to record`, [ACTIONS.ready]);
-    }
-    if (saved) return view(outcomeText(saved.outcome) || "Interrupted", savedText(saved), [ACTIONS.again]);
-    if (isReached(room.plan)) {
-      return view("Practice", "All that was planned is recorded; you may go on.", [ACTIONS.ready]);
-    }
-    return view("Practice", isNew ? FIRST_MOVES : "Nothing is recorded until everybody is ready.", [ACTIONS.ready]);
+    if (eager.length === 0) return shown;
+    const are = eager.length > 1 ? "are" : "is";
+    return { ...shown, detail: `${eager.join(" and ")} ${are} ready to record. ${shown.detail}` };
   },
   countdown(room) {
     const figure = String(Math.max(1, Math.ceil(room.episode.remaining_s)));
     return { ...view("Starts in", room.instruction), figure };
   },
-  recording(room) {
+  recording(room, _seat, { pending }) {
     const limit = room.time_limit_s ? `of ${clockTime(room.time_limit_s)}` : "";
     const figure = clockTime(room.episode.elapsed_s);
-    return { ...view("Recording", "", RECORDING), figure, limit, recording: true };
+    const detail = pending === "success" ? askedText(room) : "Success is seen by itself.";
+    return { ...view("Recording", detail, RECORDING), figure, limit, recording: true };
   },
   ended(room) {
-    const reason = room.episode.reason ? `${room.episode.reason}. ` : "";
-    return view(outcomeText(room.episode.outcome), `${reason}Saving; the scene resets by itself.`);
+    return view(outcomeText(room.episode.outcome), `${asSentence(room.episode.reason)} Saving…`.trim());
   },
 };
+
+/**
+ * Before anybody is ready: the last episode until the next one begins, else the goal.
+ * @param {Api.Room} room
+ * @param {Api.Seat} seat
+ * @param {Looking} looking
+ */
+function practice(room, seat, { isNew = false, touch = false, reached = false }) {
+  if (reached) return view("That is it!", "You did it. Press Ready to record it.", [ACTIONS.ready, ACTIONS.reset]);
+  const last = lastEpisodeOf(room, seat);
+  if (last) {
+    const keep = canBeKept(last) ? [ACTIONS.keep] : [];
+    return view(lastLabel(last), lastText(last), [ACTIONS.again, ...keep, ACTIONS.reset]);
+  }
+  const moves = touch ? FIRST_TOUCHES : FIRST_MOVES;
+  const rest = isReached(room.plan) ? "All that was planned is recorded; you may go on." : UNRECORDED;
+  const hint = isNew ? moves : rest;
+  return { ...view("Practice", room.instruction, [ACTIONS.ready, ACTIONS.reset]), hint };
+}
+
+/** What a success by hand is asked, where the task does not see it. @param {Api.Room} room */
+function askedText({ progress }) {
+  const done = progress.subtasks.filter((subtask) => subtask.done).length;
+  return `${done} of ${progress.subtasks.length} steps are done. Press again if it is a success all the same.`;
+}
 
 /** @param {Api.Plan | null} plan */
 const isReached = (plan) => Boolean(plan && plan.good >= plan.episodes);
@@ -153,7 +184,7 @@ function watching(room, seat) {
  */
 function besideMachine(room, seat) {
   const { phase } = room.episode;
-  const { label, figure, limit, recording } = PHASES[phase](room, seat, null, false);
+  const { label, figure, limit, recording } = PHASES[phase]({ ...room, last_episode: null }, seat, {});
   const unattended = room.seats.every((one) => one.operator !== "human");
   const driver = seat.name ? `Policy ${holderName(seat)}` : "A script";
   const detail = `${driver} drives. Take over at any time: the arm waits where it is.`;
@@ -167,18 +198,11 @@ function besideMachine(room, seat) {
  */
 function unattendedActions(phase) {
   if (phase === "practice") return [ACTIONS.record];
-  return phase === "recording" ? RECORDING.map((action) => ({ ...action, primary: false })) : [];
+  return phase === "recording" ? RECORDING : [];
 }
 
 /** @param {Known["link"]} link */
 function offline({ state, problem }) {
   if (state === LinkState.SILENT) return view("Connection lost", "Trying to get it back…");
   return view("Connecting…", problem);
-}
-
-/** @param {Api.EpisodeSaved} saved */
-function savedText({ path, verified, verdict, size_bytes: size, outcome }) {
-  const file = `${path} (${fileSize(size)})`;
-  if (outcome === "discarded") return `Kept, and labelled discarded: ${file}`;
-  return `Saved${verified ? " and verified" : verdict && `, ${verdict}`}: ${file}`;
 }

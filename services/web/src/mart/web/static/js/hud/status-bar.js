@@ -5,14 +5,15 @@ import { statusBarView } from "./status-bar-view.js";
 
 /** @import { Action, ActionCommand, Known } from "./status-bar-view.js" */
 
+const REACHED_MS = 8000; // how long "That is it!" stands
+
 /** Shows what is known of the own seat, and offers what can be done. */
 export class StatusBar {
   #onCommand;
   #shown = "";
   /** @type {Action[]} */
   #actions = [];
-  /** @type {Api.EpisodeSaved | null} */
-  #saved = null;
+  #reachedMs = -Infinity;
 
   /** @param {(command: ActionCommand) => void} onCommand called when a button is pressed */
   constructor(onCommand) {
@@ -20,21 +21,12 @@ export class StatusBar {
   }
 
   /**
-   * Takes the newest saved episode, which is shown until the next one begins.
-   * @param {Api.EpisodeSaved} episode
+   * Shows it. `pending`: the command whose button or key has to be pressed once more.
+   * @param {Omit<Known, "reached"> & { pending: string }} known
    */
-  onSaved(episode) {
-    this.#saved = episode;
-  }
-
-  /**
-   * Shows it. `pending`: the command whose key has to be pressed once more.
-   * @param {Omit<Known, "saved"> & { pending: string }} known
-   */
-  update({ pending, ...known }) {
-    const { room } = known;
-    if (room && ["countdown", "recording"].includes(room.episode.phase)) this.#saved = null;
-    const view = statusBarView({ ...known, saved: this.#saved });
+  update(known) {
+    const { room, pending } = known;
+    const view = statusBarView({ ...known, reached: this.#reached(room) });
     setText(byId("state-label"), view.label);
     byId("state-label").classList.toggle("recording", view.recording);
     setText(byId("state-figure"), view.figure);
@@ -42,7 +34,10 @@ export class StatusBar {
     setText(byId("state-plan"), view.plan);
     setText(byId("state-detail"), view.detail);
     setShown(byId("state-detail"), view.detail !== "");
-    this.#showSubtasks(room && view.recording ? room.progress.subtasks : []);
+    setText(byId("state-hint"), view.hint ?? "");
+    setShown(byId("state-hint"), Boolean(view.hint));
+    const works = ["practice", "recording"].includes(room?.episode.phase ?? "") && known.seat?.mine;
+    this.#showSubtasks(room && works ? room.progress.subtasks : []);
     this.#showActions(view.actions, pending);
   }
 
@@ -57,6 +52,14 @@ export class StatusBar {
    */
   offers(command) {
     return this.#actions.some((action) => action.command === command);
+  }
+
+  /** In practice the goal counts for as long as it takes to read it. @param {Api.Room | null} room */
+  #reached(room) {
+    const nowMs = performance.now();
+    if (room?.episode.phase !== "practice") this.#reachedMs = -Infinity;
+    else if (room.progress.success) this.#reachedMs = nowMs;
+    return nowMs - this.#reachedMs < REACHED_MS;
   }
 
   /** @param {Api.Subtask[]} subtasks */
@@ -75,17 +78,21 @@ export class StatusBar {
     const wanted = JSON.stringify([actions, pending]);
     if (wanted === this.#shown) return;
     this.#shown = wanted;
+    const focused = byId("actions").querySelector("button:focus");
+    const command = focused instanceof HTMLElement ? focused.dataset.command : undefined;
     byId("actions").replaceChildren(...actions.map((action) => this.#button(action, pending)));
+    const again = [...byId("actions").querySelectorAll("button")].find((one) => one.dataset.command === command);
+    if (command) again?.focus(); // whoever presses twice by keyboard stays where they are
   }
 
   /**
    * @param {Action} action
    * @param {string} pending
    */
-  #button({ command, text, key, primary }, pending) {
+  #button({ command, text, key, look }, pending) {
     const words = pending === command ? "Press again: " : "";
     const on = { click: () => this.#onCommand(command) };
-    const properties = { type: "button", class: primary ? "primary" : "", dataset: { command }, on };
+    const properties = { type: "button", class: look ?? "", dataset: { command }, on };
     const cap = key ? [element("kbd", { "aria-hidden": "true" }, key)] : [];
     return element("button", properties, `${words}${text}`, ...cap);
   }

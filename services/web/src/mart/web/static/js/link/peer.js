@@ -4,6 +4,7 @@
  * @typedef {object} PeerOptions
  * @property {boolean} wantsVideo
  * @property {boolean} drives frames are sent
+ * @property {RTCIceServer[]} iceServers STUN and TURN servers; none on one network
  * @property {(sdp: string) => Promise<string>} exchange takes the offer to the gateway and returns its answer
  * @property {(stream: MediaStream) => void} onTrack
  * @property {(message: StatusChannel.FromGateway) => void} onMessage
@@ -21,7 +22,7 @@ export class Peer {
    * @param {PeerOptions} options
    */
   static async connect(options) {
-    const peer = new Peer();
+    const peer = new Peer(options.iceServers);
     try {
       await peer.#connect(options);
     } catch (error) {
@@ -31,10 +32,16 @@ export class Peer {
     return peer;
   }
 
-  #connection = new RTCPeerConnection({ iceServers: [] });
-  #status = this.#connection.createDataChannel("status", CHANNEL);
+  #connection;
+  #status;
   /** @type {RTCDataChannel | null} */
   #pose = null;
+
+  /** @param {RTCIceServer[]} iceServers */
+  constructor(iceServers) {
+    this.#connection = new RTCPeerConnection({ iceServers });
+    this.#status = this.#connection.createDataChannel("status", CHANNEL);
+  }
 
   /** @param {PeerOptions} options */
   async #connect({ wantsVideo, drives, exchange, onTrack, onMessage, onClosed }) {
@@ -102,7 +109,7 @@ function rank({ mimeType, sdpFmtpLine = "" }) {
 }
 
 /**
- * The offer goes out whole: without ICE servers gathering takes milliseconds.
+ * The offer goes out whole: without ICE servers gathering takes milliseconds, and for a silent one nobody waits longer.
  * @param {RTCPeerConnection} connection
  */
 async function gathered(connection) {

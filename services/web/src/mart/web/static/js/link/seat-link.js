@@ -125,11 +125,12 @@ export class SeatLink {
    * @param {Ticket} ticket
    * @param {number} attempt
    */
-  #reach({ room, arm, token, role }, attempt) {
+  #reach({ room, arm, token, role, ice_servers: iceServers }, attempt) {
     const { wantsVideo, onTrack = () => {} } = this.#options;
     return Peer.connect({
       wantsVideo,
       drives: role !== "viewer",
+      iceServers,
       exchange: async (sdp) => (await sendOffer(room, arm, token, sdp)).sdp,
       onTrack,
       onMessage: (message) => attempt === this.#attempt && this.#onMessage(message),

@@ -1,5 +1,6 @@
 // What the training page says. Pure.
 
+import { TASK_TITLES } from "../facts.js";
 import { plural, sentence } from "../formatting.js";
 import { nameFrom } from "../names.js";
 
@@ -14,8 +15,12 @@ const STATES = { queued: "Waits", running: "Training", done: "Done", failed: "Fa
 /** How a job does. @type {(state: Messages.JobState) => string} */
 export const stateText = (state) => STATES[state] ?? state;
 
-/** "two_arm_drink_tray_lifting" → "Drink tray lifting" @type {(task: string) => string} */
-export const taskText = (task) => sentence(task.replace(/^(two|three|four)_arm_/, ""));
+/** A task as people call it; one that is not known by its name. @type {(task: string) => string} */
+export const taskText = (task) => /** @type {Record<string, string>} */ (TASK_TITLES)[task] ?? sentence(task);
+
+/** What trains. @type {(device: string) => string} */
+export const deviceText = (device) =>
+  `Training runs on this computer's ${device === "cpu" ? "processor" : `graphics card (${device})`}.`;
 
 /** "fast, 3 seeds", with the data set where it has a name @type {(order: Messages.Order) => string} */
 export const orderText = ({ preset, seeds, dataset }) =>
@@ -61,10 +66,20 @@ export function short(value) {
  */
 export function progressOf({ state, progress, detail }) {
   if (!progress || progress.updates_in_all === 0) return { share: state === "done" ? 1 : 0, text: detail };
-  const { updates, updates_in_all: all, updates_per_s: pace, stage } = progress;
-  const left = state === "running" && pace > 0 ? `, ${remaining((all - updates) / pace)} left` : "";
-  const doing = state === "running" && stage ? `${stage}: ` : "";
-  return { share: updates / all, text: detail || `${doing}${short(updates)} of ${short(all)} updates${left}` };
+  const running = state === "running";
+  return { share: progress.updates / progress.updates_in_all, text: detail || updatesText(progress, running) };
+}
+
+/**
+ * @param {Messages.JobProgress} progress
+ * @param {boolean} running
+ */
+function updatesText({ updates, updates_in_all: all, updates_per_s: pace, stage }, running) {
+  const counted = `${short(updates)} of ${short(all)} updates`;
+  if (!running) return counted;
+  if (updates >= all) return `All ${short(all)} updates are done; rollouts judge them now`;
+  const left = pace > 0 ? `, ${remaining((all - updates) / pace)} left` : "";
+  return `${stage ? `${stage}: ` : ""}${counted}${left}`;
 }
 
 /** @type {(seconds: number) => string} */

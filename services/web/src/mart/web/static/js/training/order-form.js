@@ -34,11 +34,12 @@ export class OrderForm {
   #executor = element("select");
   #button = element("button", { type: "submit", class: "primary" });
   #hint = element("p", { class: "soft" });
+  #refusal = element("p", { class: "message", role: "alert" });
 
   /**
    * @param {HTMLElement} form what it fills
    * @param {string | null} wanted the data set to begin with
-   * @param {(order: Api.TrainingOrder) => void} onSubmit
+   * @param {(order: Api.TrainingOrder) => Promise<string>} onSubmit tells why it was refused; nothing where it was not
    */
   constructor(form, wanted, onSubmit) {
     this.#form = form;
@@ -48,8 +49,9 @@ export class OrderForm {
       event.preventDefault();
       this.#submit();
     });
+    form.addEventListener("input", () => setText(this.#refusal, ""));
     form.addEventListener("change", ({ target }) => {
-      if (target === this.#data) this.#followData();
+      if (target === this.#data) this.#follow();
       this.#render();
     });
   }
@@ -68,8 +70,22 @@ export class OrderForm {
     const { data, tasks, order } = choices;
     const wanted = data.find(({ name }) => name && name === this.#wanted);
     fill(this.#data, data.map((one) => [keyOf(one), dataText(one)]), wanted ? keyOf(wanted) : order.data);
-    fill(this.#task, tasks.map((task) => [task, taskText(task)]), wanted?.tasks[0] ?? order.task);
+    this.#offerTasks(tasks, wanted?.tasks[0] ?? order.task);
     this.#render();
+  }
+
+  /**
+   * Those that the chosen episodes are of; the others are seen and cannot be chosen.
+   * @param {string[]} tasks
+   * @param {string} preferred
+   */
+  #offerTasks(tasks, preferred) {
+    const held = this.#chosenData?.tasks ?? [];
+    const without = new Set(held.length > 0 ? tasks.filter((task) => !held.includes(task)) : []);
+    const texts = tasks.map((task) => `${taskText(task)}${without.has(task) ? ": no episodes here" : ""}`);
+    fill(this.#task, tasks.map((task, index) => [task, texts[index] ?? task]), preferred);
+    for (const option of this.#task.options) option.disabled = without.has(option.value);
+    if (without.has(this.#task.value)) this.#followData();
   }
 
   /** @param {Api.TrainingChoices} choices */
@@ -94,6 +110,7 @@ export class OrderForm {
       ),
       executor,
       this.#button,
+      this.#refusal,
       this.#hint,
     );
     choose(this.#form, "preset", order.preset || (presets[0] ?? ""));
@@ -103,6 +120,11 @@ export class OrderForm {
   #followData() {
     const task = this.#chosenData?.tasks[0];
     if (task) this.#task.value = task;
+  }
+
+  #follow() {
+    this.#followData();
+    if (this.#choices) this.#offerTasks(this.#choices.tasks, this.#task.value);
   }
 
   get #chosenData() {
@@ -119,10 +141,11 @@ export class OrderForm {
     setText(this.#hint, data ? "" : NO_EPISODES);
   }
 
-  #submit() {
+  async #submit() {
     const data = this.#chosenData;
     if (!this.#choices || !this.#models || !data) return;
-    this.#onSubmit({
+    setText(this.#refusal, "");
+    const refusal = await this.#onSubmit({
       models: this.#models.names,
       tasks: [this.#task.value],
       data: data.path,
@@ -133,6 +156,7 @@ export class OrderForm {
       score_episodes: this.#choices.order.score_episodes,
       executor: this.#executor.value,
     });
+    setText(this.#refusal, refusal);
   }
 }
 

@@ -1,8 +1,13 @@
 // Promoted policies: how good they are, and a seat for them.
 
-import { armName } from "../arms.js";
+import { armName, theArm } from "../arms.js";
 import { byId, element, setShown } from "../dom.js";
+import { plural } from "../formatting.js";
 import { percent, short, taskText } from "./formatting.js";
+
+const NO_PLACE = "No free arm in a room with this task";
+
+/** An arm that a policy drives. @typedef {{ room: string, arm: string }} Driven */
 
 /** Free arms of a room that a policy may drive. @typedef {{ room: string, arms: string[], text: string }} Place */
 
@@ -46,37 +51,46 @@ export class PolicyList {
   }
 
   #draw() {
-    const rows = this.#policies.map((policy) => ({ policy, places: placesFor(policy, this.#rooms) }));
+    const rooms = this.#rooms;
+    const rows = this.#policies.map((policy) => ({
+      policy,
+      places: placesFor(policy, rooms),
+      driven: drivenBy(policy, rooms),
+    }));
     const wanted = JSON.stringify([rows, this.#leaving]);
     const choosing = byId("policies").contains(document.activeElement?.closest("select") ?? null);
     if (wanted === this.#shown || choosing) return;
     this.#shown = wanted;
     setShown(byId("no-policies"), this.#policies.length === 0);
-    byId("policies").replaceChildren(...rows.map(({ policy, places }) => this.#row(policy, places)));
+    byId("policies").replaceChildren(...rows.map((row) => this.#row(row)));
   }
 
-  /**
-   * @param {Messages.Policy} policy
-   * @param {Place[]} places
-   */
-  #row(policy, places) {
+  /** @param {{ policy: Messages.Policy, places: Place[], driven: Driven[] }} row */
+  #row({ policy, places, driven }) {
     const { name, evaluation } = policy;
     const rate = evaluation?.episodes ? percent(evaluation.successes / evaluation.episodes) : "–";
     return element(
       "li",
       { class: "policy" },
       element("span", { class: "rate figures", "aria-label": `Success ${rate}` }, rate),
-      element("span", {}, element("strong", {}, name), element("span", { class: "soft block" }, factsText(policy))),
-      element("span", { class: "buttons" }, ...this.#seating(policy, places), this.#withdrawing(name)),
+      element(
+        "span",
+        {},
+        element("strong", {}, name),
+        element("span", { class: "soft block" }, factsText(policy)),
+        ...driven.map(drivenLine),
+      ),
+      element("span", { class: "buttons" }, ...this.#seating(policy, places, driven), this.#withdrawing(name)),
     );
   }
 
   /**
    * @param {Messages.Policy} policy
    * @param {Place[]} places
+   * @param {Driven[]} driven
    */
-  #seating({ name }, places) {
-    if (places.length === 0) return [element("span", { class: "soft" }, "No free arm in a room with this task")];
+  #seating({ name }, places, driven) {
+    if (places.length === 0) return driven.length ? [] : [element("span", { class: "soft" }, NO_PLACE)];
     const options = places.map(({ text }, index) => element("option", { value: index }, text));
     const where = element("select", { class: "place", "aria-label": `Where ${name} sits` }, ...options);
     const click = () => {
@@ -106,6 +120,24 @@ const factsText = ({ model, task, updates, joint }) =>
   `${model}, ${taskText(task)}, after ${short(updates)} updates${joint ? ", drives all arms together" : ""}`;
 
 /**
+ * What a policy drives now.
+ * @param {Messages.Policy} policy
+ * @param {Api.Room[]} rooms
+ * @returns {Driven[]}
+ */
+function drivenBy(policy, rooms) {
+  return rooms.flatMap(({ room, seats }) =>
+    seats.filter((seat) => seat.policy === policy.name).map((seat) => ({ room, arm: seat.arm })),
+  );
+}
+
+/** Where it can be watched and taken over from. @param {Driven} driven */
+function drivenLine({ room, arm }) {
+  const link = element("a", { href: `/rooms/${room}/arms/${arm}` }, `${theArm(arm)}, ${room}`);
+  return element("span", { class: "block driven" }, "Drives ", link);
+}
+
+/**
  * Where a policy may sit. A joint one takes all its arms that no person holds.
  * @param {Messages.Policy} policy
  * @param {Api.Room[]} rooms
@@ -125,5 +157,5 @@ function placesIn({ room, seats }, policy) {
   );
   const arms = free.map((seat) => seat.arm);
   if (!policy.joint) return arms.map((arm) => ({ room, arms: [arm], text: `${armName(arm)}, ${room}` }));
-  return arms.length ? [{ room, arms, text: `${arms.length} arms, ${room}` }] : [];
+  return arms.length ? [{ room, arms, text: `${plural(arms.length, "arm")}, ${room}` }] : [];
 }

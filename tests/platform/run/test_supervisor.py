@@ -1,0 +1,53 @@
+"""What the supervisor is told, and what it tells: against a real supervisord where that matters."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mart.platform.run.plan import PlatformOptions, Process
+from mart.platform.run.supervisor import Supervisor
+from mart.protocol import clock
+from mart.protocol.errors import Unavailable
+from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.child_process import start_child, stop_child
+
+
+def test_a_supervisor_that_does_not_answer_is_waited_for_only_so_long(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def hang(*_: object, timeout: float, **__: object) -> None:
+        raise subprocess.TimeoutExpired("supervisorctl", timeout)
+
+    monkeypatch.setattr("mart.platform.run.supervisor.subprocess.run", hang)
+    supervisor = Supervisor(PlatformOptions(tmp_path), (), tmp_path / "socket")
+    with pytest.raises(Unavailable, match="did not answer"):
+        supervisor.add(Process(("sim", "--room", "lab"), ServiceKind.SIM, "lab"))
+    assert supervisor.processes == ()
+    assert supervisor.refusals() == {}
+
+
+@pytest.mark.system
+def test_a_process_that_ends_with_a_sentence_is_told(tmp_path: Path) -> None:
+    plan = (Process(("sim", "--task", "juggling"), ServiceKind.SIM, "lab"),)
+    supervisor = Supervisor(PlatformOptions(tmp_path), plan, tmp_path / "socket")
+    words = ["--nodaemon", "--silent", "--configuration", str(supervisor.config)]
+    with (tmp_path / "log").open("wb") as log:
+        process = start_child(
+            [sys.executable, "-m", "mart.platform.run.supervisord", *words],
+            log,
+            {},
+            death_signal=signal.SIGTERM,
+        )
+    try:
+        deadline_s = clock.monotonic_s() + 60.0
+        while not (told := supervisor.refusals()):
+            assert clock.monotonic_s() < deadline_s
+            clock.sleep_s(0.1)
+        assert "juggling" in told["sim-lab"]
+    finally:
+        stop_child(process, 30.0)
