@@ -22,9 +22,10 @@ declare namespace StatusChannel {
     gripper_set: number;
     holding: boolean;
     barrier: Messages.BarrierPhase;
+    stopped_by: string;
     waiting: { arm: string; since_s: number }[];
     input: Input;
-    phone: { age_ms: number; tracking: boolean } | null;
+    phone: { age_ms: number; tracking: boolean; started: boolean } | null;
     rejected: Record<string, number>;
     fps: number;
     latency: Latency | null;

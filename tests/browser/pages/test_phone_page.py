@@ -115,7 +115,12 @@ def test_stop_takes_half_a_second_of_holding(browser: Browser, platform: Platfor
         expect(stop).to_have_attribute("aria-pressed", "true")
         phone.page.mouse.up()
         expect(phone.operator.locator("#state-label")).to_have_text("Stopped")
+        expect(phone.page.locator("#hold-text")).to_contain_text("Stopped")
+        expect(phone.page.locator("#link")).to_have_text("Stopped by Ana")
         phone.is_fine("phone-stopped")
+        phone.page.reload()  # a page that is gone lets nothing go
+        expect(stop).to_have_attribute("aria-pressed", "true")
+        phone.is_fine("phone-stopped-before-start")
         phone.press("#stop")
         expect(stop).to_have_attribute("aria-pressed", "false")
         phone.page.mouse.up()

@@ -56,9 +56,10 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "gripper_set": 1,
         "holding": False,
         "barrier": "stalled",
+        "stopped_by": "",
         "waiting": [{"arm": "arm1", "since_s": 0.8}],
         "input": "phone",
-        "phone": {"age_ms": 16, "tracking": True},
+        "phone": {"age_ms": 16, "tracking": True, "started": True},
         "rejected": {},
         "fps": 20.0,
         "latency": {
@@ -76,8 +77,9 @@ def test_the_longest_tick_message_fits_one_packet() -> None:
     state = State(tick=2**32, real_time_factor=0.999, arms=[ArmState(arm="arm0", sequence=100)])
     slow = LatencySummary(9999.94, 9999.94, 300, (1999.94,) * len(STAGES))
     room = RoomStatus(barrier=BARRIER_PHASE_STALLED, waiting_for=waiting)
+    room.stop.name = "\N{SNOWMAN}" * 64
     text = status_channel.tick(state, room, hand, 1e4, frames_per_s=119.9, latency=slow)
-    assert len(text.encode()) <= status_channel.MAX_CHARACTERS
+    assert len(text.encode()) <= status_channel.MAX_CHARACTERS, len(text.encode())
 
 
 def test_nothing_is_made_up_before_there_is_anything() -> None:

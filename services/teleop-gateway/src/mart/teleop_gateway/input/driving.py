@@ -33,16 +33,18 @@ class _Source:
 
     validator: FrameValidator
     grips: bool = False  # its gripper counts
+    started: bool = False  # it has known where it is
     last: HandSample | None = None
     clock_offset_ns: int | None = None
 
 
 @dataclass(frozen=True)
 class PhoneState:
-    """Tell how long ago the phone's last good frame came, and whether it knew where it was."""
+    """Tell how long ago the phone's last good frame came, whether it knew where it was, and whether it ever did."""
 
     age_s: float
     tracking: bool
+    started: bool
 
 
 @dataclass
@@ -123,6 +125,7 @@ class Driving:
         hand = peer.validator.validate(payload, now_s) if peer else None
         if peer is None or hand is None:
             return None
+        peer.started = peer.started or Flag.TRACKING in hand.frame.flags
         peer.grips = peer.grips or _means_its_gripper(hand, peer.last)
         peer.last = hand
         if source is not self.active or tool is None:
@@ -187,7 +190,8 @@ class Driving:
         peer = self._sources.get(InputDevice.PHONE)
         if peer is None or peer.last is None:
             return None
-        return PhoneState(now_s - peer.validator.last_good_s, Flag.TRACKING in peer.last.frame.flags)
+        tracking = Flag.TRACKING in peer.last.frame.flags
+        return PhoneState(now_s - peer.validator.last_good_s, tracking, peer.started)
 
     def rejected(self) -> Counter[str]:
         """Return how many frames were dropped since this holder came, by reason."""

@@ -8,12 +8,13 @@ from typing import Any
 
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Cue, RoomStatus, State, barrier_word, cue_from_word
-from mart.teleop_gateway.input.driving import Driving, InputDevice
+from mart.teleop_gateway.input.driving import Driving, InputDevice, PhoneState
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 
 MAX_CHARACTERS = 1100  # one SCTP packet
 _MAX_US = 2.0**53  # what a page's clock can count
 _MAX_NS = 2.0**63
+_NAME_CHARACTERS = 40
 
 
 @dataclass(frozen=True)
@@ -124,14 +125,19 @@ def tick(
             "gripper_set": driving.gripper_set,
             "holding": driving.holding,
             "barrier": barrier_word(room.barrier),
+            "stopped_by": room.stop.name[:_NAME_CHARACTERS],
             "waiting": [{"arm": w.arm, "since_s": round(w.since_s, 2)} for w in room.waiting_for],
             "input": driving.active.value,
-            "phone": phone and {"age_ms": round(1e3 * phone.age_s), "tracking": phone.tracking},
+            "phone": phone and _phone(phone),
             "rejected": dict(driving.rejected()),
             "fps": round(frames_per_s, 1),
             "latency": latency and _latency(latency),
         }
     )
+
+
+def _phone(phone: PhoneState) -> dict[str, Any]:
+    return {"age_ms": round(1e3 * phone.age_s), "tracking": phone.tracking, "started": phone.started}
 
 
 def _latency(summary: LatencySummary) -> dict[str, Any]:

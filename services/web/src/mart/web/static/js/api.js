@@ -124,7 +124,8 @@ export const seatToken = (room, arm) => request("GET", `${seatPath(room, arm)}/t
 export const pairPhone = (room, arm) => request("POST", `${seatPath(room, arm)}/pair`);
 
 /** Stops everything, from a paired phone. @type {(room: string, arm: string, token: string) => Promise<unknown>} */
-export const stopByPhone = (room, arm, token) => request("POST", `${seatPath(room, arm)}/stop`, undefined, bearer(token));
+export const stopByPhone = (room, arm, token) =>
+  request("POST", `${seatPath(room, arm)}/stop`, undefined, bearer(token));
 
 /** Lets everything go on, from a phone. @type {(room: string, arm: string, token: string) => Promise<unknown>} */
 export const letGoByPhone = (room, arm, token) =>

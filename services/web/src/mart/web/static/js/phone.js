@@ -1,6 +1,6 @@
 // The phone: a hand that is usable without looking.
 
-import { messageOf, phoneToken, redeemPairing } from "./api.js";
+import { letGoByPhone, messageOf, phoneToken, redeemPairing, stopByPhone } from "./api.js";
 import { armName, theArm } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
@@ -17,12 +17,13 @@ import { canTrack, XrTracker } from "./phone/xr.js";
 /** @import { Hand, Mode } from "./phone/tutorial.js" */
 /** @import { Sample } from "./phone/xr.js" */
 
+const STOP_TOLD_MS = 1000;
 const PAIRING_KEY = "mart.pairing";
 const TUTORIAL_DONE_KEY = "mart.coached";
 
 const gripper = new GripperBar(byId("gripper"));
 const clutch = new ClutchPad(byId("hold"), byId("height"), (held) => held && vibrate("engaged"));
-const stop = new StopButton(byId("stop"), byId("stop-text"), (stopped) => stopped && vibrate("stopped"));
+const stop = new StopButton(byId("stop"), byId("stop-text"), { onStop: pressStop, onLetGo: letGoOfStop });
 
 /** @type {XrTracker | TouchTracker | null} */
 let tracker = null;
@@ -33,6 +34,10 @@ let status = null;
 let sequence = 0;
 let tracking = false;
 let arm = "";
+/** @type {Api.PairedPhone | null} */
+let paired = null;
+let stopPressedMs = -Infinity;
+let problem = ""; // of the stop button's last press
 
 begin();
 
@@ -48,6 +53,7 @@ async function begin() {
     say("Not paired", "Press “Pair a phone” on the operator's page and scan the code with this phone.");
     return;
   }
+  paired = pairing;
   arm = pairing.arm;
   document.body.dataset.arm = arm;
   document.title = `${armName(arm)} · Phone · MART`;
@@ -93,7 +99,8 @@ function connect(pairing) {
     fetchToken: async () => {
       const renewed = await phoneToken(pairing.room, pairing.arm, pairing.token);
       if (renewed.epoch !== link.epoch) status = null; // somebody else drove meanwhile: the gripper is as they left it
-      return { ...pairing, ...renewed };
+      paired = { ...pairing, ...renewed };
+      return paired;
     },
     wantsVideo: false,
     onState: () => onLinkState(link),
@@ -169,13 +176,35 @@ function sendFrame(link, nowMs) {
   if (tracker) guide({ ...hand, held: clutch.held }, link, nowMs);
 }
 
+/** Two ways at once, because one may be lost: with the frames of the hand, and over HTTP. */
+async function pressStop() {
+  stopPressedMs = performance.now();
+  clutch.release();
+  vibrate("stopped");
+  await ask(stopByPhone);
+}
+
+async function letGoOfStop() {
+  await ask(letGoByPhone);
+}
+
+/** @param {typeof stopByPhone} request */
+async function ask(request) {
+  problem = "";
+  try {
+    if (paired) await request(paired.room, paired.arm, paired.token);
+  } catch (error) {
+    problem = messageOf(error);
+  }
+}
+
 /** @param {Sample} pose */
 function flagsOf(pose) {
   return (
     pose.flags |
     (pose.tracking ? Flag.TRACKING : 0) |
     (clutch.held ? Flag.CLUTCH : 0) |
-    (stop.stopped ? Flag.EMERGENCY_STOP : 0)
+    (performance.now() - stopPressedMs < STOP_TOLD_MS ? Flag.EMERGENCY_STOP : 0)
   );
 }
 
@@ -196,7 +225,8 @@ function guide(hand, link, nowMs) {
  * @param {SeatLink} link
  */
 function onStatus(tick, link) {
-  if (status === null) gripper.set(tick.gripper);
+  const set = status === null || status.gripper_set !== tick.gripper_set;
+  if (set || tick.input !== "phone") gripper.set(tick.gripper);
   vibrationsFor(tick, status, arm).forEach(vibrate);
   status = tick;
   showLink(link);
@@ -204,10 +234,28 @@ function onStatus(tick, link) {
 
 /** @param {SeatLink} link */
 function showLink(link) {
-  setText(byId("link"), linkText(link));
-  const holding = status?.engaged ? "Moving" : letGoText(status?.let_go) || "Hold to move";
-  setText(byId("hold-text"), tutorial?.tip || holding);
+  const live = link.state === LinkState.LIVE && status !== null;
+  const stopped = live && status?.barrier === "stopped";
+  if (live) stop.update(stopped);
+  if (!stopped && performance.now() - stopPressedMs > STOP_TOLD_MS) problem = "";
+  byId("app").classList.toggle("stopped", stopped);
+  setText(byId("link"), problem || linkText(link));
+  setText(byId("hold-text"), holdText(live));
 }
+
+/**
+ * What the large area says: why nothing moves, what to do next, or that it moves.
+ * @param {boolean} live
+ */
+function holdText(live) {
+  if (!live || !status) return "No connection. The arm holds still.";
+  if (status.barrier === "stopped") return "Stopped. Hold Go on to let everything go on.";
+  if (tracker && !tracking) return "Tracking lost. Let the camera see more of the room.";
+  return (clutch.held && letGoText(status.let_go)) || tutorial?.tip || movingText(status);
+}
+
+/** @param {StatusChannel.Tick} tick */
+const movingText = ({ engaged }) => (engaged ? "Moving" : "Hold to move");
 
 /** @param {SeatLink} link */
 function linkText(link) {
@@ -217,11 +265,17 @@ function linkText(link) {
 }
 
 /** @param {StatusChannel.Tick} tick */
-function statusText({ barrier, input, waiting, latency }) {
-  if (barrier === "stopped") return stop.stopped ? "Everything is stopped; hold Go on" : "Everything is stopped";
+function statusText({ barrier, input, waiting, latency, stopped_by: stoppedBy }) {
+  if (barrier === "stopped") return stoppedBy ? `Stopped by ${stoppedBy}` : "Everything is stopped";
   if (input !== "phone") return "The keyboard drives";
   const other = waiting.find((one) => one.arm !== arm);
   if (other) return `Waiting for ${theArm(other.arm)}`;
   const delay = latency ? `${Math.round(latency.p50_ms)} ms` : "connected";
-  return tracker ? `${delay}, tracking ${tracking ? "good" : "lost"}` : delay;
+  return tracker ? `${delay}, ${trackingText()}` : `${delay}. Press Start to drive.`;
+}
+
+function trackingText() {
+  const off = tracker instanceof TouchTracker ? tracker.problem(performance.now()) : "";
+  if (off) tutorial?.leaveOutTurning();
+  return off || `tracking ${tracking ? "good" : "lost"}`;
 }
