@@ -1,4 +1,4 @@
-"""The emergency stop is within reach on every page, latches, and names who pressed it; the health figure is true now."""
+"""The emergency stop is within reach on every page, latches, and names who pressed it; figures are true now."""
 
 from __future__ import annotations
 
