@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 
 from mart.episodes import labels
 from mart.episodes.labels import EpisodeLabels, Label, LabelKind
-from mart.protocol.errors import InvalidInput
+from mart.protocol.errors import Corrupt, InvalidInput
 
 _notes = st.text(st.characters(exclude_categories=["Cs"]), max_size=50)
 _paths = st.sampled_from(["2026-09-21/a.mcap", "2026-09-21/b.mcap"])
@@ -60,6 +61,20 @@ FOREIGN = [
     '{"at_ns":2,"path":"a","kind":"outcome","value":"paused"}',  # a value of another version
     '{"at_ns":2,"path":"a","kind":"note"}',
     '{"at_ns":"soon","path":"a","kind":"note","value":"x"}',
+    '{"at_ns":1e999,"path":"a","kind":"note","value":"x"}',
+    '{"at_ns":-1,"path":"a","kind":"note","value":"x"}',
+    '{"at_ns":9223372036854775808,"path":"a","kind":"note","value":"x"}',
+    '{"at_ns":%s,"path":"a","kind":"note","value":"x"}' % ("1" * 5000),
+    '{"at_ns":2,"path":"a","kind":["note"],"value":"x"}',
+    '{"at_ns":2,"path":"a","kind":"note","value":{"x":1}}',
+    '{"at_ns":2,"path":"a","kind":"note","value":"\\ud800"}',
+    '{"at_ns":2,"path":"\\udcff","kind":"note","value":"x"}',
+    '{"at_ns":2,"path":"a\\u0000b","kind":"join","value":"few"}',
+    '{"at_ns":2,"path":"../../etc/passwd","kind":"join","value":"few"}',
+    '{"at_ns":2,"path":"/etc/passwd","kind":"join","value":"few"}',
+    "[" * 100_000,
+    '{"at_ns":2,"path":"a","kind":"note","value":' * 50_000,
+    "\0" * 40,
     "[1, 2]",
     "null",
     "\xff\xfe",
@@ -76,6 +91,7 @@ def test_a_line_of_another_version_is_one_warning_and_stays_as_it_is(
     before = (tmp_path / labels.FILE_NAME).read_bytes()
     assert [labels.read(tmp_path) for _ in range(3)] == [[first]] * 3
     assert len(caplog.records) == 1
+    assert f"line 2 and {len(FOREIGN) - 1} more are" in caplog.text
     labels.append(tmp_path, [second])
     assert labels.read_folded(tmp_path) == {"a": EpisodeLabels(outcome="failure", note="one")}
     assert (tmp_path / labels.FILE_NAME).read_bytes().startswith(before)
@@ -100,3 +116,28 @@ def test_a_value_that_the_kind_cannot_have_is_refused(kind: LabelKind, value: st
 def test_labels_lie_beside_the_days(tmp_path: Path) -> None:
     assert labels.root_of(tmp_path / "2026-09-21" / "a.mcap") == tmp_path
     assert labels.root_of(tmp_path / "elsewhere" / "a.mcap") == tmp_path / "elsewhere"
+
+
+@settings(max_examples=100)
+@given(st.binary(max_size=200))
+def test_any_bytes_are_labels_or_none(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
+    root = tmp_path_factory.mktemp("bytes")
+    first = Label("a", LabelKind.NOTE, "one", 1)
+    labels.append(root, [first])
+    with (root / labels.FILE_NAME).open("ab") as file:
+        file.write(data)
+    labels.append(root, [first])
+    said = labels.read(root)
+    assert (said[0], said[-1]) == (first, first)
+
+
+def test_labels_that_cannot_be_read_are_no_labels_that_say_nothing(tmp_path: Path) -> None:
+    (tmp_path / labels.FILE_NAME).mkdir()
+    with pytest.raises(Corrupt, match=r"labels\.jsonl cannot be read"):
+        labels.read(tmp_path)
+
+
+def test_a_file_whose_name_is_no_text_cannot_be_labelled(tmp_path: Path) -> None:
+    path = Path(os.fsdecode(bytes(tmp_path) + b"/caf\xe9.mcap"))
+    with pytest.raises(InvalidInput, match="rename the file"):
+        labels.say(path, LabelKind.NOTE, "x", 1)

@@ -12,8 +12,10 @@ from mart.protocol.vocabulary import Verdict
 
 _words = st.text(st.characters(exclude_categories=["Cs"]), max_size=40)
 _arms = st.sampled_from(["arm0", "arm1", "arm2", "arm10"])
-_counts = st.integers(min_value=0, max_value=2**64 - 1)
-_reals = st.floats(allow_nan=False, allow_infinity=False)
+_counts = st.integers(min_value=0, max_value=2**32 - 1)
+_ticks = st.integers(min_value=0, max_value=2**63 - 1)
+_reals = st.floats(min_value=-1e15, max_value=1e15)
+_rates = st.floats(min_value=1e-3, max_value=1e5)
 _per_arm = st.dictionaries(_arms, _reals)
 
 _episodes = st.builds(
@@ -21,14 +23,14 @@ _episodes = st.builds(
     room=_words,
     number=_counts,
     task=st.none() | _words,
-    control_hz=st.none() | _reals,
+    control_hz=st.none() | _rates,
     arms=st.lists(_arms, unique=True).map(tuple),
-    seed=st.none() | _counts,
-    started_ns=_counts,
-    ended_ns=_counts,
+    seed=st.none() | st.integers(min_value=0, max_value=2**64 - 1),
+    started_ns=_ticks,
+    ended_ns=_ticks,
     ticks=_counts,
-    first_tick=_counts,
-    last_tick=_counts,
+    first_tick=_ticks,
+    last_tick=_ticks,
     outcome=st.sampled_from(["success", "failure", "discarded", "unspecified"]),
     reason=_words,
     interrupted=st.booleans(),

@@ -15,6 +15,7 @@ from mart.protocol.messages import (
 from mart.protocol.messages import Seat as SeatMessage
 from mart.teleop_gateway.served_seats import (
     FORGOTTEN_AFTER_SWEEPS,
+    GONE_AFTER_SWEEPS,
     SeatAddress,
     SeatRegister,
     served_epochs,
@@ -30,13 +31,19 @@ def status(room: str, *operators: int, epoch: int = 1) -> RoomStatus:
     return RoomStatus(room=room, seats=seats)
 
 
+def hear(register: SeatRegister, told: RoomStatus) -> None:
+    """The sim of this room is alive and says this."""
+    register.on_room(told.room, True)
+    register.on_status(told)
+
+
 def filled(gateway: str, *others: str) -> SeatRegister:
     """Eight rooms with two persons each."""
     register = SeatRegister(gateway)
     for other in others:
         register.on_gateway(other, True)
     for number in range(8):
-        register.on_status(status(f"room-{number}", OPERATOR_HUMAN, OPERATOR_HUMAN))
+        hear(register, status(f"room-{number}", OPERATOR_HUMAN, OPERATOR_HUMAN))
     return register
 
 
@@ -53,10 +60,10 @@ def test_what_a_room_says_last_holds() -> None:
     seat = SeatAddress("room-1", "arm0")
     assert register.epoch(seat) is None
     assert register.mine() == frozenset()
-    register.on_status(status("room-1", OPERATOR_HUMAN, epoch=3))
+    hear(register, status("room-1", OPERATOR_HUMAN, epoch=3))
     assert register.epoch(seat) == 3
     assert register.mine() == {seat}
-    register.on_status(status("room-1", OPERATOR_HOLD, epoch=4))
+    hear(register, status("room-1", OPERATOR_HOLD, epoch=4))
     assert register.epoch(seat) is None
     assert register.mine() == frozenset()
 
@@ -71,14 +78,14 @@ def test_several_gateways_serve_every_seat_once() -> None:
 
 def test_a_room_that_has_ended_is_forgotten_and_one_that_speaks_is_not() -> None:
     register = SeatRegister("gateway-1")
-    register.on_status(status("ended", OPERATOR_POLICY))
+    hear(register, status("ended", OPERATOR_POLICY))
     for _ in range(FORGOTTEN_AFTER_SWEEPS):
-        register.on_status(status("speaks", OPERATOR_POLICY))
+        hear(register, status("speaks", OPERATOR_POLICY))
         register.sweep()
     assert {seat.room for seat in register.mine()} == {"ended", "speaks"}
     register.sweep()
     assert {seat.room for seat in register.mine()} == {"speaks"}
-    register.on_status(status("ended", OPERATOR_POLICY))  # opened again
+    hear(register, status("ended", OPERATOR_POLICY))  # opened again
     assert {seat.room for seat in register.mine()} == {"ended", "speaks"}
 
 
@@ -111,3 +118,38 @@ def test_a_gateway_serves_though_nobody_has_heard_of_it() -> None:
     register.on_gateways_asked([])
     register.on_gateway("gateway-1", False)
     assert register.mine() == EVERY_SEAT
+
+
+def test_a_room_without_a_sim_is_not_served() -> None:
+    """Each seat is a process: whoever can speak on the bus could have any number of them."""
+    register = SeatRegister("gateway-1")
+    register.on_status(status("ghost", OPERATOR_HUMAN, OPERATOR_HUMAN))
+    assert register.mine() == frozenset()
+
+
+@pytest.mark.parametrize("told", [True, False])
+def test_a_room_whose_sim_is_gone_is_forgotten_though_somebody_speaks_for_it(told: bool) -> None:
+    register = SeatRegister("gateway-1")
+    hear(register, status("room-1", OPERATOR_HUMAN))
+    if told:
+        register.on_room("room-1", False)
+    for _ in range(GONE_AFTER_SWEEPS + 2):
+        assert register.mine()
+        register.on_rooms_asked([])
+        register.on_status(status("room-1", OPERATOR_HUMAN))
+        register.sweep()
+        if not register.mine():
+            break
+    register.sweep()
+    assert register.mine() == frozenset()
+
+
+def test_a_router_that_restarts_takes_no_seat_away() -> None:
+    register = SeatRegister("gateway-1")
+    hear(register, status("room-1", OPERATOR_HUMAN))
+    register.on_room("room-1", False)
+    for _ in range(GONE_AFTER_SWEEPS):
+        register.sweep()
+    register.on_room("room-1", True)
+    register.sweep()
+    assert register.mine() == {SeatAddress("room-1", "arm0")}

@@ -16,7 +16,7 @@ from mart.protocol.messages import (
     BarrierPhase,
     Operator,
 )
-from mart.sim.room.barrier import Barrier, TickInputs
+from mart.sim.room.barrier import MAX_SEQUENCE_LEAP, Barrier, TickInputs
 from mart.sim.room.command_validation import CommandRejection
 from tests.sim.room.commands import received
 
@@ -240,6 +240,7 @@ def test_commands_for_the_old_world_are_void_after_a_reset(barrier: Barrier) -> 
         ("arm0", 0, 5, CommandRejection.WRONG_EPOCH),
         ("arm0", 1, 4, CommandRejection.OLD_SEQUENCE),
         ("arm0", 1, 3, CommandRejection.OLD_SEQUENCE),
+        ("arm0", 1, 4 + MAX_SEQUENCE_LEAP + 1, CommandRejection.LEAP),
         ("arm1", 1, 5, CommandRejection.FREE_SEAT),
     ],
 )

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from mart.protocol import codec
 from mart.protocol.messages import Command
+from mart.protocol.received import MAX_COUNTER
 from mart.sim.room.command_validation import (
     MAX_COMMAND_BYTES,
     CommandRejected,
@@ -89,3 +90,9 @@ def test_a_payload_that_is_too_long_is_malformed() -> None:
 def test_any_bytes_are_admitted_or_rejected(payload: bytes) -> None:
     with contextlib.suppress(CommandRejected):
         assert validate_command(payload, "arm0", 0.0, 0).arm == "arm0"
+
+
+@pytest.mark.parametrize("sequence", [MAX_COUNTER + 1, 2**64 - 1])
+def test_a_number_after_which_there_are_none_is_rejected(sequence: int) -> None:
+    message = command("arm0", epoch=1, sequence=sequence)
+    assert reason_for(message) is CommandRejection.LEAP

@@ -1,19 +1,22 @@
-"""The room's model, at the door."""
+"""The room at its door: its model, and who does its work."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 
 import pytest
 
 from mart.protocol import codec, keys
-from mart.protocol.messages import Model
-from mart.runtime.bus.memory import MemoryNetwork
+from mart.protocol.messages import Event, Model, RoomReply
+from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
+from mart.sim.room.room import Room
 from mart.sim.room.room_server import RoomServer
 from mart.sim.world import World
 from tests.sim.room.room_harness import RoomHarness
 
 TASK = "two_arm_multi_cube_lifting"
+Work = Callable[[], None]
 
 
 @pytest.fixture(scope="module")
@@ -35,12 +38,58 @@ def test_detailed_meshes_are_another_model_of_the_same_states(world: World) -> N
     assert looks.integration_state() == world.integration_state()
 
 
+def test_whoever_hears_what_the_room_says_does_none_of_its_work(world: World) -> None:
+    """It could wait, in the middle of saying something, for room in the queue that only it can empty."""
+    bus, left = MemoryNetwork().connect(), list[Work]()
+    harness = RoomHarness(world)
+    server = _server(bus, harness.room, world, leave=left.append)
+    try:
+        told = len(harness.publisher.events)
+        saved = Event(room="room-1", episode_saved=Event.EpisodeSaved(number=1, verified=True))
+        for saved.episode_saved.number in range(1, 4):
+            bus.publisher(keys.event("room-1")).put(codec.encode(saved))
+        assert len(harness.publisher.events) == told
+        assert harness.room.status(harness.now_s).episodes_saved == 0
+        for work in left:
+            work()
+        assert harness.room.status(harness.now_s).episodes_saved == 3
+    finally:
+        server.close()
+
+
+@pytest.mark.parametrize("error", [ValueError("x"), OSError(28, "No space left on device")])
+def test_what_the_room_fails_at_is_answered(
+    world: World, error: Exception, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> RoomReply:
+        raise error
+
+    room = RoomHarness(world).room
+    monkeypatch.setattr(room, "answer_seat", fail)
+    monkeypatch.setattr(room, "answer_episode", fail)
+    bus = MemoryNetwork().connect()
+    server = _server(bus, room, world, leave=_do)
+    try:
+        for topic in (keys.seat("room-1"), keys.episode("room-1")):
+            assert codec.decode(RoomReply, bus.query(topic, b"", 1.0)).error.code == "ServiceFault"
+    finally:
+        server.close()
+
+
+def _do(work: Work) -> None:
+    work()
+
+
+def _server(
+    bus: MemoryBus, room: Room, world: World, *, leave: Callable[[Work], None], looks: World | None = None
+) -> RoomServer:
+    return RoomServer(bus, "room-1", room, world, submit=_do, leave=leave, garbled=Counter(), looks=looks)
+
+
 def asked(world: World, looks: World | None, payload: bytes) -> Model:
     bus = MemoryNetwork().connect()
     room = RoomHarness(world).room
-    server = RoomServer(
-        bus, "room-1", room, world, submit=lambda work: work(), garbled=Counter(), looks=looks
-    )
+    server = _server(bus, room, world, leave=_do, looks=looks)
     try:
         return codec.decode(Model, bus.query(keys.model("room-1"), payload, 1.0))
     finally:

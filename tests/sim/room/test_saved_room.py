@@ -63,5 +63,14 @@ def test_a_record_is_replaced_and_only_its_owner_reads_it(tmp_path: Path) -> Non
 def test_a_spoilt_record_is_named(tmp_path: Path, text: str) -> None:
     path = tmp_path / "room-1.json"
     path.write_text(text)
-    with pytest.raises(Corrupt, match=r"room-1\.json.*delete it"):
+    with pytest.raises(Corrupt, match=r"room-1\.json"):
         saved_room.load(path)
+
+
+def test_a_spoilt_record_is_put_aside_and_the_room_begins_anew(tmp_path: Path) -> None:
+    path = tmp_path / "room-1.json"
+    path.write_text('{"seed": 1, "episodes": 4294967295}')
+    assert saved_room.load_or_put_aside(path) is None
+    (aside,) = tmp_path.iterdir()
+    assert aside.name.startswith("room-1.json.unusable-")
+    assert "4294967295" in aside.read_text()

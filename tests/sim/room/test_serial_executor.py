@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -82,6 +83,45 @@ def test_no_two_threads_have_a_turn_and_no_work_is_lost() -> None:
             thread.join(PATIENCE_S)
     assert len(done) == 1000
     assert set(together) == {1}
+
+
+def test_work_that_is_left_is_done_by_the_run() -> None:
+    done_by, done = list[str](), threading.Event()
+
+    def work() -> None:
+        done_by.append(threading.current_thread().name)
+        done.set()
+
+    executor = SerialExecutor(lambda now_s: now_s + FAR_S)
+    with running(executor):
+        executor.leave(work)
+        assert done.wait(PATIENCE_S)
+    assert done_by != [threading.current_thread().name]
+
+
+def test_whoever_waits_for_a_turn_sleeps() -> None:
+    """However overdue the room is."""
+    entered, leave = threading.Event(), threading.Event()
+    executor = SerialExecutor(lambda now_s: 0.0)
+
+    def long_work() -> None:
+        entered.set()
+        assert leave.wait(PATIENCE_S)
+
+    holder = threading.Thread(target=executor.submit, args=(long_work,))
+    holder.start()
+    assert entered.wait(PATIENCE_S)
+    stop = threading.Event()
+    runner = threading.Thread(target=executor.run, args=(stop,))
+    began_s = time.process_time()
+    runner.start()
+    runner.join(0.5)
+    spent_s = time.process_time() - began_s
+    stop.set()
+    leave.set()
+    holder.join(PATIENCE_S)
+    runner.join(PATIENCE_S)
+    assert spent_s < 0.1
 
 
 def test_what_falls_due_is_done_though_nothing_comes_in() -> None:

@@ -44,7 +44,7 @@ class RoomHarness:
         self.room = Room(
             "room-1", world, SavedRoom(seed=5), publisher, lambda _: None, now_s=0.0, terms=terms
         )
-        self.unpaced = UnpacedRoom(self.room, publisher, self.time)
+        self.unpaced = UnpacedRoom(self.room, publisher, self.time, on_turn=lambda: None)
         self.unpaced.seat_scripts(world.task, get_skill(skill), seed=5)
 
     def play(self, number: int) -> list[State]:

@@ -27,6 +27,7 @@ class Opening:
     def __init__(self) -> None:
         self.network = MemoryNetwork()
         self.register = SeatRegister("gateway-1")
+        self.register.on_room(SEAT.room, True)
         self.handler = OpenSeatHandler(
             AsyncBus(self.network.connect(), asyncio.get_running_loop()), self.register
         )

@@ -177,3 +177,17 @@ def test_a_handover_waits_no_longer_than_told() -> None:
     assert clock.monotonic_s() - start_s < 1.0
     assert render_queue.take_orders() == (frozenset(), frozenset({Codec.H264}))
     assert render_queue.take_orders() == (frozenset(), frozenset())
+
+
+def test_where_drawing_fails_the_process_ends(model_message: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And is started anew by its gateway: nobody drives blind."""
+    said: queue.Queue[str] = queue.Queue()
+
+    def fail(*_: object) -> None:
+        raise OSError("the graphics card is gone")
+
+    view = LiveView(load_room_model(model_message), "arm0", 0.5, lambda _: None, end=said.put)
+    monkeypatch.setattr(view, "_draw_until_closed", fail)
+    view.start()
+    assert "view-arm0 failed (OSError)" in said.get(timeout=30.0)
+    view.stop()

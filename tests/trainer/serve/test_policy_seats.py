@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
 from pathlib import Path
+from typing import Any, TypeVar
 
 import pytest
 
@@ -32,14 +34,44 @@ from tests.web.room import Room
 
 ARMS = ("arm0", "arm1")
 
+T = TypeVar("T")
+
+
+class AtOnce(Executor):
+    """What is asked for is done before anything else; where it is `held`, when it is `released`."""
+
+    def __init__(self) -> None:
+        self.held = False
+        self._waiting: list[Callable[[], None]] = []
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        future: Future[T] = Future()
+
+        def do() -> None:
+            try:
+                future.set_result(fn(*args, **kwargs))
+            except Exception as error:  # noqa: BLE001 - as an executor does
+                future.set_exception(error)
+
+        self._waiting.append(do)
+        if not self.held:
+            self.release()
+        return future
+
+    def release(self) -> None:
+        while self._waiting:
+            self._waiting.pop(0)()
+
 
 class Stand:
     """A room without a world, the driver, and what they say."""
 
     def __init__(self, bus: MemoryBus, policies: dict[str, Wanderer]) -> None:
+        self.loader = AtOnce()
         self.bus, self.policies = bus, policies
         self.room = Room(bus)
-        self.driver = SeatDriver(bus, None, PromotedPolicies(Path("policies"), self.load))
+        self.selection = PromotedPolicies(Path("policies"), self.load, self.loader)
+        self.driver = SeatDriver(bus, None, self.selection)
         self.commands = MessageCollector(bus, keys.commands("room-1"), Command)
         self.events = MessageCollector(bus, keys.event("room-1").key, Event)
         self.loaded: list[str] = []
@@ -195,3 +227,29 @@ def test_a_driver_that_stood_still_itself_forgets_no_room(
     stand.driver.work()
     assert stand.show() == [("arm1", 2)]
     assert stand.loaded == ["alone"]
+
+
+def test_a_policy_is_loaded_beside_those_that_drive(stand: Stand) -> None:
+    stand.assign("arm1", "alone")
+    assert stand.show() == [("arm1", 2)]
+    stand.loader.held = True
+    stand.assign("arm0", "small")
+    assert stand.show() == [("arm1", 2)]  # it drives on meanwhile
+    stand.loader.release()
+    stand.room.publish()
+    assert sorted(stand.show()) == [("arm0", 2), ("arm1", 2)]
+
+
+@pytest.mark.parametrize("error", [ValueError("shape"), OSError(5, "Input/output error"), RuntimeError()])
+def test_one_policys_failure_is_that_policys(stand: Stand, error: Exception) -> None:
+    stand.assign("arm1", "alone")
+    stand.show()
+
+    def fail(checkpoint: Path) -> Wanderer:
+        raise error
+
+    stand.selection._load = fail
+    stand.assign("arm0", "small")
+    assert stand.show() == [("arm1", 2)]
+    assert stand.room.seats["arm0"].operator == OPERATOR_HOLD
+    assert type(error).__name__ in stand.events.all()[-1].notice.text

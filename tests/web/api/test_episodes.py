@@ -173,6 +173,7 @@ async def test_what_is_saved_without_a_word_is_found_in_the_catalogue(
         room="room-1", task=synthetic.TASK, barrier=BARRIER_PHASE_RUNNING, wall_ns=synthetic.START_NS
     )
     status.episode.number = 1
+    lobby.see_alive(keys.alive(ServiceKind.SIM, "room-1"), True)
     for status.episode.phase in (EPISODE_PHASE_RECORDING, EPISODE_PHASE_ENDED):
         lobby.see_status(status, 0.0)
     with lobby.listeners.listen() as page:

@@ -59,6 +59,8 @@ async def test_what_a_room_says_under_anothers_name_is_not_used(
     forgetful: tuple[MemoryBus, Lobby, LobbyFeed], caplog: pytest.LogCaptureFixture
 ) -> None:
     bus, lobby, _ = forgetful
+    for room in ("room-1", "room-2"):
+        lobby.see_alive(keys.alive(ServiceKind.SIM, room), True)
     with contextlib.closing(bus.publisher(keys.status("room-2"))) as publisher:
         publisher.put(codec.encode(RoomStatus(room="room-1")))
         publisher.put(codec.encode(RoomStatus(room="room-2")))

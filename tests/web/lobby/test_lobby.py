@@ -1,9 +1,11 @@
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from mart.protocol import keys
-from mart.protocol.errors import NotFound
+from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import (
     BARRIER_PHASE_STALLED,
     CUE_GO,
@@ -30,6 +32,12 @@ def status(room: str = "room-1", task: str = "two_arm_multi_cube_lifting") -> Ro
     told.episode.phase = EPISODE_PHASE_RECORDING
     told.progress.subtasks.add(name="lift_cube0", done=True)
     return told
+
+
+def alive_lobby() -> Lobby:
+    lobby = Lobby()
+    lobby.see_alive(keys.alive(ServiceKind.SIM, "room-1"), True)
+    return lobby
 
 
 def lobby_with(*rooms: str, now_s: float = 0.0) -> Lobby:
@@ -68,7 +76,7 @@ def test_rooms_are_ordered_by_name() -> None:
 def test_a_plan_is_told() -> None:
     told = status()
     told.plan.episodes = 50
-    lobby = Lobby()
+    lobby = alive_lobby()
     lobby.see_status(told, 0.0)
     assert lobby.room_json("room-1", "", 0.0)["plan"] == {"episodes": 50, "good": 0}
 
@@ -99,7 +107,7 @@ def test_a_room_that_comes_back_is_whole_again() -> None:
 
 
 def test_a_task_that_this_service_does_not_know_is_shown_under_its_name() -> None:
-    lobby = Lobby()
+    lobby = alive_lobby()
     lobby.see_status(status(task="three_arm_juggling"), 0.0)
     (room,) = lobby.rooms_json("", 0.0)
     assert (room["title"], room["instruction"], room["time_limit_s"]) == ("three_arm_juggling", "", None)
@@ -138,3 +146,13 @@ def test_what_a_status_tells_better_is_left_out() -> None:
     event.world_reset.seed = 1
     assert event_json(event) is None
     assert event_json(Event()) is None
+
+
+def test_a_status_that_cannot_be_shown_is_refused_and_takes_no_other_along() -> None:
+    lobby = lobby_with("room-1", "room-2")
+    for number in (math.nan, math.inf):
+        bad = status("room-2")
+        bad.real_time_factor = number
+        with pytest.raises(InvalidInput, match="room-2"):
+            lobby.see_status(bad, 0.1)
+    assert [room["room"] for room in lobby.rooms_json("", 0.2)] == ["room-1", "room-2"]

@@ -6,6 +6,24 @@ from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, Operator, Room
 from mart.web.lobby.room_table import STALE_AFTER_S, RoomTable
 
 
+def alive() -> RoomTable:
+    table = RoomTable()
+    table.set_alive("room-1", True)
+    return table
+
+
+def test_a_room_without_a_sim_is_not_there() -> None:
+    """Whoever can speak on the bus could fill the lobby with rooms."""
+    table = RoomTable()
+    assert not table.see(status(OPERATOR_HUMAN, wall_ns=20), 1.0)
+    assert table.names(1.0) == []
+    table.set_alive("room-1", True)
+    assert table.see(status(OPERATOR_HUMAN, wall_ns=20), 1.2)
+    table.set_alive("room-1", False)  # a router that restarts takes every token for a moment
+    assert table.see(status(OPERATOR_HUMAN, wall_ns=21), 1.4)
+    assert table.names(1.4) == ["room-1"]
+
+
 def status(operator: Operator, wall_ns: int, boot: int = 1) -> RoomStatus:
     seat = Seat(arm="arm0", operator=operator, epoch=wall_ns)
     return RoomStatus(room="room-1", seats=[seat], wall_ns=wall_ns, boot=boot)
@@ -16,21 +34,21 @@ def operator_in(table: RoomTable, now_s: float) -> Operator:
 
 
 def test_who_has_taken_a_seat_is_not_shown_without_it_by_what_was_said_before() -> None:
-    table = RoomTable()
+    table = alive()
     assert table.see(status(OPERATOR_HUMAN, wall_ns=20), 1.0)  # the answer to who took it
     assert not table.see(status(OPERATOR_HOLD, wall_ns=10), 1.01)
     assert operator_in(table, 1.01) == OPERATOR_HUMAN
 
 
 def test_a_sim_that_was_started_anew_is_believed_whatever_its_clock_says() -> None:
-    table = RoomTable()
+    table = alive()
     table.see(status(OPERATOR_HUMAN, wall_ns=20), 1.0)
     assert table.see(status(OPERATOR_HOLD, wall_ns=10, boot=2), 1.01)
     assert operator_in(table, 1.01) == OPERATOR_HOLD
 
 
 def test_a_clock_that_was_set_back_costs_a_second() -> None:
-    table = RoomTable()
+    table = alive()
     table.see(status(OPERATOR_HUMAN, wall_ns=20), 1.0)
     late_s = 1.01 + STALE_AFTER_S
     assert table.see(status(OPERATOR_HOLD, wall_ns=10), late_s)

@@ -8,14 +8,25 @@ Python and absent from the file.
 
 from __future__ import annotations
 
+import hashlib
+import json
 import re
 from collections.abc import Mapping
-from typing import Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from mart.protocol.errors import Corrupt
-from mart.protocol.vocabulary import Verdict
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 
 PROFILE = "mart"
 SUFFIX = ".mcap"
@@ -26,9 +37,13 @@ EVENT = "/event"
 TRANSFORMS = "/tf"
 MODEL_ATTACHMENT = "model.mjb"
 
-# What one part of the file may take: a reader refuses more, so that a hostile file cannot fill the memory.
+# What a file and its parts may take: a reader refuses more, so that a hostile file cannot fill the memory.
 MAX_CHUNK_BYTES = 64 * 1024 * 1024
 MAX_RECORD_BYTES = 256 * 1024 * 1024
+MAX_METADATA_BYTES = 1024 * 1024  # of one record, and of eight at most in all
+MAX_UNPACKED_TIMES = 200  # of a file's size; episodes have 1 to 4, a world at rest 27
+MIN_UNPACKED_BYTES = 4 * 1024 * 1024
+MAX_MESSAGES = 4_000_000  # an hour of four arms at 100 ticks a second has 3,500,000
 
 
 def command_topic(arm: str) -> str:
@@ -43,6 +58,29 @@ def video_topic(camera: str) -> str:
     return f"/view/{camera}/video"
 
 
+def _within(low: float, high: float) -> AfterValidator:
+    """Bound a number where it is read from a file; what is written is what was measured."""
+
+    def check(value: float, info: ValidationInfo) -> float:
+        if info.context is not None and not low <= value <= high:
+            raise ValueError(f"it must be from {low:g} to {high:g}")
+        return value
+
+    return AfterValidator(check)
+
+
+# What a number of a record may be: what the messages and databases that carry it on can hold.
+Count = Annotated[int, _within(0, 2**32 - 1)]
+Tick = Annotated[int, _within(0, 2**63 - 1)]
+UnixNs = Annotated[int, _within(0, 2**63 - 1)]
+Seed = Annotated[int, _within(0, 2**64 - 1)]
+Number = Annotated[float, _within(-1e15, 1e15)]
+ControlHz = Annotated[float, _within(1e-3, 1e5)]
+
+_MAX_TEXT_CHARACTERS = 4096
+_FROM_FILE: Mapping[str, object] = {}  # that there is a context is all that is asked
+
+
 class Record(BaseModel):
     """One metadata record: each field is one string in the file."""
 
@@ -55,8 +93,14 @@ class Record(BaseModel):
 
     @classmethod
     def from_strings(cls, strings: Mapping[str, str]) -> Self:
+        for name, text in strings.items():
+            if len(text) > _MAX_TEXT_CHARACTERS:
+                raise Corrupt(
+                    f"The record {cls.NAME} cannot be read: {name[:64]} has {len(text)} characters, more than "
+                    f"{_MAX_TEXT_CHARACTERS}."
+                )
         try:
-            return cls.model_validate(dict(strings))
+            return cls.model_validate(dict(strings), context=_FROM_FILE)
         except ValidationError as error:
             first = error.errors()[0]
             where = ".".join(map(str, first["loc"])) or "a value"
@@ -69,29 +113,34 @@ class EpisodeRecord(Record):
     NAME = "mart.episode"
 
     room: str
-    number: int
+    number: Count
     task: str | None = None
-    control_hz: float | None = None
+    control_hz: ControlHz | None = None
     arms: tuple[str, ...]
-    seed: int | None = None
+    seed: Seed | None = None
     mode: str | None = None  # live (paced) or lockstep (as fast as the machine allowed; no video)
     skill: str | None = None  # of the scripts that drove
-    time_limit_s: float | None = None  # simulated
-    started_ns: int  # Unix time of the first and of the last state
-    ended_ns: int
-    ticks: int
-    first_tick: int
-    last_tick: int
+    time_limit_s: Number | None = None  # simulated
+    started_ns: UnixNs  # Unix time of the first and of the last state
+    ended_ns: UnixNs
+    ticks: Count
+    first_tick: Tick
+    last_tick: Tick
     outcome: str  # success, failure, discarded or unspecified
     reason: str
     ended_by: str | None = None  # task, time, operator, absence or room
     ended_by_name: str | None = None  # who said how it ended, as others see them
     ended_by_arm: str | None = None  # the arm that they drove
-    subtasks_done: int | None = None  # in the last state
-    subtasks: int | None = None  # of the task
+    subtasks_done: Count | None = None  # in the last state
+    subtasks: Count | None = None  # of the task
     interrupted: bool  # the room was paused meanwhile
     complete: bool  # every state from the reset to the outcome is in the file
     repaired: bool = False  # put together from what a crash had left
+
+    @field_validator("outcome")
+    @classmethod
+    def _known(cls, outcome: str) -> str:
+        return EpisodeOutcome(outcome).value
 
     @field_validator("arms", mode="before")
     @classmethod
@@ -106,7 +155,7 @@ class RoomRecord(Record):
 
     room: str
     task: str | None = None
-    control_hz: float | None = None
+    control_hz: ControlHz | None = None
     model_sha256: str | None = None
     mujoco_version: str | None = None
 
@@ -116,20 +165,20 @@ class CadenceRecord(Record):
 
     NAME = "mart.cadence"
 
-    real_time_factor: float | None = None
-    wall_s: float
-    sim_s: float
-    missing_ticks: int
-    waited_s: float  # in all, beyond the pace
-    tick_interval_p50_ms: float | None = None
-    tick_interval_p95_ms: float | None = None
-    tick_interval_max_ms: float | None = None
-    video_dropped: int = 0  # frames that the recorder could not keep up with
-    missing_commands: int | None = None  # that states name and the file lacks
-    messages_lost: int = 0  # states, commands and events that it could not keep up with
-    waited_for_s: Mapping[str, float] = Field(default_factory=dict)
-    motion_to_photon_p50_ms: Mapping[str, float] = Field(default_factory=dict)  # the seat's newest report
-    motion_to_photon_p95_ms: Mapping[str, float] = Field(default_factory=dict)
+    real_time_factor: Number | None = None
+    wall_s: Number
+    sim_s: Number
+    missing_ticks: Count
+    waited_s: Number  # in all, beyond the pace
+    tick_interval_p50_ms: Number | None = None
+    tick_interval_p95_ms: Number | None = None
+    tick_interval_max_ms: Number | None = None
+    video_dropped: Count = 0  # frames that the recorder could not keep up with
+    missing_commands: Count | None = None  # that states name and the file lacks
+    messages_lost: Count = 0  # states, commands and events that it could not keep up with
+    waited_for_s: Mapping[str, Number] = Field(default_factory=dict)
+    motion_to_photon_p50_ms: Mapping[str, Number] = Field(default_factory=dict)  # the seat's newest report
+    motion_to_photon_p95_ms: Mapping[str, Number] = Field(default_factory=dict)
 
     _PER_ARM: ClassVar[Mapping[str, str]] = {
         "waited_for_s": "waited_for_{}_s",
@@ -186,6 +235,9 @@ class Shift(BaseModel):
         return cls(episode_tick=int(tick or 0), operator=operator, name=name or "")
 
 
+_MAX_OPERATORS_CHARACTERS = 65536  # of one arm: some 4,000 changes
+
+
 class OperatorsRecord(BaseModel):
     """Who drove each arm, first shift first; in the file: `arm0: "human Ana | tick 57: hold"`."""
 
@@ -200,10 +252,21 @@ class OperatorsRecord(BaseModel):
 
     @classmethod
     def from_strings(cls, strings: Mapping[str, str]) -> OperatorsRecord:
+        if any(len(text) > _MAX_OPERATORS_CHARACTERS for text in strings.values()):
+            raise Corrupt(
+                f"The record {cls.NAME} says more than {_MAX_OPERATORS_CHARACTERS} characters of an arm."
+            )
         return cls(shifts={arm: tuple(map(Shift.parse, text.split(" | "))) for arm, text in strings.items()})
 
 
 VERSIONS = "mart.versions"  # distribution → version of the software that wrote the file
+CHECKSUMS = "mart.checksums"  # metadata record → SHA-256 of what it says: the format itself has none for them
+
+
+def metadata_checksum(strings: Mapping[str, str]) -> str:
+    """Return the SHA-256 of what a metadata record says, in hexadecimal digits, whatever the order of its keys."""
+    said = json.dumps(sorted(strings.items()), ensure_ascii=True, separators=(",", ":"))
+    return hashlib.sha256(said.encode()).hexdigest()
 
 
 def _text(value: object) -> str:

@@ -32,8 +32,10 @@ def list_episodes(
         ...     print(episode.path, episode.outcome)
     """
     given = [paths] if isinstance(paths, (str, os.PathLike)) else paths
-    files = {path.resolve(): path for path in episode_files(map(Path, given))}
-    found = sorted(described(files.values()), key=lambda one: (one.started_ns, one.file_path.resolve()))
+    files = {labels.resolved(path): path for path in episode_files(map(Path, given))}
+    found = sorted(
+        described(files.values()), key=lambda one: (one.started_ns, labels.resolved(one.file_path))
+    )
     return found if wanted is None else wanted.apply(found)
 
 
@@ -56,7 +58,7 @@ def described(files: Iterable[Path]) -> list[LabelledEpisode]:
         root = labels.root_of(file)
         if root not in said:
             said[root] = labels.read_folded(root)
-        name = file.resolve().relative_to(root).as_posix()
+        name = labels.resolved(file).relative_to(root).as_posix()
         try:
             found.append(describe(file, name).with_labels(said[root].get(name)))
         except FileNotFoundError:  # moved or deleted since it was listed
@@ -69,9 +71,20 @@ def episode_files(paths: Iterable[Path]) -> list[Path]:
     found: list[Path] = []
     for path in paths:
         if path.is_dir():
-            found += sorted(path.rglob(f"*{SUFFIX}"))
-        elif path.is_file():
+            found += files_below(path)
+        elif os.path.lexists(path):
             found.append(path)
         else:
             raise NotFound(f"There is no {path}; name episode files or folders of them.")
     return found
+
+
+def files_below(folder: Path, suffix: str = SUFFIX) -> list[Path]:
+    """Return, sorted, all below a folder that is named as an episode file; what it is shows when it is opened.
+
+    Folders that cannot be read, or go away meanwhile, are passed over; links to folders are not followed.
+    """
+    found: list[Path] = []
+    for place, folders, files in os.walk(folder):
+        found += (Path(place, name) for name in (*files, *folders) if name.endswith(suffix))
+    return sorted(found)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import os
 from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -11,6 +13,8 @@ from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, MartError
 from mart.protocol.recording import OperatorsRecord, Shift
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
+
+_log = logging.getLogger(__name__)
 
 
 class LabelledEpisode(BaseModel):
@@ -93,26 +97,47 @@ class LabelledEpisode(BaseModel):
 
 
 def describe(file_path: Path, path: str) -> LabelledEpisode:
-    """Describe one file by its metadata alone; of one that cannot be read, `error` says why.
+    """Describe one file by its metadata alone; of one that cannot be read, `error` says why, whatever it is.
 
-    path: below the folder of its labels. Raises FileNotFoundError where there is no file.
+    path: below the folder of its labels. Raises FileNotFoundError where nothing is.
     """
-    found = LabelledEpisode(path=path, file_path=file_path, size_bytes=file_path.stat().st_size)
+    found = LabelledEpisode(path=as_utf8(path), file_path=file_path, size_bytes=_size_of(file_path))
     try:
-        file = EpisodeFile.open(file_path)
-        episode, cadence, operators = file.episode, file.cadence, file.operators
-        verdict = file.verification.verdict.value
+        return found.model_copy(update=_facts(EpisodeFile.open(file_path)))
     except MartError as error:
-        return found.model_copy(update={"error": str(error)})
+        why = str(error)
+    except Exception as error:  # noqa: BLE001 - logged whole; one file never keeps a folder from being listed
+        _log.exception("%s could not be described", as_utf8(str(file_path)))
+        why = f"{file_path} cannot be read: {error}. That it is not told better is a fault of MART's."
+    return found.model_copy(update={"error": as_utf8(why)})
+
+
+def _facts(file: EpisodeFile) -> dict[str, object]:
+    episode, cadence = file.episode, file.cadence
     known = {name: value for name, value in episode if name in LabelledEpisode.model_fields}
-    return found.model_copy(
-        update=known
-        | {"verdict": verdict, "operators": operators.to_strings()}
+    return (
+        known
+        | {"verdict": file.verification.verdict.value, "operators": file.operators.to_strings()}
         | {"real_time_factor": cadence.real_time_factor}
         | {"missing_ticks": cadence.missing_ticks, "missing_commands": cadence.missing_commands}
         | {"waited_s": cadence.waited_s}
         | {"simulated_s": episode.ticks / episode.control_hz if episode.control_hz else 0.0}
     )
+
+
+def _size_of(path: Path) -> int:
+    """Return a file's size; 0 of what is there and has none that can be told, such as a link that leads nowhere."""
+    try:
+        return path.stat().st_size
+    except OSError:
+        if not os.path.lexists(path):
+            raise
+        return 0
+
+
+def as_utf8(text: str) -> str:
+    """Return text that can be written; bytes of a file's name that are no UTF-8 become a sign for it."""
+    return text.encode(errors="surrogateescape").decode(errors="replace")
 
 
 def require_readable(episodes: list[LabelledEpisode]) -> None:

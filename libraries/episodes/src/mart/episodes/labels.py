@@ -18,7 +18,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from mart.protocol.errors import Conflict, InvalidInput
+from mart.protocol.errors import Conflict, Corrupt, InvalidInput
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.runtime.json_lines import append_json_lines, read_json_lines
 
@@ -26,6 +26,9 @@ _log = logging.getLogger(__name__)
 
 FILE_NAME = "labels.jsonl"
 MAX_NOTE_CHARACTERS = 2000
+_MAX_PATH_CHARACTERS = 4096
+_MAX_NS = 2**63  # 2262
+_MAX_REASON_CHARACTERS = 200
 KEEP, DROP = "keep", "drop"
 _DAY = re.compile(r"\d{4}-\d{2}-\d{2}")
 _DATASET = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
@@ -51,9 +54,9 @@ _ALLOWED: dict[LabelKind, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class Label:
-    """Say one thing about one file. Raises InvalidInput for a value that the kind cannot have.
+    """Say one thing about one file. Raises InvalidInput for a value that the kind cannot have, and for such a path.
 
-    path: relative to the folder of the labels, with forward slashes. at_ns: Unix time.
+    path: relative to the folder of the labels and below it, with forward slashes. at_ns: Unix time.
     """
 
     path: str
@@ -63,6 +66,11 @@ class Label:
     detail: str = ""
 
     def __post_init__(self) -> None:
+        _require_path(self.path)
+        for text in (self.value, self.detail):
+            _require_text(text)
+        if not 0 <= self.at_ns < _MAX_NS:
+            raise InvalidInput(f"A label of {self.at_ns} ns was given; it must be a time of before 2262.")
         allowed = _ALLOWED.get(self.kind)
         if allowed is not None and self.value not in allowed:
             raise InvalidInput(f"The {self.kind} {self.value!r} was given; it must be {', '.join(allowed)}.")
@@ -120,14 +128,17 @@ def read(root: Path) -> list[Label]:
     """Read every label of a folder of episodes, in the order they were given.
 
     Lines that are none (torn by a power cut, or of a kind that another version knows) are left out, and a warning says
-    which, once as long as they stay the same.
+    which, once as long as they stay the same. Raises Corrupt where the file cannot be read: who knows what it says.
     """
     found, unknown = [], dict[int, str]()
-    for number, fields in read_json_lines(root / FILE_NAME):
-        try:
-            found.append(_parse(fields))
-        except (ValueError, KeyError, TypeError, InvalidInput) as error:
-            unknown[number] = str(error)
+    try:
+        for number, fields in read_json_lines(root / FILE_NAME):
+            try:
+                found.append(_parse(fields))
+            except (ValueError, KeyError, InvalidInput) as error:
+                unknown[number] = str(error)[:_MAX_REASON_CHARACTERS]
+    except OSError as error:
+        raise Corrupt(f"The labels {root / FILE_NAME} cannot be read: {error.strerror}.") from error
     _warn_once(root / FILE_NAME, unknown)
     return found
 
@@ -148,8 +159,16 @@ def append(root: Path, labels: Iterable[Label]) -> None:
 
 def root_of(episode: Path) -> Path:
     """Return the folder that the labels and the catalogue of an episode file are in."""
-    folder = episode.resolve().parent
+    folder = resolved(episode).parent
     return folder.parent if _DAY.fullmatch(folder.name) else folder
+
+
+def resolved(path: Path) -> Path:
+    """Return where a path leads, absolute; of a link that leads to itself, where it lies."""
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError):
+        return path.parent.resolve() / path.name
 
 
 def is_root(folder: Path) -> bool:
@@ -160,7 +179,7 @@ def is_root(folder: Path) -> bool:
 def say(episode: Path, kind: LabelKind, value: str, at_ns: int, detail: str = "") -> None:
     """Append one label about an episode file. Raises InvalidInput for a value that the kind cannot have."""
     root = root_of(episode)
-    append(root, [Label(episode.resolve().relative_to(root).as_posix(), kind, value, at_ns, detail)])
+    append(root, [Label(resolved(episode).relative_to(root).as_posix(), kind, value, at_ns, detail)])
 
 
 def _fields(label: Label) -> dict[str, object]:
@@ -171,13 +190,31 @@ def _fields(label: Label) -> dict[str, object]:
 def _parse(fields: Mapping[str, Any] | None) -> Label:
     if fields is None:
         raise ValueError("it is not one JSON object")
-    return Label(
-        path=str(fields["path"]),
-        kind=LabelKind(fields["kind"]),
-        value=str(fields["value"]),
-        at_ns=int(fields["at_ns"]),
-        detail=str(fields.get("detail", "")),
-    )
+    at_ns, detail = fields["at_ns"], fields.get("detail", "")
+    said = fields["path"], fields["kind"], fields["value"], detail
+    if not isinstance(at_ns, int) or not all(isinstance(text, str) for text in said):
+        raise ValueError("its time is no whole number, or what it says no text")
+    return Label(fields["path"], LabelKind(fields["kind"]), fields["value"], at_ns, detail)
+
+
+def _require_path(path: str) -> None:
+    _require_text(path)
+    parts = path.split("/")
+    if not path.isprintable() or len(path) > _MAX_PATH_CHARACTERS or path.startswith("/") or ".." in parts:
+        raise InvalidInput(
+            f"A label for {path[:100]!r} was given; it must be a path below the folder, of at most "
+            f"{_MAX_PATH_CHARACTERS} printable characters."
+        )
+
+
+def _require_text(text: str) -> None:
+    """Raise InvalidInput where a text cannot be written as UTF-8, as the names of some files cannot."""
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        raise InvalidInput(
+            f"{text[:100]!r} was given, which cannot be written as UTF-8; rename the file, or say it in other words."
+        ) from error
 
 
 _warned: dict[Path, frozenset[int]] = {}  # file → lines; a catalogue reads its labels every second

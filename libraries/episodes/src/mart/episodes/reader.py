@@ -11,21 +11,16 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TypeVar
 
-from mcap.exceptions import EndOfFile
-from mcap.reader import SeekingReader
-from mcap.records import Attachment, Channel, Chunk, McapRecord, Message, Metadata
-from mcap.stream_reader import MAGIC_SIZE
-
 from mart.episodes.arrays import EpisodeData, arrays_for_task, arrays_from_states
-from mart.episodes.checksums import require_intact
-from mart.episodes.scan import BoundedFile, corruption, records, unpack
+from mart.episodes.contents import read_attachments, read_messages, read_metadata, require_intact_data
+from mart.episodes.foreign import foreign_kind
+from mart.episodes.scan import BoundedFile, corruption
+from mart.episodes.summary import read_summary
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import State
 from mart.protocol.recording import (
-    MAX_RECORD_BYTES,
     MODEL_ATTACHMENT,
-    PROFILE,
     STATE,
     SUFFIX,
     VERSIONS,
@@ -83,10 +78,11 @@ class EpisodeFile:
     @classmethod
     def open(cls, path: Path) -> EpisodeFile:
         """Read the metadata of a file. Raises NotFound where there is none and Corrupt where it is no episode."""
-        if not path.is_file():
-            raise NotFound(f"There is no file {path}; name an episode file or a folder of them.")
         with BoundedFile(path) as file, corruption(path):
-            return cls(path, {found.name: found.metadata for found in _metadata(file, path)})
+            foreign = foreign_kind(file)
+            if foreign:
+                raise Corrupt(f"{path} {foreign}.")
+            return cls(path, read_metadata(file, is_finished(path)))
 
     @property
     def episode(self) -> EpisodeRecord:
@@ -137,9 +133,12 @@ class EpisodeFile:
             raise InvalidInput(f"{self.path} cannot be read into arrays: {error}") from error
 
     def messages(self, *topics: str) -> Iterator[RecordedMessage]:
-        """Iterate over the messages of these topics, or of all, in the order of the file. Raises Corrupt."""
+        """Iterate over the messages of these topics, or of all, in the order of the file.
+
+        Raises Corrupt, at the end also where a finished file holds another number of messages than it says.
+        """
         with BoundedFile(self.path) as file, corruption(self.path):
-            for channel, message in messages(_until_cut(records(file), self.path)):
+            for channel, message in read_messages(file, is_finished(self.path)):
                 if not topics or channel.topic in topics:
                     yield RecordedMessage(
                         channel.topic, message.data, message.log_time, message.publish_time, message.sequence
@@ -151,11 +150,10 @@ class EpisodeFile:
         Raises NotFound where the file has none and Corrupt where it is another than the recorded one.
         """
         with BoundedFile(self.path) as file, corruption(self.path):
-            for record in _until_cut(records(file), self.path):
-                if isinstance(record, Attachment) and record.name == MODEL_ATTACHMENT:
-                    require_intact(file, record)
-                    self._require_recorded(record.data)
-                    return record.data
+            for attachment in read_attachments(file, is_finished(self.path)):
+                if attachment.name == MODEL_ATTACHMENT:
+                    self._require_recorded(attachment.data)
+                    return attachment.data
         raise NotFound(f"{self.path} holds no {MODEL_ATTACHMENT}.")
 
     def check_model(self) -> None:
@@ -164,17 +162,19 @@ class EpisodeFile:
             self.model()
 
     def check(self, expected_messages: int | None = None) -> None:
-        """Read all of the file, every checksum included. Raises Corrupt where anything is amiss or missing."""
+        """Read all of the file, every checksum included, attachments' too.
+
+        Raises Corrupt where anything is amiss or missing.
+        """
         found = sum(1 for _ in self.messages())
         with BoundedFile(self.path) as file, corruption(self.path):
-            for record in records(file):
-                require_intact(file, record)
-            summary = _reader(file).get_summary()
+            read_summary(file)  # messages() compares what it counts
+            require_intact_data(file)
+            for _ in read_attachments(file, finished=True):
+                pass
         EpisodeFile.open(self.path).check_model()
-        counted = summary.statistics.message_count if summary and summary.statistics else None
-        if found != counted or expected_messages not in (None, found):
-            expected = counted if expected_messages is None else expected_messages
-            raise Corrupt(f"{self.path} holds {found} messages; it should hold {expected}.")
+        if expected_messages not in (None, found):
+            raise Corrupt(f"{self.path} holds {found} messages; it should hold {expected_messages}.")
 
     def _require_recorded(self, mjb: bytes) -> None:
         said = self.metadata.get(RoomRecord.NAME, {}).get("model_sha256")
@@ -204,45 +204,9 @@ class EpisodeFile:
             return None
 
 
-def messages(found: Iterator[McapRecord]) -> Iterator[tuple[Channel, Message]]:
-    """Iterate over messages with their channels, from records whose chunks are still packed."""
-    channels: dict[int, Channel] = {}
-    for outer in found:
-        for record in unpack(outer) if isinstance(outer, Chunk) else ():
-            if isinstance(record, Channel):
-                channels[record.id] = record
-            elif isinstance(record, Message):
-                yield channels[record.channel_id], record
-
-
-def _metadata(file: BoundedFile, path: Path) -> Iterator[Metadata]:
-    if path.suffix != SUFFIX:
-        yield from (record for record in _until_cut(records(file), path) if isinstance(record, Metadata))
-        return
-    reader = _reader(file)
-    profile = reader.get_header().profile
-    if profile != PROFILE:
-        raise Corrupt(
-            f"{path} is an MCAP file of another kind or version: its profile is {profile[:64]!r}, and this version "
-            f"of MART reads {PROFILE!r}."
-        )
-    yield from reader.iter_metadata()
-
-
-def _reader(file: BoundedFile) -> SeekingReader:
-    file.seek(0)
-    if file.size < 2 * MAGIC_SIZE:
-        raise EndOfFile(f"{file.size} bytes are too few")
-    return SeekingReader(file, record_size_limit=MAX_RECORD_BYTES)
-
-
-def _until_cut(found: Iterator[McapRecord], path: Path) -> Iterator[McapRecord]:
-    """Pass records on. A file that is not complete ends where it was cut; any other must not."""
-    try:
-        yield from found
-    except EndOfFile:
-        if path.suffix == SUFFIX:
-            raise
+def is_finished(path: Path) -> bool:
+    """Whether a file must be whole, by its name. Any other, such as a `.part`, ends where it was cut."""
+    return path.suffix == SUFFIX
 
 
 @functools.cache

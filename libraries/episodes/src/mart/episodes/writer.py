@@ -15,7 +15,7 @@ from mcap_protobuf.schema import register_schema
 
 from mart.episodes.mcap_entries import McapEntry
 from mart.protocol.messages import Model
-from mart.protocol.recording import MODEL_ATTACHMENT, PROFILE, RoomRecord
+from mart.protocol.recording import CHECKSUMS, MODEL_ATTACHMENT, PROFILE, RoomRecord, metadata_checksum
 
 _CHUNK_BYTES = 256 * 1024  # what one damaged sector can cost
 
@@ -43,6 +43,7 @@ class EpisodeWriter:
         )
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
+        self._checksums: dict[str, str] = {}
         self._mcap.start(profile=PROFILE)
 
     def add(self, entry: McapEntry) -> None:
@@ -66,6 +67,7 @@ class EpisodeWriter:
     def add_record(self, name: str, strings: Mapping[str, str]) -> None:
         """Write one metadata record."""
         self._mcap.add_metadata(name, dict(strings))
+        self._checksums[name] = metadata_checksum(strings)
 
     def flush(self) -> None:
         """Bring everything so far onto the disk: a kill or a power cut takes nothing of it afterwards."""
@@ -73,7 +75,8 @@ class EpisodeWriter:
         os.fsync(self._file.fileno())
 
     def finish(self) -> None:
-        """Write the summary and close the file, which stays locked."""
+        """Write the checksums of the metadata and the summary, and close the file, which stays locked."""
+        self._mcap.add_metadata(CHECKSUMS, self._checksums)
         self._mcap.finish()  # type: ignore[no-untyped-call]
         self._file.flush()
         os.fsync(self._file.fileno())

@@ -15,7 +15,7 @@ from mart.operators.commander import SeatCommander
 from mart.operators.room_client import RoomClient
 from mart.operators.room_watch import RoomWatch
 from mart.protocol import clock, codec, keys
-from mart.protocol.errors import InvalidInput, MartError, Unavailable
+from mart.protocol.errors import InvalidInput, MartError, ServiceFault, Unavailable
 from mart.protocol.messages import OPERATOR_HOLD, Event, RoomStatus, State
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Bus, Publisher
@@ -41,8 +41,11 @@ class SeatSelection(ABC, Generic[K]):
         """Return what drives in `room` now, each with the epochs of its seats by arm."""
 
     @abstractmethod
-    def commanders(self, key: K, status: RoomStatus) -> Sequence[SeatCommander]:
-        """Return what `key` drives with in a room of this status; raises MartError where it cannot drive there."""
+    def commanders(self, key: K, status: RoomStatus) -> Sequence[SeatCommander] | None:
+        """Return what `key` drives with in a room of this status; raises where it cannot drive there.
+
+        None: it is not there yet, and is asked for again with the next status.
+        """
 
     @abstractmethod
     def name_of(self, key: K) -> str:
@@ -72,6 +75,11 @@ class _DrivenSeats:
         news = [commander.observe(state) for commander in self.commanders]  # all of them: each must see it
         if any(news):
             self.repeat_s = 0.0  # say it now
+
+    def speak(self) -> None:
+        for commander in self.commanders:
+            for command in commander.commands(clock.wall_ns()):
+                self.publishers[command.arm].put(codec.encode(command))
 
     def close(self) -> None:
         for publisher in self.publishers.values():
@@ -139,7 +147,10 @@ class SeatDriver(Generic[K]):
         if driven is not None and driven.epochs == epochs:
             return
         if driven is None:
-            driven = self._driven[place] = self._drive(place, status)
+            driven = self._drive(place, status)
+            if driven is None:
+                return
+            self._driven[place] = driven
         beyond = sorted(epochs.keys() - driven.publishers.keys())
         if beyond:
             raise InvalidInput(f"It drives {', '.join(driven.publishers)} and was given {', '.join(beyond)}.")
@@ -147,9 +158,11 @@ class SeatDriver(Generic[K]):
         for commander in driven.commanders:
             commander.seat(epochs)
 
-    def _drive(self, place: tuple[str, K], status: RoomStatus) -> _DrivenSeats:
+    def _drive(self, place: tuple[str, K], status: RoomStatus) -> _DrivenSeats | None:
         room, key = place
         commanders = self._selection.commanders(key, status)
+        if commanders is None:
+            return None
         arms = [arm for commander in commanders for arm in commander.arms]
         return _DrivenSeats(
             commanders, {arm: self._bus.publisher(self._selection.topic(room, arm)) for arm in arms}
@@ -161,12 +174,10 @@ class SeatDriver(Generic[K]):
                 self._guarded(place, driven.epochs, partial(driven.observe, state))
 
     def _speak(self, now_s: float) -> None:
-        for driven in self._driven.values():
+        for place, driven in list(self._driven.items()):
             if now_s >= driven.repeat_s:
                 driven.repeat_s = now_s + REPEAT_S
-                for commander in driven.commanders:
-                    for command in commander.commands(clock.wall_ns()):
-                        driven.publishers[command.arm].put(codec.encode(command))
+                self._guarded(place, driven.epochs, driven.speak)
 
     def _guarded(self, place: tuple[str, K], epochs: Mapping[str, int], deed: Callable[[], None]) -> None:
         """What fails is told to the room, and its seats are left: people must not wait for it."""
@@ -178,10 +189,18 @@ class SeatDriver(Generic[K]):
         try:
             deed()
         except MartError as error:
-            self.failure = error
-            if place in self._driven:
-                self._driven.pop(place).close()
-            self._give_up(place, epochs, error)
+            self._fail(place, epochs, error)
+        except Exception as error:  # noqa: BLE001 - logged whole; the other seats are driven on
+            _log.exception("%s failed", self._selection.name_of(place[1]))
+            fault = ServiceFault(f"It failed ({type(error).__name__}: {error}).")
+            fault.__cause__ = error
+            self._fail(place, epochs, fault)
+
+    def _fail(self, place: tuple[str, K], epochs: Mapping[str, int], error: MartError) -> None:
+        self.failure = error
+        if place in self._driven:
+            self._driven.pop(place).close()
+        self._give_up(place, epochs, error)
 
     def _give_up(self, place: tuple[str, K], epochs: Mapping[str, int], error: MartError) -> None:
         room, key = place

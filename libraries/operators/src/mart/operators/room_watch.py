@@ -7,9 +7,10 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import TypeVar
 
-from mart.protocol import codec, keys
+from mart.protocol import keys
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import RoomStatus, State
+from mart.protocol.received import decode_received
 from mart.runtime.bus import Bus, Sample
 
 _MAX_STATUS_BYTES = 64 * 1024
@@ -64,7 +65,7 @@ class RoomWatch:
         decoded: dict[str, M] = {}
         for room, payload in payloads.items():
             try:
-                decoded[room] = codec.decode(kind, payload, limit_bytes)
+                decoded[room] = decode_received(kind, payload, limit_bytes)
             except InvalidInput as error:
                 self.unusable[f"{room}: {error}"] += 1
         return decoded

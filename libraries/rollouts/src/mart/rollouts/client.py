@@ -23,6 +23,7 @@ from mart.protocol.batch_state import ACTION_SIZE, BatchState, Flags, join, pack
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.errors import Conflict, InvalidInput, MartError, Unavailable
 from mart.protocol.messages import Model, RolloutReply, RolloutRequest, raise_error
+from mart.protocol.received import decode_received
 from mart.protocol.tasks import Task, get_task
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.alive_wait import await_alive
@@ -192,7 +193,7 @@ class RolloutClient:
 
     def _query(self, replica: str, request: RolloutRequest, timeout_s: float) -> RolloutReply:
         answer = self._bus.query(keys.rollout(replica), codec.encode(request), timeout_s)
-        reply = codec.decode(RolloutReply, answer)
+        reply = decode_received(RolloutReply, answer)
         raise_error(reply.error)
         return reply
 

@@ -17,6 +17,7 @@ from mart.protocol.messages import (
     TrainerReply,
     raise_error,
 )
+from mart.protocol.received import decode_received
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import Bus
 
@@ -59,6 +60,6 @@ async def ask_async(
 
 
 def _checked(reply_type: type[Reply], payload: bytes, limit_bytes: int) -> Reply:
-    reply = codec.decode(reply_type, payload, limit_bytes)
+    reply = decode_received(reply_type, payload, limit_bytes)
     raise_error(reply.error)
     return reply

@@ -8,8 +8,9 @@ from typing import Generic, TypeVar
 
 from google.protobuf.message import Message
 
-from mart.protocol import clock, codec
+from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
+from mart.protocol.received import decode_received, require_room
 from mart.runtime.bus.base import Sample
 from mart.runtime.rate_limit import RateLimit
 
@@ -29,8 +30,15 @@ class DecodingSubscriber(Generic[M]):
 
     def __call__(self, sample: Sample) -> None:
         try:
-            self._take(codec.decode(self._kind, sample.payload))
-        except InvalidInput as error:
-            self.garbage += 1
-            if self._log_limit.allows(clock.monotonic_s()):
-                _log.warning("%s: %s (%d so far)", sample.key, error, self.garbage)
+            message = decode_received(self._kind, sample.payload)
+            require_room(message, sample.key)
+            self._take(message)
+        except Exception as error:  # noqa: BLE001 - logged whole; the next message must still be taken
+            self._count(sample.key, error)
+
+    def _count(self, key: str, error: Exception) -> None:
+        self.garbage += 1
+        if self._log_limit.allows(clock.monotonic_s()):
+            expected = isinstance(error, InvalidInput)
+            trace = None if expected else error
+            _log.warning("%s: %s (%d so far)", key, error, self.garbage, exc_info=trace)

@@ -6,9 +6,10 @@ import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 _TAIL_BYTES = 4096
+_MAX_LINE_BYTES = 16 * 1024 * 1024
 
 
 def append_json_line(path: Path, row: Mapping[str, Any]) -> None:
@@ -31,11 +32,14 @@ def append_json_lines(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
 
 
 def read_json_lines(path: Path) -> Iterator[tuple[int, dict[str, Any] | None]]:
-    """Yield each line's number, from 1, with its object; None where the line is not one JSON object (torn, foreign)."""
+    """Yield each line's number, from 1, with its object; None where the line is not one JSON object (torn, foreign).
+
+    Lines above 16 MiB count as foreign, and are not held in memory. Raises OSError where the file cannot be read.
+    """
     if not path.exists():
         return
     with path.open("rb") as file:
-        for number, line in enumerate(file, start=1):
+        for number, line in enumerate(_lines(file), start=1):
             if line.strip():
                 yield number, _object(line)
 
@@ -50,9 +54,17 @@ def read_last_json_line(path: Path) -> dict[str, Any] | None:
     return next((row for line in reversed(lines) if (row := _object(line)) is not None), None)
 
 
+def _lines(file: BinaryIO) -> Iterator[bytes]:
+    """Yield the lines of a file, the beginning only of one that is too long."""
+    while line := file.readline(_MAX_LINE_BYTES):
+        yield line
+        while not line.endswith(b"\n") and (line := file.readline(_MAX_LINE_BYTES)):
+            pass
+
+
 def _object(line: bytes) -> dict[str, Any] | None:
     try:
-        row = json.loads(line)
-    except ValueError:
+        row = json.loads(line.decode())
+    except (ValueError, RecursionError):
         return None
     return row if isinstance(row, dict) else None

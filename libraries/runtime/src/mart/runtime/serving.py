@@ -17,6 +17,7 @@ from mart.protocol import clock, codec
 from mart.protocol.errors import MartError, ServiceFault
 from mart.protocol.messages import error_message
 from mart.protocol.queryables import Queryable
+from mart.protocol.received import decode_received
 from mart.runtime.bus.base import Request
 from mart.runtime.rate_limit import RateLimit
 
@@ -111,7 +112,7 @@ class _Edge(Generic[Q, R]):
         self._log_limit = RateLimit(1)
 
     def decode(self, payload: bytes) -> Q:
-        return codec.decode(self._queryable.request_type, payload, self._queryable.limit_bytes)
+        return decode_received(self._queryable.request_type, payload, self._queryable.limit_bytes)
 
     def failed(self, error: Exception) -> bytes:
         if isinstance(error, MartError):

@@ -17,9 +17,10 @@ from collections.abc import Iterator, Sequence
 
 from mart.platform.collect.saved_episodes import CollectedEpisode, FindEpisode
 from mart.platform.run.room_statuses import statuses_of
-from mart.protocol import clock, codec, keys
+from mart.protocol import clock, keys
 from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import EpisodeRequest, Event, RoomReply
+from mart.protocol.received import decode_received
 from mart.runtime.ask import ask
 from mart.runtime.bus.base import Bus, Sample
 
@@ -128,7 +129,7 @@ class UnpacedSession:
 
     def _on_event(self, sample: Sample) -> None:
         try:
-            self._heard.put(codec.decode(Event, sample.payload))
+            self._heard.put(decode_received(Event, sample.payload))
         except MartError as error:
             self._heard.put(error)
 

@@ -15,7 +15,7 @@ from mart.platform.run.plan import (
 )
 from mart.platform.run.running import Platform
 from mart.platform.run.supervisor import Supervisor
-from mart.protocol import clock, codec, keys
+from mart.protocol import clock, keys
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, require_control_hz
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput, MartError, NotFound
 from mart.protocol.messages import (
@@ -27,6 +27,7 @@ from mart.protocol.messages import (
     RoomStatus,
 )
 from mart.protocol.queryables import ROOMS
+from mart.protocol.received import decode_received
 from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.base import Request, Sample
@@ -172,7 +173,7 @@ def opening_rooms(platform: Platform) -> Iterator[None]:
 
     def on_status(sample: Sample) -> None:
         with contextlib.suppress(InvalidInput):  # the rooms' own service tells of it
-            status = codec.decode(RoomStatus, sample.payload, _MAX_STATUS_BYTES)
+            status = decode_received(RoomStatus, sample.payload, _MAX_STATUS_BYTES)
             if status.room in rooms.names:
                 statuses.hear(status, clock.monotonic_s())
 

@@ -40,6 +40,7 @@ class Gateway:
             for opened in (
                 bus.watch(keys.alive_of(ServiceKind.SEAT), self._opening.on_seat_token),
                 bus.watch(keys.alive_of(ServiceKind.GATEWAY), self._on_gateway_token),
+                bus.watch(keys.alive_of(ServiceKind.SIM), self._on_room_token),
                 bus.subscribe(keys.EVERY_STATUS, DecodingSubscriber(RoomStatus, self._on_status)),
                 bus.serve(keys.open_seat(self.name), self._opening.answer),
             ):
@@ -58,14 +59,20 @@ class Gateway:
         self._register.on_gateway(keys.last_of(key), alive)
         self._follow()
 
+    def _on_room_token(self, key: str, alive: bool) -> None:
+        self._register.on_room(keys.last_of(key), alive)
+        self._follow()
+
     async def _ask_periodically(self) -> None:
         """Ask who is alive, and forget rooms that have ended: of neither does a word have to arrive."""
         while True:
             await asyncio.sleep(ASK_EVERY_S)
             self._register.sweep()
             with contextlib.suppress(Unavailable):  # the router is away: what was known still holds
-                found = await asyncio.to_thread(self._bus.bus.alive, keys.alive_of(ServiceKind.GATEWAY))
-                self._register.on_gateways_asked(map(keys.last_of, found))
+                gateways = await self._bus.alive(keys.alive_of(ServiceKind.GATEWAY))
+                self._register.on_gateways_asked(map(keys.last_of, gateways))
+                rooms = await self._bus.alive(keys.alive_of(ServiceKind.SIM))
+                self._register.on_rooms_asked(map(keys.last_of, rooms))
             self._follow()
 
     def _follow(self) -> None:

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from collections import deque
 from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any
 
+from mart.protocol import clock
 from mart.protocol.keys import Topic
 from mart.runtime.bus.base import Bus, Closable, Handler, Publisher, Request, Sample
+from mart.runtime.rate_limit import RateLimit
 from mart.runtime.serving import send_reply
 
 _log = logging.getLogger(__name__)
+
+_MAX_WAITING = 4096  # samples of one subscription
 
 
 class AsyncBus:
@@ -26,7 +31,14 @@ class AsyncBus:
         return self.bus.publisher(topic)
 
     def subscribe(self, key_expression: str, handler: Handler) -> Closable:
-        return self.bus.subscribe(key_expression, lambda sample: self._soon(handler, sample))
+        """Call `handler` on the loop with each sample. Of a flood that the loop cannot follow, the newest are lost."""
+        waiting = _Waiting(key_expression)
+
+        def deliver(sample: Sample) -> None:
+            if waiting.put(sample):
+                self._soon(lambda: handler(waiting.take()))
+
+        return self.bus.subscribe(key_expression, deliver)
 
     def subscribe_newest(self, key_expression: str) -> Newest:
         """A mailbox that keeps only the newest sample: for states, where older ones are worthless."""
@@ -70,6 +82,28 @@ class AsyncBus:
     def _soon(self, call: Callable[..., object], *arguments: object) -> None:
         if not self._loop.is_closed():
             self._loop.call_soon_threadsafe(call, *arguments)
+
+
+class _Waiting:
+    """Hold the samples of one subscription that wait for the loop; one that is too many is lost, and that is logged."""
+
+    def __init__(self, key_expression: str) -> None:
+        self._samples: deque[Sample] = deque()
+        self._key_expression, self._lost = key_expression, 0
+        self._log_limit = RateLimit(1)
+
+    def put(self, sample: Sample) -> bool:
+        """Return whether there was room."""
+        if len(self._samples) < _MAX_WAITING:
+            self._samples.append(sample)
+            return True
+        self._lost += 1
+        if self._log_limit.allows(clock.monotonic_s()):
+            _log.warning("More came on %s than can be taken: %d lost", self._key_expression, self._lost)
+        return False
+
+    def take(self) -> Sample:
+        return self._samples.popleft()
 
 
 class Newest:

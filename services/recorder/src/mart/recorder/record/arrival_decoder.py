@@ -7,9 +7,9 @@ from collections import Counter
 
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
-from mart.protocol import codec
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Command, Event, RoomStatus, State
+from mart.protocol.received import decode_received
 from mart.recorder.record.inbox import ArrivalKind, BusArrival
 from mart.runtime.rate_limit import RateLimit
 
@@ -29,7 +29,7 @@ _MESSAGES: dict[ArrivalKind, tuple[type[ArrivedMessage], int]] = {  # kind → m
 def decode_arrival(arrival: BusArrival) -> ArrivedMessage:
     """Decode a message. Raises InvalidInput where it is garbage, too large, or of another room than its key says."""
     message_type, most_bytes = _MESSAGES[arrival.kind]
-    message = codec.decode(message_type, arrival.payload, most_bytes)
+    message = decode_received(message_type, arrival.payload, most_bytes)
     if isinstance(message, State | RoomStatus) and message.room != arrival.room:
         raise InvalidInput(
             f"A message of room {message.room[:64]!r} was sent under the key of {arrival.room!r}."

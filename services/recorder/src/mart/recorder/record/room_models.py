@@ -6,9 +6,10 @@ import logging
 import threading
 from hashlib import sha256
 
-from mart.protocol import codec, keys
+from mart.protocol import keys
 from mart.protocol.errors import MartError
 from mart.protocol.messages import Model
+from mart.protocol.received import decode_received
 from mart.runtime.bus import Bus
 
 _log = logging.getLogger(__name__)
@@ -36,7 +37,7 @@ class RoomModels:
         if known is not None:
             return known
         try:
-            model = codec.decode(Model, self._bus.query(keys.model(room), b"", _TIMEOUT_S))
+            model = decode_received(Model, self._bus.query(keys.model(room), b"", _TIMEOUT_S))
         except MartError as error:
             _log.warning("The model of %s is not to be had: %s", room, error)
             return None

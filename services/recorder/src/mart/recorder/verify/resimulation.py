@@ -17,6 +17,7 @@ from mart.protocol import codec, keys
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Corrupt, MartError, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest, State, raise_error
+from mart.protocol.received import decode_received
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.state_digest import DIGEST_BYTES, state_digest
 from mart.protocol.vocabulary import ServiceKind, Verdict
@@ -169,7 +170,7 @@ def replica(bus: Bus, name: str, patience_s: float = _PATIENCE_S) -> Resimulate:
         ticks = len(request.actions) // (8 * ACTION_SIZE * max(request.arms, 1))
         payload = codec.encode(RolloutRequest(resimulate=request))
         answer = bus.query(keys.rollout(name), payload, _TIMEOUT_S + _TIMEOUT_PER_TICK_S * ticks)
-        reply = codec.decode(RolloutReply, answer)
+        reply = decode_received(RolloutReply, answer)
         raise_error(reply.error)
         return reply.state_digests
 

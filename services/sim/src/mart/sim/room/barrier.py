@@ -36,6 +36,9 @@ from mart.sim.room.pacing import Pace
 STALLED_AFTER_S = 0.25
 PAUSED_AFTER_S = 3.0
 FREED_AFTER_S = 30.0
+# A gateway's process that starts anew counts on from the clock's milliseconds; this is 49 days of them. Whoever could
+# leap further would leave the holder no numbers.
+MAX_SEQUENCE_LEAP = 2**32
 
 
 @dataclass(frozen=True)
@@ -170,6 +173,8 @@ class Barrier:
             return CommandRejection.WRONG_EPOCH
         if received.sequence <= seat.last_sequence:
             return CommandRejection.OLD_SEQUENCE
+        if seat.last_sequence >= 0 and received.sequence - seat.last_sequence > MAX_SEQUENCE_LEAP:
+            return CommandRejection.LEAP
         return None
 
     def _presses_stop(self, received: ReceivedCommand) -> bool:

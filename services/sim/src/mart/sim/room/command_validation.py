@@ -12,6 +12,7 @@ from mart.protocol import codec
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Command, PoseMessage
 from mart.protocol.pose import Pose
+from mart.protocol.received import MAX_COUNTER
 
 MAX_COMMAND_BYTES = 1024  # a full command has about 200
 MAX_COORDINATE_M = 100.0
@@ -26,6 +27,7 @@ class CommandRejection(StrEnum):
     FREE_SEAT = "nobody's seat"
     WRONG_EPOCH = "wrong seat epoch"
     OLD_SEQUENCE = "old sequence"
+    LEAP = "sequence leaps"
     NOT_FINITE = "number not finite"
     BAD_NORM = "quaternion not of unit norm"
     OUT_OF_BOUNDS = "out of bounds"
@@ -78,6 +80,8 @@ def validate_command(payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> 
         raise CommandRejected(CommandRejection.MALFORMED) from error
     if command.arm != arm:
         raise CommandRejected(CommandRejection.UNKNOWN_ARM)
+    if command.sequence > MAX_COUNTER:
+        raise CommandRejected(CommandRejection.LEAP)
     reason = _objection(command.target_tool_in_base, command.gripper)
     if reason is not None:
         raise CommandRejected(reason)

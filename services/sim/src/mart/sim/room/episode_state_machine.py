@@ -37,10 +37,12 @@ from mart.protocol.messages import (
     Outcome,
     phase_word,
 )
+from mart.protocol.received import MAX_NUMBER
 from mart.sim.room.seats import SeatHolder, SeatTable
 
 COUNTDOWN_S = 3.0
 ENDED_S = 2.0
+MAX_NUMBER_LEAP = 1_000_000  # of one request: whoever could leap further would leave the room no numbers
 
 
 @dataclass(frozen=True)
@@ -211,13 +213,22 @@ class EpisodeStateMachine:
             )
         if all(seat.operator == OPERATOR_HOLD for seat in seats):
             raise Conflict("An episode was asked for, but nobody drives; take a seat or set one to script.")
-        if ready.number and ready.number <= self.number:
-            raise Conflict(
-                f"Episode {ready.number} was asked for, but {self.number} was here already; give a later one or none."
-            )
+        self._require_number(ready.number)
         self._ready = self._ready | {seat.arm} if ready.ready else self._ready - {seat.arm}
         humans = {human.arm for human in seats.of_operator(OPERATOR_HUMAN)}
         return self._count_down(ready.number, now_s) if self._ready and humans <= self._ready else ()
+
+    def _require_number(self, wanted: int) -> None:
+        most = min(self.number + MAX_NUMBER_LEAP, MAX_NUMBER)
+        if wanted and wanted <= self.number:
+            raise Conflict(
+                f"Episode {wanted} was asked for, but {self.number} was here already; give a later one or none."
+            )
+        if max(wanted, self.number + 1) > most:
+            raise InvalidInput(
+                f"Episode {wanted or self.number + 1} was asked for, but this room is at {self.number}: "
+                f"give a number up to {most}, or open another room."
+            )
 
     def _answer_finish(
         self, finish: EpisodeRequest.Finish, seats: SeatTable, now_s: float

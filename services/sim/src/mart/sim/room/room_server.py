@@ -21,7 +21,8 @@ from mart.sim.world.model_message import model_message
 class RoomServer:
     """Turn what comes in into work for the room, which `submit` does now or later; never do any by itself.
 
-    garbled: counts undecodable payloads by where they came. looks: the same world with detailed meshes, to show.
+    leave: takes work from a thread that hears what the room says, and so must not do it. garbled: counts undecodable
+    payloads by where they came. looks: the same world with detailed meshes, to show.
     """
 
     def __init__(
@@ -32,13 +33,14 @@ class RoomServer:
         world: World,
         *,
         submit: Callable[[Callable[[], None]], None],
+        leave: Callable[[Callable[[], None]], None],
         garbled: Counter[str],
         now_s: Callable[[], float] = clock.monotonic_s,
         looks: World | None = None,
     ) -> None:
         self._bus, self._name, self._now_s = bus, name, now_s
         self._room = room
-        self._submit, self._garbled = submit, garbled
+        self._submit, self._leave, self._garbled = submit, leave, garbled
         self._models = {
             what: codec.encode(model_message(shown))
             for what, shown in ((b"", world), (keys.DETAILED, looks or world))
@@ -68,7 +70,7 @@ class RoomServer:
         self._submit(hear)
 
     def _on_saved(self, saved: Event.EpisodeSaved) -> None:
-        self._submit(partial(self._room.episode_saved, saved))
+        self._leave(partial(self._room.episode_saved, saved))
 
     def _on_seat_request(self, request: Request) -> None:
         self._submit(partial(self._seat.respond, request))

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RoomStatus
+from mart.protocol.received import decode_received
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.ask import ask
 from mart.runtime.awaited_saves import AwaitedSaves, saved_event
@@ -55,7 +56,7 @@ class SaveFollower:
 
     def _on_event(self, sample: Sample) -> None:
         try:
-            event = codec.decode(Event, sample.payload, _MAX_EVENT_BYTES)
+            event = decode_received(Event, sample.payload, _MAX_EVENT_BYTES)
         except InvalidInput:
             self._garbled["event"] += 1
             return
@@ -64,7 +65,7 @@ class SaveFollower:
 
     def _on_status(self, sample: Sample) -> None:
         with contextlib.suppress(InvalidInput):  # the room's own words, or somebody's garbage
-            status = codec.decode(RoomStatus, sample.payload, _MAX_EVENT_BYTES)
+            status = decode_received(RoomStatus, sample.payload, _MAX_EVENT_BYTES)
             with self._lock:
                 self._awaited.see_status(status, clock.monotonic_s())
 
@@ -84,6 +85,8 @@ class SaveFollower:
                 self._ask()
             except MartError as error:
                 _log.info("Whether episodes are saved is not known yet: %s", error)
+            except Exception:  # noqa: BLE001 - logged whole; the next look may find what this one did not
+                _log.exception("Whether episodes are saved could not be asked")
 
     def _ask(self) -> None:
         with self._lock:

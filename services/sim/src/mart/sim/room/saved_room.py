@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
@@ -9,11 +10,15 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from mart.protocol import clock
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import operator_from_word, operator_word
+from mart.protocol.received import MAX_COUNTER, MAX_NUMBER
 from mart.protocol.vocabulary import OperatorKind
 from mart.runtime.atomic_file import write_atomically
 from mart.sim.room.seats import Driver, SeatHolder
+
+_log = logging.getLogger(__name__)
 
 
 class SavedDriver(BaseModel):
@@ -35,7 +40,7 @@ class SavedSeat(SavedDriver):
     """Store one seat, and the machine that its human relieved."""
 
     arm: str
-    epoch: int = Field(ge=1)
+    epoch: int = Field(ge=1, le=MAX_COUNTER)
     relieved: SavedDriver | None = None
 
     def holder(self) -> SeatHolder:
@@ -51,8 +56,8 @@ class SavedPlan(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     task: str
-    episodes: int = Field(ge=1)
-    good_before: int = Field(ge=0)
+    episodes: int = Field(ge=1, le=MAX_NUMBER)
+    good_before: int = Field(ge=0, le=MAX_NUMBER)
 
 
 class SavedStop(BaseModel):
@@ -71,9 +76,9 @@ class SavedRoom(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     seed: int = Field(ge=0)
-    episodes: int = Field(0, ge=0)
-    saved: int = Field(0, ge=0)
-    good: int = Field(0, ge=0)
+    episodes: int = Field(0, ge=0, le=MAX_NUMBER)
+    saved: int = Field(0, ge=0, le=MAX_NUMBER)
+    good: int = Field(0, ge=0, le=MAX_NUMBER)
     seats: tuple[SavedSeat, ...] = ()
     plan: SavedPlan | None = None
     stop: SavedStop | None = None
@@ -117,9 +122,18 @@ def load(path: Path) -> SavedRoom | None:
     try:
         return SavedRoom.model_validate_json(path.read_bytes())
     except ValidationError as error:
-        raise Corrupt(
-            f"{path} is not the record of a room ({error.error_count()} faults); delete it to let the room begin anew."
-        ) from error
+        raise Corrupt(f"{path} is not the record of a room ({error.error_count()} faults).") from error
+
+
+def load_or_put_aside(path: Path) -> SavedRoom | None:
+    """Read a room; a file that is no record of one is kept under another name, and the room begins anew (None)."""
+    try:
+        return load(path)
+    except Corrupt as error:
+        aside = path.with_name(f"{path.name}.unusable-{clock.wall_ns()}")
+        path.rename(aside)
+        _log.error("%s It is kept as %s; the room begins anew.", error, aside)
+        return None
 
 
 def save(path: Path, record: SavedRoom) -> None:

@@ -13,6 +13,7 @@ from mart.protocol import clock
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.service import announced, connected
 from mart.runtime.throttled_log import ThrottledLog
+from mart.runtime.watchdog import Watchdog
 from mart.sim.experts import Skill, get_skill
 from mart.sim.room import saved_room
 from mart.sim.room.bus_publisher import BusPublisher, OrderedPublisher
@@ -36,7 +37,7 @@ DEFAULT_SKILL = "expert"
 def serve_room(settings: SimSettings) -> None:
     """Build the world of `settings` and serve its room.
 
-    Raises what building a world raises, NotFound for an unknown skill, Corrupt where the room's record cannot be read.
+    Raises what building a world raises, and NotFound for an unknown skill.
     """
     skill = get_skill(settings.skill) if settings.skill else None
     world = World.build(settings.task, settings.control_hz, settings.arms)
@@ -63,7 +64,10 @@ def serve_world(settings: SimSettings, world: World) -> None:
         )
         throttled_log, garbled = ThrottledLog(_log), Counter[str]()
 
+        watchdog = Watchdog(f"The room {settings.room}")
+
         def advance(now_s: float) -> float:
+            watchdog.feed()
             next_s = room.advance(now_s)
             throttled_log.report(Counter(room.rejected) + garbled, now_s)
             return next_s
@@ -75,6 +79,7 @@ def serve_world(settings: SimSettings, world: World) -> None:
             room,
             world,
             submit=executor.submit,
+            leave=executor.leave,
             garbled=garbled,
             looks=_looks(settings),
         )
@@ -82,7 +87,8 @@ def serve_world(settings: SimSettings, world: World) -> None:
         server.hear_commands()
         opened.enter_context(announced(service))
         gc.freeze()  # what is here now stays: later collections need not look at it
-        executor.run(service.stop)
+        with watchdog:
+            executor.run(service.stop)
 
 
 def serve_unpaced(settings: SimSettings, world: World, skill: Skill) -> None:
@@ -103,14 +109,23 @@ def serve_unpaced(settings: SimSettings, world: World, skill: Skill) -> None:
             explain=_archive(settings).keep,
         )
         server = RoomServer(
-            service.bus, settings.room, room, world, submit=work_queue.put, garbled=garbled, now_s=time.now_s
+            service.bus,
+            settings.room,
+            room,
+            world,
+            submit=work_queue.put,
+            leave=work_queue.put,
+            garbled=garbled,
+            now_s=time.now_s,
         )
         opened.enter_context(contextlib.closing(server))
-        unpaced = UnpacedRoom(room, publisher, time)
+        watchdog = Watchdog(f"The room {settings.room}")
+        unpaced = UnpacedRoom(room, publisher, time, on_turn=watchdog.feed)
         unpaced.seat_scripts(world.task, skill, settings.seed or 0)
         opened.enter_context(announced(service))
         gc.freeze()
-        unpaced.run(work_queue, garbled, service.stop)
+        with watchdog:
+            unpaced.run(work_queue, garbled, service.stop)
 
 
 def _looks(settings: SimSettings) -> World | None:
@@ -129,7 +144,7 @@ def _keeper(settings: SimSettings) -> Callable[[SavedRoom], None]:
 
 
 def _record(settings: SimSettings) -> SavedRoom:
-    kept = saved_room.load(settings.room_path)
+    kept = saved_room.load_or_put_aside(settings.room_path)
     if kept is None:
         kept = SavedRoom(seed=secrets.randbits(_SEED_BITS))
     kept = kept.planned(settings.task, settings.episodes)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections import Counter
+from collections.abc import Callable
 
 from mart.operators.commander import SeatCommander
 from mart.operators.driver import REPEAT_S
@@ -43,10 +44,12 @@ class SimulatedTime:
 
 
 class UnpacedRoom:
-    """Run a room with its publisher, its time, and a script on every seat."""
+    """Run a room with its publisher, its time, and a script on every seat; `on_turn` is called again and again."""
 
-    def __init__(self, room: Room, publisher: OrderedPublisher, time: SimulatedTime) -> None:
-        self._room, self._publisher, self._time = room, publisher, time
+    def __init__(
+        self, room: Room, publisher: OrderedPublisher, time: SimulatedTime, on_turn: Callable[[], None]
+    ) -> None:
+        self._room, self._publisher, self._time, self._on_turn = room, publisher, time, on_turn
         self._commanders: list[SeatCommander] = []
         self._act_s = time.now_s()
 
@@ -65,6 +68,7 @@ class UnpacedRoom:
         """Run until `stop` is set. Requests are answered between episodes: whoever asks twice gets two."""
         throttled_log = ThrottledLog(_log)
         while not stop.is_set():
+            self._on_turn()
             throttled_log.report(Counter(self._room.rejected) + garbled, clock.monotonic_s())
             self._publisher.status(self._room.status(self._time.now_s()))
             work_queue.run_one(STATUS_S)
@@ -73,6 +77,7 @@ class UnpacedRoom:
     def play(self, stop: threading.Event) -> None:
         """Play the episode that has been asked for, if there is one, until the room is in practice again."""
         while not self._room.in_practice and not stop.is_set():
+            self._on_turn()
             next_s = self._room.advance(self._time.now_s())
             if not self._act():  # else the room looks again before time passes
                 self._time.reach(min(next_s, self._act_s))

@@ -12,9 +12,10 @@ from typing import Any
 
 from aiortc import RTCConfiguration, RTCDataChannel, RTCPeerConnection, RTCSessionDescription
 
-from mart.protocol import clock, codec, keys
+from mart.protocol import clock, keys
 from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import Command, Model, State, pose_from_message
+from mart.protocol.received import decode_received
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.decoding_subscriber import DecodingSubscriber
 from mart.teleop_gateway.emulation.emulated_hand import EmulatedHand, PhoneReading, ToolIntent, resting_pose
@@ -184,7 +185,7 @@ class EmulatedPhone:
 
     async def _camera_azimuth_rad(self) -> float:
         answer = await self._bus.query(keys.model(self.room), b"", _CONNECT_TIMEOUT_S)
-        message = codec.decode(Model, answer)
+        message = decode_received(Model, answer)
         return camera_azimuth_rad(message, load_room_model(message), self.arm)
 
 

@@ -16,7 +16,8 @@ from mart.teleop_gateway.served_seats import SeatAddress
 _log = logging.getLogger(__name__)
 
 _CRASH_LOOP_S = 2.0  # a process that lives shorter than this is not followed by the next one at once
-_RESTART_DELAY_S = 1.0
+_RESTART_DELAY_S = 1.0  # doubled each time, where it happens again and again
+_LONGEST_DELAY_S = 8.0
 
 
 class SeatKeeper:
@@ -51,16 +52,28 @@ class SeatKeeper:
 
     async def _keep(self, seat: SeatAddress) -> None:
         """Hold a process for this seat until cancelled; a dead one is told about and followed by the next."""
+        delay_s = _RESTART_DELAY_S
         while True:
             started_s = clock.monotonic_s()
-            process = await self._pool.take()
             try:
-                status = await self._run(process, seat)
-            finally:
-                await process.end()
-            self._tell_loss(seat, status)
-            if clock.monotonic_s() - started_s < _CRASH_LOOP_S:
-                await asyncio.sleep(_RESTART_DELAY_S)
+                await self._hold(seat)
+            except Exception as error:  # noqa: BLE001 - no memory, no descriptors, no bus: it may be better in a moment
+                _log.error(
+                    "%s %s has no process and gets one in %g s: %r", seat.room, seat.arm, delay_s, error
+                )
+            if clock.monotonic_s() - started_s >= _CRASH_LOOP_S:
+                delay_s = _RESTART_DELAY_S
+                continue
+            await asyncio.sleep(delay_s)
+            delay_s = min(2.0 * delay_s, _LONGEST_DELAY_S)
+
+    async def _hold(self, seat: SeatAddress) -> None:
+        process = await self._pool.take()
+        try:
+            status = await self._run(process, seat)
+        finally:
+            await process.end()
+        self._tell_loss(seat, status)
 
     async def _run(self, process: SeatProcess, seat: SeatAddress) -> int:
         try:

@@ -22,6 +22,7 @@ from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import State
 from mart.render import Image
 from mart.runtime.rate_limit import RateLimit
+from mart.runtime.watchdog import end_process, start_vital_thread
 from mart.teleop_gateway.video.adaptive_resolution import AdaptiveResolution
 from mart.teleop_gateway.video.encoder import CLOCK_HZ, Codec, EncodedPicture, Encoder, to_i420
 from mart.teleop_gateway.video.motion_to_photon import PictureStamps
@@ -88,7 +89,14 @@ class LiveView:
     """Draw `camera` of `model` from `start` to `stop`. The sink is called on its thread: it may only hand over."""
 
     def __init__(
-        self, model: mujoco.MjModel, camera: str, frames_per_s: float, sink: Sink, quality: Quality = FAST
+        self,
+        model: mujoco.MjModel,
+        camera: str,
+        frames_per_s: float,
+        sink: Sink,
+        quality: Quality = FAST,
+        *,
+        end: Callable[[str], None] = end_process,
     ) -> None:
         self._model, self._camera, self._sink, self._quality = model, camera, sink, quality
         self._frames_per_s = frames_per_s
@@ -96,16 +104,18 @@ class LiveView:
         self._keyframe_s = dict.fromkeys(Codec, -KEYFRAME_EVERY_S)
         self._log_limit = RateLimit(1)
         self._times_s: deque[float] = deque(maxlen=_RATE_WINDOW)
-        self._thread = threading.Thread(target=self._run, name=f"view-{camera}", daemon=True)
+        self._end = end
+        self._thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Begin to draw, on a thread of its own."""
-        self._thread.start()
+        """Begin to draw, on a thread of its own. Where that fails, the process ends: nobody may drive blind."""
+        self._thread = start_vital_thread(self._run, f"view-{self._camera}", self._end)
 
     def stop(self) -> None:
         """Return when the thread has ended."""
         self._queue.close()
-        self._thread.join()
+        if self._thread is not None:
+            self._thread.join()
 
     def offer(self, state: State, received_ns: int) -> None:
         """Draw this state next, in the place of one that is not drawn yet. `received_ns` is when it came here."""

@@ -7,10 +7,11 @@ import logging
 from collections.abc import Callable
 from collections.abc import Set as AbstractSet
 
-from mart.protocol import codec, keys
+from mart.protocol import keys
 from mart.protocol.errors import MartError
 from mart.protocol.keys import DETAILED
 from mart.protocol.messages import Model, State
+from mart.protocol.received import decode_received
 from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.video.encoder import Codec
@@ -22,6 +23,7 @@ _log = logging.getLogger(__name__)
 
 _QUERY_TIMEOUT_S = 5.0
 _RETRY_S = 0.5
+_RETRY_AFTER_FAILURE_S = 5.0
 
 
 class ViewManager:
@@ -90,12 +92,15 @@ class ViewManager:
         while True:
             try:
                 answer = await self._bus.query(keys.model(self._seat.room), self._wanted(), _QUERY_TIMEOUT_S)
-                message = codec.decode(Model, answer)
+                message = decode_received(Model, answer)
                 if message.sha256 != self._sha256:
                     await self._use(message)
             except MartError as error:
                 _log.warning("No picture of %s yet: %s", self._seat.room, error)
                 await asyncio.sleep(_RETRY_S)
+            except Exception:  # noqa: BLE001 - logged whole; a room without a picture is asked again
+                _log.exception("No picture of %s yet: its model could not be used", self._seat.room)
+                await asyncio.sleep(_RETRY_AFTER_FAILURE_S)
             else:
                 return
 

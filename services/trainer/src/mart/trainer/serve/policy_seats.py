@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,8 +26,10 @@ class PromotedPolicies(SeatSelection[str]):
 
     kind = ServiceKind.POLICIES
 
-    def __init__(self, policies_dir: Path, load: LoadPolicy) -> None:
-        self._policies_dir, self._load = policies_dir, load
+    def __init__(self, policies_dir: Path, load: LoadPolicy, loader: Executor) -> None:
+        """Load with `load` on the thread of `loader`: meanwhile the policies of other seats drive on."""
+        self._policies_dir, self._load, self._loader = policies_dir, load, loader
+        self._loading: dict[tuple[str, str], Future[Policy]] = {}  # by room and name
 
     def assigned(self, room: str, status: RoomStatus) -> Mapping[str, Mapping[str, int]]:
         """Return the seats to drive, by the name of their policy; see `SeatSelection`."""
@@ -34,11 +37,24 @@ class PromotedPolicies(SeatSelection[str]):
         for seat in status.seats:
             if seat.operator == OPERATOR_POLICY and seat.policy:
                 seats.setdefault(seat.policy, {})[seat.arm] = seat.epoch
+        for place in [place for place in self._loading if place[0] == room and place[1] not in seats]:
+            self._loading.pop(place).cancel()
         return seats
 
-    def commanders(self, key: str, status: RoomStatus) -> Sequence[SeatCommander]:
-        """Return the policy's; see `SeatSelection`. Raises where it cannot be loaded or does not fit the room."""
-        return policy_commanders(self._load(self._policies_dir / key), status)
+    def commanders(self, key: str, status: RoomStatus) -> Sequence[SeatCommander] | None:
+        """Return the policy's, None while it is loaded; see `SeatSelection`.
+
+        Raises where it cannot be loaded or does not fit the room.
+        """
+        place = status.room, key
+        loading = self._loading.get(place)
+        if loading is None:
+            loading = self._loader.submit(self._load, self._policies_dir / key)
+            self._loading[place] = loading
+        if not loading.done():
+            return None
+        del self._loading[place]
+        return policy_commanders(loading.result(), status)
 
     def name_of(self, key: str) -> str:
         """Return what people call it; see `SeatSelection`."""

@@ -7,6 +7,7 @@ import os
 import secrets
 import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,7 +30,8 @@ _NICEST = 19
 
 def serve_policies(settings: PoliciesSettings, loader: Callable[[], LoadPolicy]) -> None:
     """Run until the process is asked to stop. `loader` takes seconds: it is called in the background beforehand."""
-    promoted = PromotedPolicies(settings.policies_dir, _late(loader))
+    loading = ThreadPoolExecutor(1, "loading")
+    promoted = PromotedPolicies(settings.policies_dir, _late(loader), loading)
     with (
         running(settings, ServiceKind.POLICIES, settings.id) as service,
         contextlib.closing(SeatDriver(service.bus, settings.room, promoted)) as driver,
@@ -37,6 +39,7 @@ def serve_policies(settings: PoliciesSettings, loader: Callable[[], LoadPolicy])
         threading.Thread(target=_warm_up, args=(loader,), daemon=True).start()
         while not service.stop.is_set():
             driver.work()
+    loading.shutdown(wait=False, cancel_futures=True)
 
 
 def _late(loader: Callable[[], LoadPolicy]) -> LoadPolicy:

@@ -9,9 +9,10 @@ from collections.abc import Callable
 
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 
-from mart.protocol import clock, codec, keys
-from mart.protocol.errors import InvalidInput, MartError, Unavailable
+from mart.protocol import clock, keys
+from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import Event, RoomStatus
+from mart.protocol.received import decode_received, require_room
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import Closable, Handler, Sample
 from mart.runtime.rate_limit import RateLimit
@@ -72,23 +73,26 @@ class LobbyFeed:
         def read(sample: Sample) -> None:
             try:
                 take(sample)
-            except MartError as error:
+            except Exception as error:  # noqa: BLE001 - logged; the next message must still be read
                 self._unreadable += 1
                 if self._log_limit.allows(clock.monotonic_s()):
-                    _log.warning("Not used on %s (%d so far): %s", sample.key, self._unreadable, error)
+                    trace = None if isinstance(error, MartError) else error
+                    _log.warning(
+                        "Not used on %s (%d so far): %s", sample.key, self._unreadable, error, exc_info=trace
+                    )
 
         return read
 
     def _on_status(self, sample: Sample) -> None:
-        status = codec.decode(RoomStatus, sample.payload, _MAX_MESSAGE_BYTES)
-        if status.room != keys.room_of(sample.key):
-            raise InvalidInput(f"A status of room {status.room!r} was given on {sample.key}.")
+        status = decode_received(RoomStatus, sample.payload, _MAX_MESSAGE_BYTES)
+        require_room(status, sample.key)
         self._lobby.see_status(status, clock.monotonic_s())
 
     def _on_event(self, sample: Sample) -> None:
-        event = codec.decode(Event, sample.payload, _MAX_MESSAGE_BYTES)
+        event = decode_received(Event, sample.payload, _MAX_MESSAGE_BYTES)
+        require_room(event, sample.key)
         self._lobby.see_event(event, clock.monotonic_s(), clock.wall_ns())
 
     def _on_thumbnail(self, sample: Sample) -> None:
-        image = codec.decode(CompressedImage, sample.payload, _MAX_THUMBNAIL_BYTES)
+        image = decode_received(CompressedImage, sample.payload, _MAX_THUMBNAIL_BYTES)
         self._lobby.see_thumbnail(sample.key, image.data, clock.monotonic_s())

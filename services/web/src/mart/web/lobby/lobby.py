@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 from mart.protocol import keys
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Event, RoomStatus
@@ -42,8 +44,9 @@ class Lobby:
         """Take in an event heard at `wall_ns` (Unix nanoseconds); raises InvalidInput as `see_status` does."""
         try:
             told = event_json(event)
-        except ValueError as error:
-            raise InvalidInput(f"An event was given with a word that is not known: {error}.") from error
+            json.dumps(told, allow_nan=False)
+        except Exception as error:
+            raise InvalidInput(f"An event was given that cannot be told: {error}.") from error
         match event.WhichOneof("what"):
             case "latency":
                 self.latencies.see(event.room, event.latency, now_s)
@@ -93,8 +96,6 @@ class Lobby:
 
 def _in_words(status: RoomStatus) -> None:
     try:
-        status_json(status, _NOBODY)
-    except ValueError as error:
-        raise InvalidInput(
-            f"A status of {status.room} was given with a word that is not known: {error}."
-        ) from error
+        json.dumps(status_json(status, _NOBODY), allow_nan=False)
+    except Exception as error:
+        raise InvalidInput(f"A status of {status.room} was given that cannot be shown: {error}.") from error

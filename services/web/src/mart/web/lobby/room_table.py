@@ -29,8 +29,11 @@ class RoomTable:
         """Keep `status` as its room's newest; return whether it is.
 
         Answers overtake what was said before them. A status that says it is older than a fresh one of the same sim
-        is not used, or whoever has just taken a seat would be shown without it.
+        is not used, or whoever has just taken a seat would be shown without it. Neither is one of a room whose sim has
+        no liveliness token, unless it had one just now.
         """
+        if status.room not in self._alive and status.room not in self._rooms:
+            return False
         known = self._rooms.get(status.room)
         if known is not None and now_s - known.seen_s <= STALE_AFTER_S and _is_older(status, known.status):
             return False
