@@ -27,6 +27,7 @@ declare namespace StatusChannel {
     input: Input;
     phone: { age_ms: number; tracking: boolean; started: boolean } | null;
     rejected: Record<string, number>;
+    no_picture: string;
     fps: number;
     latency: Latency | null;
   }

@@ -61,6 +61,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "input": "phone",
         "phone": {"age_ms": 16, "tracking": True, "started": True},
         "rejected": {},
+        "no_picture": "",
         "fps": 20.0,
         "latency": {
             "p50_ms": 45.0,
@@ -78,7 +79,9 @@ def test_the_longest_tick_message_fits_one_packet() -> None:
     slow = LatencySummary(9999.94, 9999.94, 300, (1999.94,) * len(STAGES))
     room = RoomStatus(barrier=BARRIER_PHASE_STALLED, waiting_for=waiting)
     room.stop.name = "\N{SNOWMAN}" * 64
-    text = status_channel.tick(state, room, hand, 1e4, frames_per_s=119.9, latency=slow)
+    text = status_channel.tick(
+        state, room, hand, 1e4, frames_per_s=119.9, latency=slow, no_picture="x" * 1000
+    )
     assert len(text.encode()) <= status_channel.MAX_CHARACTERS, len(text.encode())
 
 

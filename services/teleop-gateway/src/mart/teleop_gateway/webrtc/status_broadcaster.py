@@ -50,7 +50,13 @@ class StatusBroadcaster:
         latency, frames_per_s = self._latency.summary(), self._views.frames_per_s()
         self._peers.tell(
             status_channel.tick(
-                self.state, self.status, driving, now_s, latency=latency, frames_per_s=frames_per_s
+                self.state,
+                self.status,
+                driving,
+                now_s,
+                latency=latency,
+                frames_per_s=frames_per_s,
+                no_picture=self._views.failure(),
             )
         )
 

@@ -15,6 +15,7 @@ MAX_CHARACTERS = 1100  # one SCTP packet
 _MAX_US = 2.0**53  # what a page's clock can count
 _MAX_NS = 2.0**63
 _NAME_CHARACTERS = 40
+_REASON_CHARACTERS = 120
 
 
 @dataclass(frozen=True)
@@ -109,6 +110,7 @@ def tick(
     *,
     frames_per_s: float,
     latency: LatencySummary | None,
+    no_picture: str = "",
 ) -> str:
     """Return what a page shows, at most MAX_CHARACTERS long."""
     sequence = next((arm.sequence for arm in state.arms if arm.arm == driving.arm), 0)
@@ -130,6 +132,7 @@ def tick(
             "input": driving.active.value,
             "phone": phone and _phone(phone),
             "rejected": dict(driving.rejected()),
+            "no_picture": no_picture[:_REASON_CHARACTERS],
             "fps": round(frames_per_s, 1),
             "latency": latency and _latency(latency),
         }

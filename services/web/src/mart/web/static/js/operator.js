@@ -181,14 +181,22 @@ function showRoom(shown) {
   setShown(byId("waiting"), waiting !== "");
 }
 
+/**
+ * Why there is no picture, in words; nothing where there is one.
+ * @param {Api.Seat} seat
+ */
+function missingPicture(seat) {
+  if (status?.no_picture) return `There is no picture. ${status.no_picture}`;
+  return NO_PICTURE[seat.operator] ?? (video.videoWidth > 0 ? "" : "Connecting to the scene…");
+}
+
 /** @param {Api.Seat | undefined} seat */
 function showPicture(seat) {
-  const seen = video.videoWidth > 0;
-  const empty = (seat && NO_PICTURE[seat.operator]) ?? "Connecting to the scene…";
-  setText(byId("no-picture"), empty);
-  setShown(video, !seat || hasPicture(seat)); // its last picture would be an old one
-  setShown(byId("no-picture"), seat !== undefined && (!seen || !hasPicture(seat)));
-  byId("picture").classList.toggle("live", seen && link.state === LinkState.LIVE);
+  const missing = seat ? missingPicture(seat) : "";
+  setText(byId("no-picture"), missing);
+  setShown(video, !seat || (hasPicture(seat) && !status?.no_picture)); // its last picture would be an old one
+  setShown(byId("no-picture"), missing !== "");
+  byId("picture").classList.toggle("live", video.videoWidth > 0 && link.state === LinkState.LIVE);
 }
 
 /**
