@@ -12,6 +12,7 @@ import { Cues } from "./hud/cues.js";
 import { InputPanel } from "./hud/input-panel.js";
 import { showHealth } from "./hud/health-figure.js";
 import { showPartners } from "./hud/partners.js";
+import { showPicture } from "./hud/picture.js";
 import { StatusBar } from "./hud/status-bar.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { watchTicks } from "./link/tickcode.js";
@@ -160,7 +161,7 @@ function render() {
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
   if (room) showRoom({ ...room, stale: !told });
-  showPicture(seat);
+  showPicture(seat, status, link.state === LinkState.LIVE);
   showHolder(mine);
 }
 
@@ -179,24 +180,6 @@ function showRoom(shown) {
   const waiting = shown.stale ? "" : waitingText(shown);
   setText(byId("waiting"), waiting);
   setShown(byId("waiting"), waiting !== "");
-}
-
-/**
- * Why there is no picture, in words; nothing where there is one.
- * @param {Api.Seat} seat
- */
-function missingPicture(seat) {
-  if (status?.no_picture) return `There is no picture. ${status.no_picture}`;
-  return NO_PICTURE[seat.operator] ?? (video.videoWidth > 0 ? "" : "Connecting to the scene…");
-}
-
-/** @param {Api.Seat | undefined} seat */
-function showPicture(seat) {
-  const missing = seat ? missingPicture(seat) : "";
-  setText(byId("no-picture"), missing);
-  setShown(video, !seat || (hasPicture(seat) && !status?.no_picture)); // its last picture would be an old one
-  setShown(byId("no-picture"), missing !== "");
-  byId("picture").classList.toggle("live", video.videoWidth > 0 && link.state === LinkState.LIVE);
 }
 
 /**
@@ -221,12 +204,6 @@ const isOffered = (command) => ["success", "failure", "discard", "back"].include
 function press(command) {
   if (confirm.press(command)) run(command);
 }
-
-/** @type {Partial<Record<Messages.Operator, string>>} */
-const NO_PICTURE = {
-  hold: "Nobody drives this arm, so there is no picture.",
-  script: "A script drives this arm, so there is no picture until you take over.",
-};
 
 /** @typedef {Exclude<Command | ActionCommand | "goOn", Messages.Cue | Api.EpisodeAction | "next">} PageCommand */
 
