@@ -277,5 +277,5 @@ function statusText({ barrier, input, waiting, latency, stopped_by: stoppedBy })
 function trackingText() {
   const off = tracker instanceof TouchTracker ? tracker.problem(performance.now()) : "";
   if (off) tutorial?.leaveOutTurning();
-  return off || `tracking ${tracking ? "good" : "lost"}`;
+  return `tracking ${tracking ? "good" : "lost"}${off && `. ${off}`}`;
 }

@@ -2,7 +2,7 @@
 
 import { holderName, isMachine, theArm } from "../arms.js";
 import { LinkState } from "../link/seat-link.js";
-import { asSentence, clockTime, outcomeText, planText, stoppedText } from "../formatting.js";
+import { asSentence, clockTime, outcomeText, planText } from "../formatting.js";
 import { canBeKept, lastEpisodeOf, lastLabel, lastText } from "./last-episode.js";
 
 /** @import { State } from "../link/seat-link.js" */
@@ -80,7 +80,7 @@ function whatHappens(known) {
     return view("Driven elsewhere", "Another window of yours drives this arm.", [ACTIONS.here]);
   }
   if (link.state !== LinkState.LIVE) return offline(link);
-  if (room.barrier === "stopped") return view("Stopped", `${stoppedText(room.stop)}. Anybody may let it go on.`);
+  if (room.barrier === "stopped") return view("Stopped", "Anybody may let everything go on: press Go on twice.");
   const shown = PHASES[room.episode.phase](room, seat, known);
   return seat.relieved ? { ...shown, actions: [...shown.actions, ACTIONS.back] } : shown;
 }
