@@ -76,6 +76,8 @@ FOREIGN = [
     '{"at_ns":2,"path":"a","kind":"note","value":' * 50_000,
     "\0" * 40,
     "[1, 2]",
+    '{"at_ns":1e999,"path":"a","kind":"note","value":"x"}',
+    "[" * 100_000,
     "null",
     "\xff\xfe",
 ]

@@ -108,7 +108,7 @@ def test_repair_needs_no_router(mart: Mart) -> None:
     file.flush()
     file.abandon()
     (one,) = mart.json("episodes", "repair")["repaired"]
-    assert one["part"] == str(file.path)
+    assert one["file"] == str(file.path)
     assert mart.json("episodes", "list")["episodes"][0]["verdict"] == "unverified"
     assert mart("episodes", "repair") == "There is nothing to repair.\n"
 

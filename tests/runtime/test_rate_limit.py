@@ -21,13 +21,11 @@ def test_the_wait_is_told() -> None:
     assert limit.wait_s(10.0) == 0.0
 
 
-def test_keys_are_limited_one_by_one_and_forgotten_on_request() -> None:
+def test_keys_are_limited_one_by_one() -> None:
     limits = KeyedRateLimit(1, window_s=10.0)
     limits.count("a", 0.0)
     assert limits.wait_s("a", 1.0) == 9.0
     assert limits.wait_s("b", 1.0) == 0.0
-    limits.forget("a")
-    assert limits.wait_s("a", 1.0) == 0.0
 
 
 def test_memory_is_bounded() -> None:

@@ -56,7 +56,9 @@ class RecordingSession:
             return verify(file, room, ask)
 
         root = data_dir / "episodes"
-        self.recorder = Recorder(data_dir, self.bus, self.inbox, verify_file, lambda: tidy(root, verify_file))
+        self.recorder = Recorder(
+            data_dir, self.bus, self.inbox, verify_file, lambda: tidy(root, verify_file, {})
+        )
         self.subscriptions = RoomSubscriptions(network.connect(), network.connect(), self.inbox)
 
     def put(self, topic: Topic, payload: bytes) -> None:

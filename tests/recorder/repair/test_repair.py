@@ -203,13 +203,21 @@ def test_spoilt_bytes_cost_the_chunks_they_are_in(
 
 
 @settings(max_examples=60)
-@given(garbage=st.binary(max_size=300))
-def test_garbage_is_refused_and_kept(garbage: bytes, tmp_path_factory: pytest.TempPathFactory) -> None:
+@given(garbage=st.binary(max_size=300), begins_as_ours=st.booleans())
+@example(garbage=b"", begins_as_ours=False)
+def test_garbage_is_refused_and_kept(
+    garbage: bytes, begins_as_ours: bool, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """What a crash may have left is set aside, so that it is looked at once; what is not ours keeps its name."""
     root = tmp_path_factory.mktemp("garbage")
-    part = leftover(root, garbage)
+    data = b"\x89MCAP0\r\n" + garbage if begins_as_ours else garbage
+    part = leftover(root, data)
     one = repaired(root)
     assert one.saved is None
-    assert part.with_name(part.name.replace(".part", ".unreadable")).read_bytes() == garbage
+    ours = begins_as_ours or not garbage
+    kept = part.with_name(part.name.replace(".part", ".unreadable")) if ours else part
+    assert kept.read_bytes() == data
+    assert list(kept.parent.iterdir()) == [kept]
 
 
 def test_a_file_that_only_lacked_its_name_is_given_it(tmp_path: Path) -> None:

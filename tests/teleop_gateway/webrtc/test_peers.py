@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import pytest
 
+from mart.protocol.errors import Conflict, InvalidInput
 from mart.protocol.messages import RoomStatus
 from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
@@ -15,8 +16,10 @@ from mart.runtime.bus.memory import MemoryNetwork
 from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.webrtc import peers as module
 from mart.teleop_gateway.webrtc.peer import Peer
-from mart.teleop_gateway.webrtc.peers import SILENT_S, Peers
+from mart.teleop_gateway.webrtc.peers import MAX_VIEWERS, SILENT_S, Peers
 from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
+
+CONNECTS = "an offer of a page that connects"
 
 
 class StubPeer:
@@ -24,15 +27,20 @@ class StubPeer:
 
     codec = track = None
 
-    def __init__(self, role: Role, _listener: object, _ice_servers: object) -> None:
+    def __init__(self, role: Role, _listener: object, _ice_servers: object, holder_id: str) -> None:
         self.role = role
+        self.holder_id = holder_id
         self.heard_s = 0.0
+        self.is_connected = False
+        self.is_closed = False
 
     async def answer(self, offer_sdp: str) -> str:
+        await asyncio.sleep(0)
+        self.is_connected = offer_sdp == CONNECTS
         return offer_sdp
 
     async def close(self) -> None:
-        """Nothing is open."""
+        self.is_closed = True
 
     def send_status(self, text: str) -> None:
         """Nobody hears it."""
@@ -69,7 +77,7 @@ async def seated() -> tuple[Peers, Leavers]:
     leavers = Leavers()
     peers.attach(leavers)
     for role in (Role.BROWSER, Role.PHONE, Role.VIEWER):
-        await peers.answer(role, "")
+        await peers.answer(role, "", "ana")
     return peers, leavers
 
 
@@ -103,6 +111,64 @@ def test_a_seat_that_changes_hands_keeps_its_viewers() -> None:
         peers.drop_driving()
         assert leavers.left == [Role.BROWSER, Role.PHONE]
         assert [peer.role for peer in peers] == [Role.VIEWER]
+
+    asyncio.run(body())
+
+
+async def watch(peers: Peers, *holders: str, offer: str = CONNECTS) -> list[BaseException | str]:
+    """Offers of these people to watch, all at once: answers, or why there is none."""
+    offers = (peers.answer(Role.VIEWER, offer, holder) for holder in holders)
+    return await asyncio.gather(*offers, return_exceptions=True)
+
+
+def watchers(peers: Peers) -> list[str]:
+    return [peer.holder_id for peer in peers if peer.role is Role.VIEWER]
+
+
+def test_no_more_watch_than_may_however_many_come_at_once() -> None:
+    async def body() -> None:
+        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
+        await watch(peers, *(f"person-{number}" for number in range(14)))
+        assert len(watchers(peers)) == MAX_VIEWERS
+        (refused,) = await watch(peers, "another")
+        assert isinstance(refused, Conflict)
+
+    asyncio.run(body())
+
+
+def test_offers_that_never_connect_keep_nobody_out() -> None:
+    async def body() -> None:
+        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
+        await watch(peers, *(f"person-{number}" for number in range(20)), offer="never connects")
+        honest = [f"honest-{number}" for number in range(MAX_VIEWERS)]
+        for person in honest:
+            assert await watch(peers, person) == [CONNECTS]
+        assert watchers(peers) == honest
+
+    asyncio.run(body())
+
+
+def test_one_person_has_two_places_and_the_newest_count() -> None:
+    async def body() -> None:
+        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
+        await watch(peers, "ben")
+        for _ in range(5):
+            assert await watch(peers, "ana") == [CONNECTS]
+        assert watchers(peers) == ["ben", "ana", "ana"]
+
+    asyncio.run(body())
+
+
+def test_an_offer_that_cannot_be_answered_gives_its_place_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def refuse(_peer: StubPeer, _sdp: str) -> str:
+        raise InvalidInput("No offer.")
+
+    async def body() -> None:
+        peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
+        monkeypatch.setattr(StubPeer, "answer", refuse)
+        (refused,) = await watch(peers, "ana")
+        assert isinstance(refused, InvalidInput)
+        assert watchers(peers) == []
 
     asyncio.run(body())
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mart.web.access.request_limits import RequestLimit
+from mart.web.access.request_limits import AtOnceLimit, FailureDelay, RequestLimit
 from mart.web.errors import TooMany
 
 
@@ -38,15 +38,38 @@ def test_everybody_has_a_share_of_their_own() -> None:
     assert refused.value.retry_s == 9.0
 
 
-def test_who_is_forgiven_starts_anew() -> None:
-    limit = RequestLimit("tries", 1, 10.0)
-    limit.spend("ana", 0.0)
-    limit.forgive("ana")
-    limit.spend("ana", 0.0)
-
-
 def test_memory_is_bounded() -> None:
     limit = RequestLimit("tries", 1, 10.0)
     for number in range(10_000):
         limit.spend(str(number), 0.0)
     assert len(limit._limit._limits) <= 4096
+
+
+def test_the_first_failures_cost_nothing_and_further_ones_ever_more_up_to_a_bound() -> None:
+    delay = FailureDelay(free=2, window_s=60.0, step_s=1.0, longest_s=3.0)
+    delays_s = []
+    for _ in range(8):
+        delays_s.append(delay.delay_s("10.0.0.1", 0.0))
+        delay.count("10.0.0.1", 0.0)
+    assert delays_s == [0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 3.0, 3.0]
+    assert delay.delay_s("10.0.0.2", 0.0) == 0.0
+    assert delay.delay_s("10.0.0.1", 61.0) == 0.0
+
+
+def test_failures_of_many_are_remembered_within_bounds() -> None:
+    delay = FailureDelay(free=2, window_s=60.0, step_s=1.0, longest_s=3.0)
+    for number in range(5000):
+        delay.count(str(number), 0.0)
+    for _ in range(5000):
+        delay.count("one", 0.0)
+    assert len(delay._failures) <= FailureDelay.MAX_KEYS
+    assert len(delay._failures["one"]) == 5
+
+
+def test_so_many_at_one_time_and_again_when_they_have_ended() -> None:
+    limit = AtOnceLimit("open pages", 2)
+    with limit.hold("ana"), limit.hold("ana"), limit.hold("ben"), pytest.raises(TooMany), limit.hold("ana"):
+        pass
+    with limit.hold("ana"):
+        pass
+    assert not limit._held

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mart.protocol.errors import InvalidInput
+from mart.protocol.errors import InvalidInput, Unavailable
+from mart.web.access import user_sessions
 from mart.web.access.user_sessions import MAX_NAME_CHARACTERS, SESSION_S, UserSessions, clean_name
 
 
@@ -32,7 +33,7 @@ def test_a_visit_ends_and_is_forgotten() -> None:
     session_id, _ = people.join("Ana", 0.0)
     assert people.find(session_id, SESSION_S + 1) is None
     people.join("Ben", SESSION_S + 1)
-    assert people._database.execute("SELECT count(*) FROM session").fetchone() == (1,)
+    assert people._database.execute("SELECT count(*) FROM joined").fetchone() == (1,)
     people.close()
 
 
@@ -40,6 +41,69 @@ def test_two_people_of_one_name_are_two_people() -> None:
     people = UserSessions(":memory:")
     assert people.join("Ana", 0.0)[1].holder_id != people.join("Ana", 0.0)[1].holder_id
     people.close()
+
+
+def test_another_join_code_ends_every_visit(tmp_path: Path) -> None:
+    path = tmp_path / "sessions.sqlite"
+    with contextlib.closing(UserSessions(path, b"old code")) as people:
+        session_id, _ = people.join("Ana", 0.0)
+    with contextlib.closing(UserSessions(path, b"new code")) as people:
+        assert people.find(session_id, 0.0) is None
+    with contextlib.closing(UserSessions(path, b"old code")) as people:
+        assert people.find(session_id, 0.0) is None
+
+
+def test_who_leaves_is_gone_and_nobody_else() -> None:
+    people = UserSessions(":memory:")
+    session_id, ana = people.join("Ana", 0.0)
+    other_id, ben = people.join("Ben", 0.0)
+    people.leave(ana)
+    assert people.find(session_id, 0.0) is None
+    assert people.find(other_id, 0.0) == ben
+    people.close()
+
+
+def test_a_person_has_one_visit_at_a_time() -> None:
+    people = UserSessions(":memory:")
+    first_id, ana = people.join("Ana", 0.0)
+    second_id, again = people.join("Anna", 0.0, ana)
+    assert again.holder_id == ana.holder_id
+    assert people.find(first_id, 0.0) is None
+    assert people.find(second_id, 0.0) == again
+    people.close()
+
+
+def test_visits_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(user_sessions, "MAX_SESSIONS", 3)
+    people = UserSessions(":memory:")
+    ids = [people.join(f"Ana {number}", float(number))[0] for number in range(5)]
+    assert [people.find(session_id, 5.0) is not None for session_id in ids] == [
+        False,
+        False,
+        True,
+        True,
+        True,
+    ]
+    people.close()
+
+
+@pytest.mark.parametrize("content", [b"not a database at all, but long enough to look like one" * 40, b""])
+def test_a_damaged_file_is_put_aside(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "sessions.sqlite"
+    path.write_bytes(content)
+    with contextlib.closing(UserSessions(path)) as people:
+        session_id, ana = people.join("Ana", 0.0)
+        assert people.find(session_id, 0.0) == ana
+    assert path.with_suffix(".damaged").exists() == bool(content)
+
+
+def test_a_full_disk_is_said_in_words() -> None:
+    people = UserSessions(":memory:")
+    people.close()
+    with pytest.raises(Unavailable):
+        people.find("any", 0.0)
+    with pytest.raises(Unavailable):
+        people.join("Ana", 0.0)
 
 
 @given(st.text())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import socket
 import ssl
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -149,6 +150,15 @@ def test_a_second_service_at_the_same_address_says_so(web: Web, tmp_path: Path) 
         assert f"port {web.port}" in second.log()
         assert "--port" in second.log()
         assert "Traceback" not in second.log()
+
+
+def test_connections_that_ask_nothing_keep_nobody_out(web: Web) -> None:
+    with contextlib.ExitStack() as silent:
+        for _ in range(400):
+            silent.enter_context(socket.create_connection(("127.0.0.1", web.port), 30))
+        with web.client() as client:
+            assert client.get("/api/health", timeout=30).status_code == 200
+    assert "Traceback" not in web.process.log()
 
 
 def test_a_restart_keeps_people_joined_and_ends_cleanly(tmp_path: Path) -> None:

@@ -124,6 +124,19 @@ def fold(labels: Iterable[Label]) -> dict[str, EpisodeLabels]:
     return known
 
 
+def carried(said: EpisodeLabels | None, old: str, new: str, at_ns: int) -> list[Label]:
+    """Return the labels by which one file takes the place of another: what holds of it, and that the old is dropped.
+
+    old, new: their paths, as labels name them. The verdict is not carried on: it is of the very bytes.
+    """
+    known = said or EpisodeLabels()
+    texts = {LabelKind.OUTCOME: known.outcome, LabelKind.NOTE: known.note}
+    found = [Label(new, kind, text, at_ns) for kind, text in texts.items() if text is not None]
+    found += [Label(new, LabelKind.JOIN, name, at_ns) for name in known.datasets]
+    found += [Label(new, LabelKind.USE, DROP, at_ns)] if known.dropped else []
+    return [*found, Label(old, LabelKind.USE, DROP, at_ns, f"repaired as {new}")]
+
+
 def read(root: Path) -> list[Label]:
     """Read every label of a folder of episodes, in the order they were given.
 

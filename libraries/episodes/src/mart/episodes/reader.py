@@ -168,13 +168,15 @@ class EpisodeFile:
         """
         found = sum(1 for _ in self.messages())
         with BoundedFile(self.path) as file, corruption(self.path):
-            read_summary(file)  # messages() compares what it counts
+            statistics = read_summary(file).statistics
             require_intact_data(file)
             for _ in read_attachments(file, finished=True):
                 pass
         EpisodeFile.open(self.path).check_model()
-        if expected_messages not in (None, found):
-            raise Corrupt(f"{self.path} holds {found} messages; it should hold {expected_messages}.")
+        counted = statistics.message_count if statistics else found
+        if found != counted or expected_messages not in (None, found):
+            expected = counted if expected_messages is None else expected_messages
+            raise Corrupt(f"{self.path} holds {found} messages; it should hold {expected}.")
 
     def _require_recorded(self, mjb: bytes) -> None:
         said = self.metadata.get(RoomRecord.NAME, {}).get("model_sha256")

@@ -16,6 +16,7 @@ from mcap_protobuf.schema import register_schema
 from mart.episodes.mcap_entries import McapEntry
 from mart.protocol.messages import Model
 from mart.protocol.recording import CHECKSUMS, MODEL_ATTACHMENT, PROFILE, RoomRecord, metadata_checksum
+from mart.runtime.atomic_file import rename_to_new
 
 _CHUNK_BYTES = 256 * 1024  # what one damaged sector can cost
 
@@ -83,9 +84,11 @@ class EpisodeWriter:
         self._file.close()
 
     def move_to(self, path: Path) -> None:
-        """Give the finished file its name, for good also across a power cut."""
+        """Give the finished file its name, for good also across a power cut. Raises FileExistsError if it is taken."""
         path.parent.mkdir(parents=True, exist_ok=True)
-        self.path = self.path.rename(path)
+        if path != self.path:
+            rename_to_new(self.path, path)
+        self.path = path
         folder = os.open(path.parent, os.O_RDONLY)
         try:
             os.fsync(folder)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from pathlib import Path
 
 PRIVATE = 0o600  # secrets, and what names people
 PUBLIC = 0o644
+_NO_LINKS = (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK)  # of file systems without hard links
 
 
 def write_atomically(path: Path, content: bytes, mode: int = PRIVATE) -> None:
@@ -20,3 +22,20 @@ def write_atomically(path: Path, content: bytes, mode: int = PRIVATE) -> None:
         file.flush()
         os.fsync(file.fileno())
     draft.replace(path)
+
+
+def rename_to_new(source: Path, target: Path) -> None:
+    """Give a file a name that nothing has, whoever else tries the same: nothing is ever overwritten.
+
+    Raises FileExistsError where the name is taken. A crash in between leaves the file with both names.
+    """
+    try:
+        os.link(source, target, follow_symlinks=False)
+    except OSError as error:
+        if error.errno not in _NO_LINKS:
+            raise
+        if os.path.lexists(target):
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target)) from error
+        source.rename(target)
+    else:
+        source.unlink()

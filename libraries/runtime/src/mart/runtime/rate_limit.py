@@ -51,7 +51,3 @@ class KeyedRateLimit:
         self._limits.move_to_end(key)
         if len(self._limits) > _MAX_KEYS:
             self._limits.popitem(last=False)
-
-    def forget(self, key: str) -> None:
-        """Allow `key` its full share again."""
-        self._limits.pop(key, None)

@@ -135,20 +135,22 @@ def replay(path: Path, replica: str | None, as_json: bool) -> int:
 
 
 @episodes.command()
-@click.argument("folder", required=False, type=click.Path(path_type=Path, exists=True, file_okay=False))
+@_paths
 @_replica
 @json_option
-def repair(folder: Path | None, replica: str | None, as_json: bool) -> int:
-    """Make episodes of what crashes have left (.part files). Files that are being recorded are left alone."""
+def repair(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
+    """Make episodes of what crashes have left (.part files), and of damaged files new ones beside them.
+
+    Finished files never change, and what is being recorded, or is not MART's, is left alone.
+    """
     from mart.recorder import formatting
-    from mart.recorder.repair.repair import repair_all
+    from mart.recorder.repair.repair import repair_paths
     from mart.recorder.verify.resimulation import verify as verify_file
 
-    root = folder or RecorderSettings().episodes_dir
     with _resimulation(replica, wherever_possible=True) as resimulate:
-        repaired = list(repair_all(root, lambda file, room: verify_file(file, room, resimulate)))
+        repaired = list(repair_paths(_given(paths), lambda file, room: verify_file(file, room, resimulate)))
     print_result(*formatting.repaired(repaired), as_json)
-    return 0 if all(one.saved for one in repaired) else 1
+    return 0 if all(one.saved or one.needless for one in repaired) else 1
 
 
 @episodes.command()

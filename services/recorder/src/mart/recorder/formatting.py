@@ -135,11 +135,17 @@ def _lacks(one: FileCheck) -> str:
 def repaired(repaired: Sequence[RepairResult]) -> tuple[dict[str, Any], str]:
     """Return what `repair` did, as JSON and in words."""
     told = [
-        {"part": str(r.part), "path": str(r.saved.path) if r.saved else None, "detail": r.detail}
+        {"file": str(r.source), "path": str(r.saved.path) if r.saved else None, "detail": r.detail}
         for r in repaired
     ]
-    lines = [f"{t['part']} → {t['path'] or 'not repaired'}. {t['detail']}" for t in told]
+    lines = [_repaired_line(one) for one in repaired]
     return {"repaired": told}, "\n".join(lines) or "There is nothing to repair."
+
+
+def _repaired_line(one: RepairResult) -> str:
+    if one.saved is None:
+        return f"{one.source}: {'' if one.needless else 'not repaired. '}{one.detail}"
+    return f"{one.source} → {one.saved.path}. {one.detail}"
 
 
 def dataset(found: NamedDataSet) -> dict[str, Any]:

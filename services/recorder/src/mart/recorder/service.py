@@ -9,6 +9,7 @@ from contextlib import closing
 from pathlib import Path
 
 from mart.episodes.reader import EpisodeFile
+from mart.protocol.errors import MartError
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.catalogue.episode_catalogue import list_folder
@@ -37,17 +38,21 @@ def serve_recorder(settings: RecorderSettings, name: str) -> None:
             return verify(file, room, ask)
 
         root = settings.episodes_dir.resolve()
+        told: dict[Path, str] = {}
         recorder = Recorder(
-            settings.data_dir, service.bus, inbox, verify_file, lambda: tidy(root, verify_file)
+            settings.data_dir, service.bus, inbox, verify_file, lambda: tidy(root, verify_file, told)
         )
         with closing(RoomSubscriptions(service.bus, video_bus, inbox)), announced(service):
             recorder.run(service.stop)
 
 
-def tidy(root: Path, verify_file: VerifyFile) -> Iterator[SavedEpisode]:
-    """Repair what crashes have left under `root`, yielding what became an episode; then refresh the catalogue."""
-    yield from log_repairs(repair_all(root, verify_file))
+def tidy(root: Path, verify_file: VerifyFile, told: dict[Path, str]) -> Iterator[SavedEpisode]:
+    """Repair what crashes have left under `root`, yielding what became an episode; then refresh the catalogue.
+
+    told: what was said of files that cannot be repaired, so that it is said once.
+    """
+    yield from log_repairs(repair_all(root, verify_file), told)
     try:
         list_folder(root)
-    except (OSError, sqlite3.Error) as error:  # it is derived: the next one makes up for it
+    except (OSError, sqlite3.Error, MartError) as error:  # it is derived: the next one makes up for it
         _log.warning("The catalogue could not be brought up to date: %s", error)

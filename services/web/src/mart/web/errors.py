@@ -41,6 +41,13 @@ class TooLarge(InvalidInput):
         )
 
 
+class TooSlow(InvalidInput):
+    """The body of a request did not come in time."""
+
+    def __init__(self, timeout_s: float) -> None:
+        super().__init__(f"The request's body did not come within {timeout_s:g} s; send it again.")
+
+
 class TooMany(MartError):
     """Somebody asked too often; `retry_s`: seconds until they may again."""
 
@@ -57,6 +64,7 @@ class TooMany(MartError):
 _STATUS: tuple[tuple[type[MartError], int], ...] = (
     (NotJoined, 401),
     (TooLarge, 413),
+    (TooSlow, 408),
     (TooMany, 429),
     (WrongHost, 421),
     (InvalidInput, 400),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import os
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,6 +22,7 @@ from mart.protocol.recording import (
     VERSIONS,
     CadenceRecord,
     EpisodeRecord,
+    OperatorsRecord,
     RoomRecord,
     VerificationRecord,
 )
@@ -28,9 +30,11 @@ from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.room_facts import RoomFacts
 
 VerifyFile = Callable[[EpisodeFile, RoomRecord], VerificationRecord]
+NameFile = Callable[[EpisodeWriter, EpisodeRecord], None]  # raises FileExistsError, and never overwrites
 
 _LAST_DAY_S = 253402300799  # of the year 9999: a file's stamps are only what its bytes say
 _SAFE = re.compile(r"[a-z0-9][a-z0-9_-]*")
+_FOUND = ("arms", "started_ns", "ended_ns", "ticks", "first_tick", "last_tick", "repaired")
 _WRITES = ("mcap", "protobuf", "zstandard")  # besides MART's own parts
 
 
@@ -43,6 +47,14 @@ class SavedEpisode:
     cadence: CadenceRecord
     verification: VerificationRecord
     size_bytes: int
+
+
+@dataclass(frozen=True)
+class RecordedFacts:
+    """Hold what a damaged file itself still says of its episode; None where that is lost, or nothing vouches for it."""
+
+    episode: EpisodeRecord | None = None
+    operators: OperatorsRecord | None = None
 
 
 def finalize(
@@ -58,18 +70,61 @@ def finalize(
 
     Raises OSError where the disk is full and Corrupt where what was written does not read back; the `.part` stays.
     """
+    return complete(file, episode, facts, below(root), verify, repaired=repaired)
+
+
+def complete(
+    file: EpisodeWriter,
+    episode: EpisodeAccumulator,
+    facts: RoomFacts,
+    name: NameFile,
+    verify: VerifyFile,
+    *,
+    repaired: bool,
+    recorded: RecordedFacts = RecordedFacts(),
+) -> SavedEpisode:
+    """Complete `file` and give it its name, as `finalize`. recorded: what an earlier file said of the episode."""
     if not file.described:
         file.describe(facts.record())
     file.flush()
     verification = verify(EpisodeFile(file.path, {}), facts.record())
-    record, cadence = episode.record(facts, repaired), episode.cadence()
-    for known in (record, cadence, episode.operators(facts), verification):
+    record, cadence = _as_recorded(recorded.episode, episode.record(facts, repaired)), episode.cadence()
+    for known in (record, cadence, recorded.operators or episode.operators(facts), verification):
         file.add_record(known.NAME, known.to_strings())
     file.add_record(VERSIONS, versions())
     file.finish()
     EpisodeFile(file.path, {}).check(file.messages)
-    file.move_to(free_path(root, record))
+    name(file, record)
     return SavedEpisode(file.path, record, cadence, verification, file.path.stat().st_size)
+
+
+def below(root: Path) -> NameFile:
+    """Return what moves a finished file to its name under `root`, which nothing had before."""
+
+    def name(file: EpisodeWriter, record: EpisodeRecord) -> None:
+        while True:
+            path = free_path(root, record)
+            try:
+                return file.move_to(path)
+            except FileExistsError:  # another has taken the name meanwhile
+                if not _taken(path):
+                    raise
+
+    return name
+
+
+def _taken(path: Path) -> bool:
+    """Tell whether anything has this name, a link that leads nowhere too."""
+    return os.path.lexists(path)
+
+
+def _as_recorded(recorded: EpisodeRecord | None, found: EpisodeRecord) -> EpisodeRecord:
+    """Return what was recorded of an episode, with what is found of it now."""
+    if recorded is None or (recorded.room, recorded.number) != (found.room, found.number):
+        return found
+    changes = {name: getattr(found, name) for name in _FOUND}
+    is_complete = found.complete or (recorded.complete and recorded.ticks == found.ticks)
+    return recorded.model_copy(update=changes | {"complete": is_complete})
 
 
 def part_path(root: Path, episode: EpisodeAccumulator, facts: RoomFacts) -> Path:
@@ -85,7 +140,7 @@ def free_path(root: Path, record: EpisodeRecord, suffix: str = SUFFIX) -> Path:
     count = 1
     while True:
         path = root / day / f"{stem}{'' if count == 1 else f'-{count}'}{suffix}"
-        if not path.exists():
+        if not _taken(path):
             return path
         count += 1
 

@@ -40,12 +40,14 @@ class SalvagedMessage:
 class Salvage:
     """Find what is intact in one file.
 
-    damaged: how many places had to be left out. orphans: messages whose channel's description is lost.
-    expected: how many messages the end of the file counts; None where it is lost too, or was never written.
+    messages: how many are intact. damaged: how many places had to be left out. orphans: messages whose channel's
+    description is lost. expected: how many messages the end of the file counts; None where that is lost or was never
+    written.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self.messages = 0
         self.damaged = 0
         self.orphans = 0
         self.expected: int | None = None
@@ -119,6 +121,7 @@ class Salvage:
             if channel is None or schema is None:
                 self.orphans += 1
             else:
+                self.messages += 1
                 times = record.log_time, record.publish_time, record.sequence
                 yield SalvagedMessage(channel.topic, schema.name, record.data, *times)
 

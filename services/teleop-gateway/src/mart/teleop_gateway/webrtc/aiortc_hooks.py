@@ -35,20 +35,19 @@ def on_keyframe_request(sender: RTCRtpSender, handler: Callable[[], None]) -> No
     sender._send_keyframe = handler  # type: ignore[method-assign]  # noqa: SLF001
 
 
-def on_unusable_message(transport: RTCSctpTransport, handler: Callable[[Exception], None]) -> None:
-    """Call `handler` where a message of a data channel cannot be taken, whoever trips over it.
+def on_unreadable(sctp: RTCSctpTransport, handler: Callable[[Exception], None]) -> None:
+    """Call `handler` where a peer's data trips the parser: aiortc ends its receiving there, and tells nobody."""
+    receive = sctp._handle_data  # noqa: SLF001
 
-    aiortc ends its receiving there and then: the connection would be deaf from then on, and seem to be there.
-    """
-    receive = transport._data_channel_receive  # noqa: SLF001
-
-    async def guarded(stream_id: int, protocol_id: int, data: bytes) -> None:
+    async def receive_all(data: bytes) -> None:
         try:
-            await receive(stream_id, protocol_id, data)
-        except Exception as error:  # noqa: BLE001 - a peer may send anything
+            await receive(data)
+        except ConnectionError:
+            raise
+        except Exception as error:  # noqa: BLE001 - whatever the parser or a listener trips over
             handler(error)
 
-    transport._data_channel_receive = guarded  # type: ignore[method-assign]  # noqa: SLF001
+    sctp._handle_data = receive_all  # type: ignore[method-assign]  # noqa: SLF001
 
 
 def sent_codec(transceiver: RTCRtpTransceiver) -> str:

@@ -32,7 +32,9 @@ class OfferHandler:
         """Answer offers. `secret` is what seat tokens are signed with."""
         self._seat, self._secret = seat, secret
         self._input, self._peers = seat_input, peers
-        self._limit = RateLimit(MAX_OFFERS_PER_S)
+        self._limits = {
+            role: RateLimit(MAX_OFFERS_PER_S) for role in Role
+        }  # viewers spend none of the holder's
 
     def serve(self, bus: AsyncBus) -> list[Closable]:
         """Answer on the bus, for every role, until what is returned is closed."""
@@ -48,11 +50,11 @@ class OfferHandler:
         return AsyncRequestAnswerer(SIGNAL, partial(self._answer, role), on_refused)
 
     async def _answer(self, role: Role, offer: Offer) -> Answer:
-        if not self._limit.allows(clock.monotonic_s()):
+        if not self._limits[role].allows(clock.monotonic_s()):
             raise Unavailable(
-                f"More than {MAX_OFFERS_PER_S} offers a second came for this seat; wait a moment."
+                f"More than {MAX_OFFERS_PER_S} offers of a {role} a second came for this seat; wait a moment."
             )
         claims = authorize_offer(offer.token, self._secret, self._seat, role)
         driving = await self._input.await_driving(claims.epoch, _READY_TIMEOUT_S)
         authorize_holder(claims, driving.seat_epoch)
-        return Answer(sdp=await self._peers.answer(role, offer.sdp))
+        return Answer(sdp=await self._peers.answer(role, offer.sdp, claims.holder_id))

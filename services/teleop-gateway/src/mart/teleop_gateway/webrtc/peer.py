@@ -25,10 +25,11 @@ from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.webrtc.aiortc_hooks import (
     offer_playout_delay,
     on_keyframe_request,
-    on_unusable_message,
+    on_unreadable,
     sent_codec,
     show_at_once,
 )
+from mart.teleop_gateway.webrtc.ice_candidates import bounded_candidates
 from mart.teleop_gateway.webrtc.track import EncodedTrack
 
 _log = logging.getLogger(__name__)
@@ -57,9 +58,13 @@ class PeerListener(Protocol):
 class Peer:
     """Hold one connection: answer its offer, then let it run; `close` ends it, also when it is already gone."""
 
-    def __init__(self, role: Role, listener: PeerListener, ice_servers: Sequence[IceServer] = ()) -> None:
+    def __init__(
+        self, role: Role, listener: PeerListener, ice_servers: Sequence[IceServer] = (), holder_id: str = ""
+    ) -> None:
+        """Make a peer of the person with `holder_id`."""
         offer_playout_delay()
         self.role = role
+        self.holder_id = holder_id
         self.codec: Codec | None = None
         self.track: EncodedTrack | None = None
         self.clock_offset_ns: int | None = None  # gateway clock minus the peer's, once it has told
@@ -85,6 +90,11 @@ class Peer:
             raise InvalidInput(f"An offer was given that cannot be answered: {error}") from error
         return self._connection.localDescription.sdp
 
+    @property
+    def is_connected(self) -> bool:
+        """Whether the connection has come about."""
+        return self._connection.connectionState == "connected"
+
     def send_status(self, text: str) -> None:
         """Send a message; it is dropped where the channel is not open, or still busy with older ones."""
         channel = self._status
@@ -99,10 +109,11 @@ class Peer:
 
     async def _negotiate(self, offer_sdp: str) -> None:
         sender = self._add_video() if self.role is not Role.PHONE else None
-        await self._connection.setRemoteDescription(RTCSessionDescription(offer_sdp, "offer"))
-        await self._connection.setLocalDescription(await self._connection.createAnswer())
+        offer = RTCSessionDescription(bounded_candidates(offer_sdp), "offer")
+        await self._connection.setRemoteDescription(offer)
         if self._connection.sctp is not None:
-            on_unusable_message(self._connection.sctp, self._on_unusable_message)
+            on_unreadable(self._connection.sctp, self._on_unreadable)
+        await self._connection.setLocalDescription(await self._connection.createAnswer())
         if sender is not None:
             self.codec = Codec(sent_codec(self._connection.getTransceivers()[0]))
 
@@ -141,9 +152,8 @@ class Peer:
                 self, message if isinstance(message, str) else message.decode(errors="replace")
             )
 
-    def _on_unusable_message(self, error: Exception) -> None:
-        """Let a peer go that sends what nobody can read: its page connects anew."""
-        _log.warning("A %s is let go, because what it sent cannot be used: %s", self.role, error)
+    def _on_unreadable(self, error: Exception) -> None:
+        _log.info("What a %s sent cannot be read, its connection is ended: %r", self.role, error)
         self._listener.on_gone(self)
 
     def _on_state(self) -> None:

@@ -16,6 +16,7 @@ from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
 
 MAX_VIEWERS = 8
+MAX_VIEWERS_A_PERSON = 2
 SILENT_S = 10.0  # each peer pings once a second; aiortc alone finds a dead one after half a minute
 _DRIVING = (Role.BROWSER, Role.PHONE)
 _GOODBYES = (
@@ -64,27 +65,48 @@ class Peers:
         """Tell `listener` what peers do from now on."""
         self._listener = listener
 
-    async def answer(self, role: Role, offer_sdp: str) -> str:
-        """Return the answer's SDP; a driving role's earlier peer is replaced once the new one is answered.
+    async def answer(self, role: Role, offer_sdp: str, holder_id: str) -> str:
+        """Return the answer's SDP for the person with `holder_id`.
 
-        Raises InvalidInput where the offer cannot be used, Conflict where too many watch.
+        A driving role's earlier peer is replaced once the new one is answered, and so is a person's oldest viewer where
+        they watch twice already. Raises InvalidInput where the offer cannot be used, Conflict where too many watch.
         """
-        if role is Role.VIEWER and len(self._viewers) >= MAX_VIEWERS:
-            raise Conflict(f"{MAX_VIEWERS} viewers watch this seat already; wait until one leaves.")
-        peer = Peer(role, self, self._ice_servers())
-        sdp = await peer.answer(offer_sdp)
-        if role in self._driving:
-            for _ in range(_GOODBYES):
-                self._driving[role].send_status(status_channel.replaced())
-            self._drop(self._driving[role])
+        peer = Peer(role, self, self._ice_servers(), holder_id)
         if role is Role.VIEWER:
-            self._viewers.append(peer)
-        else:
-            self._driving[role] = peer
+            self._make_room(holder_id)
+            self._viewers.append(peer)  # its place is taken before anything is awaited
+        try:
+            sdp = await peer.answer(offer_sdp)
+        except BaseException:
+            if peer in self._viewers:
+                self._viewers.remove(peer)
+            raise
+        if role is not Role.VIEWER:
+            self._replace(role, peer)
+        elif peer not in self._viewers:
+            raise Conflict("Others came to watch this seat meanwhile; try again.")
         if self._listener is not None:
             self._listener.on_joined(peer)
             self._listener.on_watched(self.codecs())
         return sdp
+
+    def _make_room(self, holder_id: str) -> None:
+        """Let viewers go who are in the way of one more: a person's own beyond two, those that do not connect."""
+        own = [peer for peer in self._viewers if peer.holder_id == holder_id]
+        for peer in own[: len(own) + 1 - MAX_VIEWERS_A_PERSON]:
+            self._drop(peer)
+        if len(self._viewers) >= MAX_VIEWERS:
+            waiting = next((peer for peer in self._viewers if not peer.is_connected), None)
+            if waiting is None:
+                raise Conflict(f"{MAX_VIEWERS} viewers watch this seat already; wait until one leaves.")
+            self._drop(waiting)
+
+    def _replace(self, role: Role, peer: Peer) -> None:
+        if role in self._driving:
+            for _ in range(_GOODBYES):
+                self._driving[role].send_status(status_channel.replaced())
+            self._drop(self._driving[role])
+        self._driving[role] = peer
 
     def codecs(self) -> frozenset[Codec]:
         """Return the codecs that are being watched."""

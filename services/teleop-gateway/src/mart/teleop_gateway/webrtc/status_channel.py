@@ -12,8 +12,7 @@ from mart.teleop_gateway.input.driving import Driving, InputDevice, PhoneState
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 
 MAX_CHARACTERS = 1100  # one SCTP packet
-_MAX_US = 2.0**53  # what a page's clock can count
-_MAX_NS = 2.0**63
+_LARGEST = 2**63 - 1
 _NAME_CHARACTERS = 40
 _REASON_CHARACTERS = 120
 
@@ -68,15 +67,15 @@ def parse(text: str | bytes) -> PeerMessage:
         message = json.loads(text)
         match message:
             case {"type": "ping", "t_us": t_us}:
-                return PingMessage(_within(t_us, _MAX_US))
+                return PingMessage(_finite(t_us))
             case {"type": "clock", "offset_ns": offset_ns}:
-                return ClockMessage(int(_within(offset_ns, _MAX_NS)))
-            case {"type": "seen", "tick": int(tick), "t_us": t_us}:
-                return SeenMessage(tick, _within(t_us, _MAX_US))
+                return ClockMessage(int(_finite(offset_ns)))
+            case {"type": "seen", "tick": int(tick), "t_us": t_us} if 0 <= tick <= _LARGEST:
+                return SeenMessage(tick, _finite(t_us))
             case {"type": "input", "input": name}:
                 return SelectInputMessage(InputDevice(name))
             case {"type": "cue", "cue": str(word), "t_us": t_us}:
-                return CueMessage(cue_from_word(word), _within(t_us, _MAX_US))
+                return CueMessage(cue_from_word(word), _finite(t_us))
     except (ValueError, OverflowError, RecursionError) as error:
         raise InvalidInput(f"A status message was given that cannot be read: {error}.") from error
     raise InvalidInput("A status message was given that is none of ping, clock, seen, input and cue.")
@@ -155,7 +154,7 @@ def _text(message: dict[str, Any]) -> str:
     return json.dumps(message, separators=(",", ":"), ensure_ascii=False)
 
 
-def _within(value: Any, limit: float) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= limit:
-        raise ValueError(f"{value!r} is no number of at most {limit:g}")
+def _finite(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LARGEST:
+        raise ValueError(f"{value!r} is no finite number of at most 63 bits")
     return value

@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
+import logging
 import secrets
 import sqlite3
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from mart.protocol.errors import InvalidInput
+from mart.protocol.errors import InvalidInput, Unavailable
+
+_log = logging.getLogger(__name__)
 
 SESSION_S = 7 * 24 * 3600.0
 MAX_NAME_CHARACTERS = 32
+MAX_SESSIONS = 10_000
 _SCHEMA = """
-CREATE TABLE IF NOT EXISTS session (
+CREATE TABLE IF NOT EXISTS joined (
     id_sha256 BLOB PRIMARY KEY,
     holder_id TEXT NOT NULL,
     name TEXT NOT NULL,
-    expires_s REAL NOT NULL
-) WITHOUT ROWID
+    expires_s REAL NOT NULL,
+    code_digest BLOB NOT NULL
+) WITHOUT ROWID;
+DROP TABLE IF EXISTS session; -- of 0.2.0 and before, which did not say for which join code it was
 """
 
 
@@ -31,41 +39,92 @@ class User:
 
 
 class UserSessions:
-    """The sessions of all users; times are Unix seconds. The file holds only hashes of their ids: it lets nobody in."""
+    """The sessions of all users; times are Unix seconds. The file holds only hashes of their ids: it lets nobody in.
 
-    def __init__(self, path: Path | str) -> None:
-        if isinstance(path, Path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.touch(mode=0o600)
-        self._database = sqlite3.connect(path, isolation_level=None)
-        self._database.execute("PRAGMA journal_mode = WAL")
-        self._database.execute(_SCHEMA)
+    A session is good as long as the join code that it came with is the site's: another code ends them all.
+    """
+
+    def __init__(self, path: Path | str, code_digest: bytes = b"") -> None:
+        """Open the sessions at `path`; a file that is none is put aside. `code_digest`: of the site's join code."""
+        self._code_digest = code_digest
+        try:
+            self._database = _opened(path)
+        except sqlite3.DatabaseError:
+            if not isinstance(path, Path) or not path.is_file():
+                raise
+            aside = path.with_suffix(".damaged")
+            path.replace(aside)
+            _log.warning("%s was damaged and is kept as %s; everybody joins anew.", path, aside.name)
+            self._database = _opened(path)
+        self._database.execute("DELETE FROM joined WHERE code_digest <> ?", (code_digest,))
 
     def join(self, name: str, now_s: float, known: User | None = None) -> tuple[str, User]:
         """Return a new session's id and its user; one already `known` keeps the seats and may change the name.
 
-        Raises InvalidInput where the name cannot be used.
+        The session before it ends. Raises InvalidInput where the name cannot be used, Unavailable where the session
+        cannot be kept.
         """
         user = User(known.holder_id if known else secrets.token_hex(16), clean_name(name))
         session_id = secrets.token_urlsafe(32)
-        self._database.execute("DELETE FROM session WHERE expires_s < ?", (now_s,))
-        self._database.execute(
-            "INSERT INTO session VALUES (?, ?, ?, ?)",
-            (_hash(session_id), user.holder_id, user.name, now_s + SESSION_S),
-        )
+        with _told():
+            self._database.execute("DELETE FROM joined WHERE expires_s < ?", (now_s,))
+            self._database.execute("DELETE FROM joined WHERE holder_id = ?", (user.holder_id,))
+            self._database.execute(
+                "INSERT INTO joined VALUES (?, ?, ?, ?, ?)",
+                (_hash(session_id), user.holder_id, user.name, now_s + SESSION_S, self._code_digest),
+            )
+            self._database.execute(
+                "DELETE FROM joined WHERE id_sha256 IN "
+                "(SELECT id_sha256 FROM joined ORDER BY expires_s DESC LIMIT -1 OFFSET ?)",
+                (MAX_SESSIONS,),
+            )
         return session_id, user
 
     def find(self, session_id: str, now_s: float) -> User | None:
-        """Return the user of a session; None where there is no such session, or it has ended."""
-        row = self._database.execute(
-            "SELECT holder_id, name FROM session WHERE id_sha256 = ? AND expires_s >= ?",
-            (_hash(session_id), now_s),
-        ).fetchone()
+        """Return the user of a session; None where there is no such session, or it has ended.
+
+        Raises Unavailable where the sessions cannot be read.
+        """
+        with _told():
+            row = self._database.execute(
+                "SELECT holder_id, name FROM joined WHERE id_sha256 = ? AND expires_s >= ?",
+                (_hash(session_id), now_s),
+            ).fetchone()
         return User(*row) if row else None
+
+    def leave(self, user: User) -> None:
+        """End the session of a user."""
+        with _told():
+            self._database.execute("DELETE FROM joined WHERE holder_id = ?", (user.holder_id,))
 
     def close(self) -> None:
         """Close the database."""
         self._database.close()
+
+
+def _opened(path: Path | str) -> sqlite3.Connection:
+    if isinstance(path, Path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch(mode=0o600)
+    database = sqlite3.connect(path, isolation_level=None)
+    try:
+        database.execute("PRAGMA journal_mode = WAL")
+        database.executescript(_SCHEMA)
+        database.execute("SELECT * FROM joined").fetchall()
+    except sqlite3.DatabaseError:
+        database.close()
+        raise
+    return database
+
+
+@contextlib.contextmanager
+def _told() -> Iterator[None]:
+    try:
+        yield
+    except sqlite3.Error as error:
+        raise Unavailable(
+            f"Who has joined cannot be looked up or kept now: {error}. Is the disk full? The log tells more."
+        ) from error
 
 
 def clean_name(given: str) -> str:

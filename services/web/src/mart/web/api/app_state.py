@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.ice_servers import IceSettings
 from mart.web.access.pairing_codes import PairingCodes
-from mart.web.access.request_limits import RequestLimit
+from mart.web.access.request_limits import AtOnceLimit, FailureDelay, RequestLimit
 from mart.web.access.user_sessions import UserSessions
 from mart.web.clients.catalogue_client import CatalogueClient
 from mart.web.clients.gateway_client import GatewayClient
@@ -17,14 +18,27 @@ from mart.web.clients.room_client import RoomRequester
 from mart.web.clients.trainer_client import TrainerClient
 from mart.web.lobby.health_findings import RelayCheck
 from mart.web.lobby.lobby import Lobby
+from mart.web.lobby.rooms_text import RoomsText
 
 
-def _wrong_codes() -> RequestLimit:
-    return RequestLimit("wrong codes", count=5, window_s=60.0)
+def _wrong_codes() -> FailureDelay:
+    return FailureDelay(free=5, window_s=600.0, step_s=0.1, longest_s=8.0)
+
+
+def _joins() -> RequestLimit:
+    return RequestLimit("people who joined", count=60, window_s=600.0)
 
 
 def _offers() -> RequestLimit:
     return RequestLimit("connection attempts", count=30, window_s=60.0)
+
+
+def _offers_from_address() -> RequestLimit:
+    return RequestLimit("connection attempts", count=300, window_s=60.0)
+
+
+def _live_sockets() -> AtOnceLimit:
+    return AtOnceLimit("open pages", count=16)
 
 
 @dataclass(frozen=True)
@@ -45,10 +59,18 @@ class AppState:
     data_dir: Path
     certificate: Path
     pairing_codes: PairingCodes = field(default_factory=PairingCodes)
-    wrong_codes: RequestLimit = field(default_factory=_wrong_codes)
+    wrong_codes: FailureDelay = field(default_factory=_wrong_codes)
+    joins: RequestLimit = field(default_factory=_joins)
     offers: RequestLimit = field(default_factory=_offers)
+    offers_from_address: RequestLimit = field(default_factory=_offers_from_address)
+    live_sockets: AtOnceLimit = field(default_factory=_live_sockets)
     ice: IceSettings = field(default_factory=IceSettings)
     relays: dict[str, RelayCheck] = field(default_factory=dict)
+
+    @functools.cached_property
+    def rooms_text(self) -> RoomsText:
+        """The rooms as the live sockets send them."""
+        return RoomsText(self.lobby)
 
     @property
     def rooms(self) -> RoomRequester:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
+
 from fastapi import APIRouter, Response
 from pydantic import BaseModel
 
 from mart.protocol import clock
-from mart.protocol.errors import Forbidden
+from mart.protocol.errors import Forbidden, MartError
 from mart.web.access.join_code import check_join_code
 from mart.web.access.user_sessions import SESSION_S, User
 from mart.web.api.dependencies import COOKIE, Address, App, JoinedUser, MaybeUser, now_unix_s
@@ -23,15 +26,20 @@ class JoinRequest(BaseModel):
 
 @router.post("/join")
 async def join(body: JoinRequest, response: Response, app: App, known: MaybeUser, address: Address) -> User:
-    """Let in whoever gives the join code, and set the session's cookie; five wrong codes a minute from one address."""
-    now_s = clock.monotonic_s()
-    app.wrong_codes.check(address, now_s)
+    """Let in whoever gives the join code, and set the session's cookie.
+
+    After five wrong codes from an address the answers to it take longer, also that to the right code; nobody waits
+    who has joined already.
+    """
+    if known is None:
+        await asyncio.sleep(app.wrong_codes.delay_s(address, clock.monotonic_s()))
     try:
         check_join_code(body.code, app.join_code)
     except Forbidden:
-        app.wrong_codes.count(address, now_s)
+        app.wrong_codes.count(address, clock.monotonic_s())
         raise
-    app.wrong_codes.forgive(address)
+    if known is None:
+        app.joins.spend(address, clock.monotonic_s())
     session_id, user = app.user_sessions.join(body.name, now_unix_s(), known)
     response.set_cookie(
         COOKIE, session_id, max_age=int(SESSION_S), path="/", secure=True, httponly=True, samesite="strict"
@@ -42,4 +50,15 @@ async def join(body: JoinRequest, response: Response, app: App, known: MaybeUser
 @router.get("/me")
 async def me(user: JoinedUser) -> User:
     """Tell who one is."""
+    return user
+
+
+@router.delete("/me")
+async def leave(response: Response, app: App, user: JoinedUser) -> User:
+    """End one's visit: the session is forgotten, one's seats are free. Tell who one was."""
+    for room, arm in app.lobby.rooms.seats_of(user.holder_id, clock.monotonic_s()):
+        with contextlib.suppress(MartError):  # a room that does not answer frees the seat when it is claimed
+            await app.rooms.leave_seat(room, arm, user)
+    app.user_sessions.leave(user)
+    response.delete_cookie(COOKIE, path="/", secure=True, httponly=True, samesite="strict")
     return user

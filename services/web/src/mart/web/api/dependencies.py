@@ -30,9 +30,14 @@ async def app_state_of(connection: HTTPConnection) -> AppState:
 App = Annotated[AppState, Depends(app_state_of)]
 
 
+def session_of(connection: HTTPConnection) -> str:
+    """Return the session's id that a request came with; empty where it came with none."""
+    return connection.cookies.get(COOKIE, "")
+
+
 async def maybe_user(connection: HTTPConnection, app: App) -> User | None:
     """Return who asks; None where they have not joined."""
-    session_id = connection.cookies.get(COOKIE)
+    session_id = session_of(connection)
     return app.user_sessions.find(session_id, now_unix_s()) if session_id else None
 
 

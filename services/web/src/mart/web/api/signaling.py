@@ -73,16 +73,9 @@ async def pair(room: str, arm: str, request: Request, app: App, user: JoinedUser
 
 
 @router.post("/pair")
-async def redeem(body: PairingRequest, app: App, address: Address) -> Json:
-    """Send the phone that gives a code its token; five wrong codes a minute from one address."""
-    now_s = clock.monotonic_s()
-    key = f"pair {address}"
-    app.wrong_codes.check(key, now_s)
-    try:
-        pairing = app.pairing_codes.redeem(body.code, now_s)
-    except Forbidden:
-        app.wrong_codes.count(key, now_s)
-        raise
+async def redeem(body: PairingRequest, app: App) -> Json:
+    """Send the phone that gives a code its token. Nobody guesses 128 bits in two minutes, however often they try."""
+    pairing = app.pairing_codes.redeem(body.code, clock.monotonic_s())
     seat = SeatToken(
         pairing.room, pairing.arm, pairing.epoch, Role.PHONE, pairing.holder_id, now_unix_s() + _PHONE_TOKEN_S
     )
@@ -132,7 +125,9 @@ async def let_go_of_stop_by_phone(room: str, arm: str, app: App, authorization: 
 
 
 @router.post("/rooms/{room}/seats/{arm}/offer")
-async def offer(room: str, arm: str, body: SdpOffer, app: App, authorization: Authorization = "") -> Json:
+async def offer(
+    room: str, arm: str, body: SdpOffer, *, app: App, address: Address, authorization: Authorization = ""
+) -> Json:
     """Have the seat's gateway answer an offer and send the answer."""
     seat_token = _claims(app, room, arm, authorization)
     if seat_token.epoch != _seat(app, room, arm).epoch:
@@ -140,6 +135,7 @@ async def offer(room: str, arm: str, body: SdpOffer, app: App, authorization: Au
             "This seat has changed hands since you got your token; take a seat in the lobby again."
         )
     app.offers.spend(f"{seat_token.holder_id} {seat_token.role}", clock.monotonic_s())
+    app.offers_from_address.spend(address, clock.monotonic_s())
     return {"sdp": await app.gateways.answer_offer(seat_token, _bearer(authorization), body.sdp)}
 
 

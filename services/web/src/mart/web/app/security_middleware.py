@@ -1,6 +1,9 @@
-"""Stands before every request: the right name, the right origin, a bounded body, and headers that keep pages safe."""
+"""Stands before every request: right name, right origin, a bounded body in time, and headers that keep pages safe."""
 
 from __future__ import annotations
+
+import asyncio
+from collections import deque
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import JSONResponse
@@ -8,9 +11,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from mart.protocol.errors import MartError
 from mart.web.access.site_names import host_name
-from mart.web.errors import TooLarge, WrongHost, WrongOrigin, error_json, http_status
+from mart.web.errors import TooLarge, TooSlow, WrongHost, WrongOrigin, error_json, http_status
 
 MAX_BODY_BYTES = 64 * 1024
+BODY_TIMEOUT_S = 15.0
 _READING = {"GET", "HEAD", "OPTIONS"}
 _CONTENT_POLICY = (
     "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; img-src 'self' data:; "
@@ -40,6 +44,8 @@ class SecurityMiddleware:
             return
         try:
             self._check(scope)
+            if scope["type"] == "http":
+                receive = await _with_whole_body(receive)
         except MartError as error:
             await _refuse(error, scope, receive, send)
         else:
@@ -58,6 +64,22 @@ class SecurityMiddleware:
         length = headers.get("content-length", "0")
         if "transfer-encoding" in headers or not length.isdecimal() or int(length) > MAX_BODY_BYTES:
             raise TooLarge(MAX_BODY_BYTES)
+
+
+async def _with_whole_body(receive: Receive) -> Receive:
+    """Read the body, which is short, and return what hands it on; raises TooSlow where it does not come."""
+    waiting: deque[Message] = deque()
+    try:
+        async with asyncio.timeout(BODY_TIMEOUT_S):
+            while not waiting or waiting[-1].get("more_body", False):
+                waiting.append(await receive())
+    except TimeoutError as error:
+        raise TooSlow(BODY_TIMEOUT_S) from error
+
+    async def receive_read() -> Message:
+        return waiting.popleft() if waiting else await receive()
+
+    return receive_read
 
 
 async def _refuse(error: MartError, scope: Scope, receive: Receive, send: Send) -> None:

@@ -9,16 +9,25 @@ from collections.abc import Coroutine
 from typing import Any
 
 import uvicorn
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from mart.protocol.errors import Unavailable
 from mart.runtime.secret_file import load_or_create_secret
 from mart.runtime.service import AsyncService, announced
 from mart.web.access.certificate import Certificate, ensure_certificate
+from mart.web.access.connection_table import ConnectionTable
+from mart.web.access.join_code import digest_of
 from mart.web.access.site_names import is_loopback, lan_addresses, site_names
 from mart.web.access.user_sessions import UserSessions
 from mart.web.api.app_state import AppState
 from mart.web.app.application import create_app
 from mart.web.app.certificate_renewal import keep_renewed, now
+from mart.web.app.guarded_listener import (
+    ConnectionMiddleware,
+    GuardedListener,
+    quiet_when_full,
+    raise_file_limit,
+)
 from mart.web.app.relay_checks import keep_checking
 from mart.web.app.security_middleware import MAX_BODY_BYTES
 from mart.web.app.settings import WebSettings
@@ -26,6 +35,7 @@ from mart.web.clients.missed_saves import MissedSaves
 from mart.web.lobby.bus_feed import LobbyFeed
 from mart.web.lobby.lobby import Lobby
 
+MAX_CONNECTIONS = 2048
 _STOP_S = 2
 _EVERY_ADDRESS = ("0.0.0.0", "::")  # noqa: S104  (only when asked for)
 
@@ -50,43 +60,58 @@ async def serve(
     """Serve the pages and the API at `listener` until cancelled, or stopped by a signal."""
     lobby = Lobby()
     with contextlib.ExitStack() as stack:
-        user_sessions = stack.enter_context(contextlib.closing(UserSessions(settings.sessions_path)))
+        secret = load_or_create_secret(settings.secret_path)
+        sessions = UserSessions(settings.sessions_path, digest_of(join_code, secret))
+        user_sessions = stack.enter_context(contextlib.closing(sessions))
         feed = stack.enter_context(contextlib.closing(LobbyFeed(service.bus, lobby)))
         state = AppState(
             bus=service.bus,
             lobby=lobby,
             user_sessions=user_sessions,
             join_code=join_code,
-            secret=load_or_create_secret(settings.secret_path),
+            secret=secret,
             names=site_names(settings.public_names, settings.web_host),
             lan_host=_lan_host(settings),
             data_dir=settings.data_dir,
             certificate=settings.certificate or settings.certificates_dir / "site.pem",
             ice=settings,
         )
-        config, background = _configured(settings, state)
-        background += [feed.keep_asking(), _missed(state), keep_checking(settings, state.relays)]
+        table = ConnectionTable(
+            settings.connections_per_address, min(MAX_CONNECTIONS, raise_file_limit()), settings.proxies
+        )
+        guarded = stack.enter_context(contextlib.closing(GuardedListener(listener, table)))
+        quiet_when_full()
+        config, background = _configured(settings, state, table)
+        background += [
+            feed.keep_asking(),
+            guarded.keep_ending(),
+            _missed(state),
+            keep_checking(settings, state.relays),
+        ]
         tasks = [service.bus.spawn(work) for work in background]
         try:
             await feed.settled()
             # Whoever comes before the server is quite up waits in the listener's queue.
             with announced(service):
-                await _run(uvicorn.Server(config), listener)
+                await _run(uvicorn.Server(config), guarded)
         finally:
             for task in tasks:
                 task.cancel()
 
 
 def _configured(
-    settings: WebSettings, state: AppState
+    settings: WebSettings, state: AppState, table: ConnectionTable
 ) -> tuple[uvicorn.Config, list[Coroutine[Any, Any, None]]]:
     """Return how to serve, and what renews the certificate meanwhile where it is one of this site's own."""
 
     def ensure() -> Certificate:
         return ensure_certificate(settings.certificates_dir, state.names, now())
 
+    app: Any = create_app(state)
+    if settings.proxies:
+        app = ProxyHeadersMiddleware(app, list(settings.proxies))
     config = uvicorn.Config(
-        create_app(state),
+        ConnectionMiddleware(app, table),
         ssl_certfile=settings.certificate or ensure().path,
         ssl_keyfile=settings.certificate_key,
         lifespan="off",
@@ -94,6 +119,7 @@ def _configured(
         log_level="warning",
         access_log=False,
         server_header=False,
+        proxy_headers=False,  # its default believes every process of this machine
         ws="websockets-sansio",
         ws_max_size=MAX_BODY_BYTES,
         timeout_graceful_shutdown=_STOP_S,

@@ -18,6 +18,15 @@ class WebSettings(IceSettings):
     web_port: int = Field(8443, ge=0, le=65535)
     public_host: str = Field("", description="Names and addresses that people use, separated by commas.")
     join_code: str = Field("", description="Fixed join code; default: one made at first start.")
+    trusted_proxy: str = Field(
+        "", description="Addresses of proxies in front whose X-Forwarded-For is believed; default: none."
+    )
+    connections_per_address: int = Field(
+        256,
+        ge=8,
+        le=65536,
+        description="Connections at a time from one address; a proxy's has no such limit.",
+    )
     certificate: Path | None = Field(
         None, description="PEM certificate chain; default: one made at first start."
     )
@@ -29,6 +38,11 @@ class WebSettings(IceSettings):
     def public_names(self) -> tuple[str, ...]:
         """The names and addresses that people use."""
         return tuple(name.strip() for name in self.public_host.split(",") if name.strip())
+
+    @property
+    def proxies(self) -> tuple[str, ...]:
+        """Addresses whose word of where a request came from is believed."""
+        return tuple(address.strip() for address in self.trusted_proxy.split(",") if address.strip())
 
     @property
     def certificates_dir(self) -> Path:

@@ -50,6 +50,7 @@ class LobbyListeners:
         self._listeners: set[LobbyListener] = set()
         self._kept: deque[Json] = deque(maxlen=_MAX_KEPT_EVENTS)
         self._newest_id = 0
+        self.changes = 0  # so many times a change was told
 
     @contextlib.contextmanager
     def listen(self, after: int | None = None) -> Iterator[LobbyListener]:
@@ -70,6 +71,7 @@ class LobbyListeners:
 
     def tell_change(self) -> None:
         """Wake every listener."""
+        self.changes += 1
         for listener in self._listeners:
             listener.tell()
 

@@ -71,6 +71,16 @@ class RoomTable:
                 return seat
         raise NotFound.named("arm", arm, (seat.arm for seat in status.seats))
 
+    def seats_of(self, holder_id: str, now_s: float) -> list[tuple[str, str]]:
+        """Return the room and the arm of each seat that the user with `holder_id` holds."""
+        self._forget(now_s)
+        return [
+            (name, seat.arm)
+            for name, room in sorted(self._rooms.items())
+            for seat in room.status.seats
+            if holder_id and seat.holder_id == holder_id
+        ]
+
     def seats(self, room: str) -> tuple[Seat, ...]:
         """Return the seats of `room`, none where it is not known."""
         known = self._rooms.get(room)

@@ -8,9 +8,10 @@ from typing import Any
 
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import TrainerReply, TrainerRequest
+from mart.protocol.plain_text import require_plain
 from mart.trainer.evaluate.evaluation import Evaluation, best_evaluation, read_evaluations
 from mart.trainer.evaluate.world_seeds import Purpose
-from mart.trainer.jobs.job import Job
+from mart.trainer.jobs.job import Job, JobSpec
 from mart.trainer.jobs.job_files import LOG
 from mart.trainer.jobs.queue import JobQueue
 from mart.trainer.jobs.service import curves, promotion
@@ -30,7 +31,7 @@ MAX_POLICIES = 200
 
 
 class TrainerHandlers:
-    """Answer requests. For one thread. executors: their names, the default first."""
+    """Answer requests. For one thread, but for `prepare`. executors: their names, the default first."""
 
     def __init__(
         self,
@@ -49,8 +50,6 @@ class TrainerHandlers:
         self._executors = executors
         self._now_ns = now_ns
         self._handlers: dict[str, Callable[[Any], TrainerReply]] = {
-            "choices": self._choices,
-            "submit": self._submit,
             "list": self._list,
             "show": self._show,
             "logs": self._logs,
@@ -64,14 +63,29 @@ class TrainerHandlers:
 
     def handle(self, request: TrainerRequest) -> TrainerReply:
         """Do what a request asks and return the reply. Raises errors of the tree."""
+        return self.prepare(request)()
+
+    def reads_folders(self, request: TrainerRequest) -> bool:
+        """Tell whether `prepare` may take long, because it looks through folders of episodes."""
+        return request.WhichOneof("what") in ("choices", "submit")
+
+    def prepare(self, request: TrainerRequest) -> Callable[[], TrainerReply]:
+        """Check a request, read what it needs of folders, and return what does it, for the thread of the jobs.
+
+        Any thread may prepare a request that reads folders. Both steps raise errors of the tree.
+        """
         _check_texts(request)
         what = request.WhichOneof("what")
+        if what == "choices":
+            choices = TrainerReply(choices=training_options(self._settings, self._executors))
+            return lambda: choices
+        if what == "submit":
+            specs = job_specs(request.submit, self._settings)
+            return lambda: self._submit(request.submit, specs)
         if what is None:
-            raise InvalidInput(f"An empty request was given; ask for one of {', '.join(self._handlers)}.")
-        return self._handlers[what](getattr(request, what))
-
-    def _choices(self, _: TrainerRequest.Choices) -> TrainerReply:
-        return TrainerReply(choices=training_options(self._settings, self._executors))
+            known = ("choices", "submit", *self._handlers)
+            raise InvalidInput(f"An empty request was given; ask for one of {', '.join(known)}.")
+        return lambda: self._handlers[what](getattr(request, what))
 
     def _cancel(self, wanted: TrainerRequest.Cancel) -> TrainerReply:
         return self._jobs(self._queue.cancel(self._meant(wanted.job), self._now_ns()))
@@ -86,9 +100,9 @@ class TrainerHandlers:
     def _withdraw(self, wanted: TrainerRequest.Withdraw) -> TrainerReply:
         return TrainerReply(policies=[promotion.withdraw(self._settings.policies_dir, wanted.policy)])
 
-    def _submit(self, submit: TrainerRequest.Submit) -> TrainerReply:
+    def _submit(self, submit: TrainerRequest.Submit, specs: Sequence[JobSpec]) -> TrainerReply:
         executor = submit.executor or self._executors[0]
-        return self._jobs(self._queue.submit(job_specs(submit, self._settings), executor, self._now_ns()))
+        return self._jobs(self._queue.submit(specs, executor, self._now_ns()))
 
     def _list(self, wanted: TrainerRequest.List) -> TrainerReply:
         limit = min(wanted.newest or MAX_JOBS, MAX_JOBS)
@@ -203,7 +217,13 @@ def _check_texts(message: object) -> None:
         for one in values:
             if field.message_type is not None:
                 _check_texts(one)
-            elif isinstance(one, str) and len(one.encode()) > MAX_TEXT_BYTES:
-                raise InvalidInput(
-                    f"{field.name} of {len(one.encode())} bytes was given; at most {MAX_TEXT_BYTES} are allowed."
-                )
+            elif isinstance(one, str):
+                _check_text(field.name, one)
+
+
+def _check_text(name: str, given: str) -> None:
+    if len(given.encode()) > MAX_TEXT_BYTES:
+        raise InvalidInput(
+            f"{name} of {len(given.encode())} bytes was given; at most {MAX_TEXT_BYTES} are allowed."
+        )
+    require_plain(name, given)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
@@ -9,14 +10,17 @@ from itertools import islice
 from pathlib import Path
 
 from mart.episodes import datasets, labels
+from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import DataSet, Order, TrainerReply
-from mart.protocol.recording import SUFFIX
 from mart.protocol.tasks import task_names
 from mart.protocol.vocabulary import EpisodeOutcome
+from mart.trainer.jobs.service.data_folders import episode_files
 from mart.trainer.jobs.service.settings import TrainerSettings
 from mart.trainer.jobs.service.sweep import DEFAULT_DATA, DEFAULT_PRESET, SCORE_EPISODES, task_in
 from mart.trainer.models.architecture import BASELINES, PAPER, ModelSpec
 from mart.trainer.train.presets import PRESETS
+
+_log = logging.getLogger(__name__)
 
 _MAX_DATA_SETS = 200
 _NO_DATA = ("runs", "policies", "logs", "secrets", "certificates", "cache")
@@ -51,13 +55,21 @@ def data_sets(data_dir: Path) -> list[DataSet]:
     """Return the folders with episodes, each followed by its named data sets; `episodes` first, days together."""
     held: dict[Path, set[str]] = defaultdict(set)
     roots = [root for root in data_dir.glob("*") if root.is_dir() and root.name not in _NO_DATA]
-    for path in (path for root in roots for path in root.rglob(f"*{SUFFIX}")):  # a root may be a link
+    for path in (path for root in roots for path in _files(root)):  # a root may be a link
         folder = path.parent.parent if _DAY.fullmatch(path.parent.name) else path.parent
         held[folder].add(path.relative_to(folder).as_posix())
     offers = {folder.relative_to(data_dir).as_posix(): (folder, files) for folder, files in held.items()}
     ordered = sorted(offers.items(), key=lambda item: (item[0] != DEFAULT_DATA, item[0]))
     found = (one for name, (folder, files) in ordered for one in _of_folder(name, folder, files))
     return list(islice(found, _MAX_DATA_SETS))
+
+
+def _files(root: Path) -> list[Path]:
+    try:
+        return episode_files(root)
+    except InvalidInput as error:  # too large to be one of episodes
+        _log.warning("Not offered to learn from: %s", error)
+        return []
 
 
 def _of_folder(name: str, folder: Path, files: set[str]) -> Iterator[DataSet]:

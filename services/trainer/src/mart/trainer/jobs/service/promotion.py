@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import shutil
 from dataclasses import dataclass
@@ -9,12 +10,14 @@ from pathlib import Path
 
 from google.protobuf.json_format import MessageToJson, Parse, ParseError
 
-from mart.protocol.errors import Conflict, Corrupt, InvalidInput, NotFound
+from mart.protocol.errors import Conflict, InvalidInput, NotFound
 from mart.protocol.messages import Policy
 from mart.runtime.atomic_directory import write_directory_atomically
 from mart.trainer.evaluate.evaluation import Evaluation
 from mart.trainer.jobs.service.serialization import evaluation_message
 from mart.trainer.models.checkpoint import RECORD, WEIGHTS, CheckpointRecord, read_record
+
+_log = logging.getLogger(__name__)
 
 FILE = "policy.json"
 _NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
@@ -53,22 +56,26 @@ def promote(policies_dir: Path, name: str, checkpoint: Path, origin: Origin, now
 
 
 def policies(policies_dir: Path, task: str = "") -> list[Policy]:
-    """Return the policies of this task, or of all tasks, the newest first."""
-    found = [_read(path) for path in policies_dir.glob(f"*/{FILE}")]
+    """Return the policies of this task, or of all tasks, the newest first.
+
+    One whose record is damaged is left out, and a warning says so; `withdraw` removes it too.
+    """
+    found = filter(None, map(_read, policies_dir.glob(f"*/{FILE}")))
     chosen = [policy for policy in found if task in ("", policy.task)]
     return sorted(chosen, key=lambda policy: policy.promoted_ns, reverse=True)
 
 
 def withdraw(policies_dir: Path, name: str) -> Policy:
     """Remove a policy and return it; a seat that it drives already goes on. Raises NotFound."""
-    known = {policy.name: policy for policy in policies(policies_dir)}
+    known = {path.parent.name: path for path in policies_dir.glob(f"*/{FILE}")}
     if name not in known:
         raise NotFound.named("policy", name, known)
+    removed = _read(known[name]) or Policy(name=name)
     gone = policies_dir / f".{name}.withdrawn"
     shutil.rmtree(gone, ignore_errors=True)
     (policies_dir / name).rename(gone)
     shutil.rmtree(gone)
-    return known[name]
+    return removed
 
 
 def _policy(name: str, record: CheckpointRecord, job: str, now_ns: int) -> Policy:
@@ -87,8 +94,11 @@ def _policy(name: str, record: CheckpointRecord, job: str, now_ns: int) -> Polic
     )
 
 
-def _read(path: Path) -> Policy:
+def _read(path: Path) -> Policy | None:
+    """Return what a record says; None where it cannot be read."""
     try:
-        return Parse(path.read_bytes(), Policy())
-    except ParseError as error:
-        raise Corrupt(f"{path} cannot be read; withdraw the folder by hand and promote again.") from error
+        policy = Parse(path.read_bytes(), Policy())
+    except (OSError, ParseError, ValueError, RecursionError) as error:
+        _log.warning("%s cannot be read (%s); withdraw the policy and promote it again.", path, error)
+        return None
+    return policy if policy.task else None

@@ -8,25 +8,20 @@ from collections.abc import Iterator
 
 from mart.protocol import clock, keys
 from mart.protocol.errors import Conflict
-from mart.protocol.messages import TrainerReply, TrainerRequest
-from mart.protocol.queryables import TRAINING
 from mart.protocol.vocabulary import ServiceKind
-from mart.runtime.bus import Request
 from mart.runtime.service import announced, connected
-from mart.runtime.serving import BoundedInbox, RequestAnswerer
 from mart.trainer.jobs.executors.executor import Executor, JobEnded, OnEnded
 from mart.trainer.jobs.executors.local import LocalExecutor
 from mart.trainer.jobs.executors.ray import RayExecutor
 from mart.trainer.jobs.queue import JobQueue
 from mart.trainer.jobs.service.handlers import TrainerHandlers
+from mart.trainer.jobs.service.request_server import Inbox, RequestServer
 from mart.trainer.jobs.service.settings import TrainerSettings
 from mart.trainer.jobs.service.videos import Videos
 from mart.trainer.jobs.table import JobTable
 
 _MAX_WAITING = 256
 _LONGEST_WAIT_S = 0.5  # so that a stop is noticed, and a cluster that is back
-
-Inbox = BoundedInbox[Request | JobEnded]
 
 
 def serve_trainer(settings: TrainerSettings) -> None:
@@ -42,22 +37,19 @@ def serve_trainer(settings: TrainerSettings) -> None:
         handlers = TrainerHandlers(
             settings, table, jobs, videos, executors=list(executors), now_ns=clock.wall_ns
         )
+        server = stack.enter_context(contextlib.closing(RequestServer(handlers, inbox)))
         topic = keys.training(settings.trainer)
         stack.enter_context(contextlib.closing(service.bus.serve(topic, inbox.put)))
         stack.enter_context(announced(service))
-        answerer = trainer_answerer(handlers)
         while not service.stop.is_set():
             jobs.advance(clock.wall_ns())
             item = inbox.take(_LONGEST_WAIT_S)
             if isinstance(item, JobEnded):
                 jobs.end(item, clock.wall_ns())
+            elif callable(item):
+                item()
             elif item is not None:
-                answerer.respond(item)
-
-
-def trainer_answerer(handlers: TrainerHandlers) -> RequestAnswerer[TrainerRequest, TrainerReply]:
-    """Return what answers encoded requests with `handlers`."""
-    return RequestAnswerer(TRAINING, handlers.handle)
+                server.take(item)
 
 
 @contextlib.contextmanager

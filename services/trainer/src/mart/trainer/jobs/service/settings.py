@@ -7,6 +7,7 @@ from pathlib import Path
 from pydantic import Field
 
 from mart.runtime.settings import Settings
+from mart.trainer.jobs.service.data_folders import DataFolders
 
 
 class TrainerSettings(Settings):
@@ -17,6 +18,9 @@ class TrainerSettings(Settings):
     ray: str = Field("", description="Address of the head of a Ray cluster, like 10.0.0.5:6379.")
     replicas: str = Field("", description="Running replicas to judge on; default: each job starts one.")
     device: str = Field("cpu", description="What trains: cpu or cuda.")
+    data_folders: str = Field(
+        "", description="Folders outside the data folder that trainings may learn from, separated by commas."
+    )
 
     @property
     def jobs_path(self) -> Path:
@@ -27,6 +31,11 @@ class TrainerSettings(Settings):
     def policies_dir(self) -> Path:
         """Promoted policies, one folder each, by name."""
         return self.data_dir / "policies"
+
+    @property
+    def allowed_folders(self) -> DataFolders:
+        """The folders that trainings may learn from."""
+        return DataFolders(self.data_dir, map(Path, filter(None, self.data_folders.split(","))))
 
     @property
     def replica_names(self) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fnmatch
 import itertools
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,6 +17,7 @@ from mart.trainer.data.data_spec import DataSetName, Selection
 from mart.trainer.data.named_dataset import WHOLE, find_dataset
 from mart.trainer.evaluate.config import EvaluationSpec
 from mart.trainer.jobs.job import JobSpec
+from mart.trainer.jobs.service.data_folders import episode_files
 from mart.trainer.jobs.service.settings import TrainerSettings
 from mart.trainer.models.architecture import ModelSpec
 from mart.trainer.train.presets import preset
@@ -28,6 +30,8 @@ MAX_EPISODES = 1000
 SCORE_EPISODES = 100
 DEFAULT_DATA = "episodes"
 DEFAULT_PRESET = "fast"
+
+_Data = tuple[DataSetName | None, tuple[Path, ...]]  # a named data set, and the files to learn from
 
 
 def job_specs(submit: TrainerRequest.Submit, settings: TrainerSettings) -> list[JobSpec]:
@@ -42,20 +46,20 @@ def job_specs(submit: TrainerRequest.Submit, settings: TrainerSettings) -> list[
         most = max(order.evaluation_episodes, order.score_episodes)
         raise InvalidInput(f"{most} episodes were given; at most {MAX_EPISODES} judge a checkpoint.")
     groups = _groups(tuple(order.seeds) or (0,), submit.seeds_per_job)
-    found = [
-        _job_spec(model, task, seeds, order, settings)
+    _require_number("jobs", len(submit.tasks) * len(submit.models) * len(groups), MAX_JOBS)
+    folder = settings.allowed_folders.find(order.data or DEFAULT_DATA)
+    preset(order.preset or DEFAULT_PRESET)
+    data = _data_by_task(submit.tasks, folder, order)
+    return [
+        _job_spec(model, task, seeds, order=order, data=data[task], settings=settings)
         for task, model, seeds in itertools.product(submit.tasks, submit.models, groups)
     ]
-    _require_number("jobs", len(found), MAX_JOBS)
-    return found
 
 
 def _job_spec(
-    model: str, task: str, seeds: Sequence[int], order: Order, settings: TrainerSettings
+    model: str, task: str, seeds: Sequence[int], *, order: Order, data: _Data, settings: TrainerSettings
 ) -> JobSpec:
-    preset(order.preset or DEFAULT_PRESET)
-    folder = settings.data_dir / (order.data or DEFAULT_DATA)
-    named, files = _dataset(folder, order.dataset, task) if order.dataset else (None, _files(folder, task))
+    named, files = data
     try:
         training = TrainingSpec(
             model=ModelSpec.parse(model).name,
@@ -78,6 +82,14 @@ def _job_spec(
     return JobSpec(training=training, evaluation=evaluation)
 
 
+def _data_by_task(tasks: Sequence[str], folder: Path, order: Order) -> dict[str, _Data]:
+    """Return what the jobs of each task learn from; raises NotFound where there is nothing."""
+    if order.dataset:
+        return {task: _dataset(folder, order.dataset, task) for task in tasks}
+    held, given = episode_files(folder), order.data or DEFAULT_DATA
+    return {task: (None, _files(held, task, given)) for task in tasks}
+
+
 def _dataset(folder: Path, name: str, task: str) -> tuple[DataSetName, tuple[Path, ...]]:
     """Return a named data set and its files as they are now.
 
@@ -98,17 +110,17 @@ def task_in(name: str) -> str:
     return next((task for task in task_names() if f"-{task}" in name), "")
 
 
-def _files(folder: Path, task: str) -> tuple[Path, ...]:
-    """Return the task's files in a folder, by the names that episode files have.
+def _files(held: Sequence[Path], task: str, given: str) -> tuple[Path, ...]:
+    """Return the task's files among those of a folder, by the names that episode files have.
 
-    Raises NotFound where there is none.
+    Raises NotFound, with the folder as it was given, where there is none.
     """
     name = get_task(task).name
-    folder = folder.resolve()
-    files = tuple(sorted(folder.rglob(f"*-{name}*{SUFFIX}"))) if folder.is_dir() else ()
+    form = f"*-{name}*{SUFFIX}"
+    files = tuple(file for file in held if fnmatch.fnmatchcase(file.name, form))
     if not files:
         raise NotFound(
-            f"There are no episodes of {name} in {folder}; `mart collect --task {name}` records some."
+            f"There are no episodes of {name} in {given!r}; `mart collect --task {name}` records some."
         )
     return files
 
