@@ -22,6 +22,8 @@ declare namespace StatusChannel {
     gripper_set: number;
     holding: boolean;
     barrier: Messages.BarrierPhase;
+    phase: Messages.EpisodePhase | "unspecified";
+    ready: boolean;
     stopped_by: string;
     waiting: { arm: string; since_s: number }[];
     input: Input;

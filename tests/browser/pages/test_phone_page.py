@@ -129,6 +129,17 @@ def test_stop_takes_half_a_second_of_holding(browser: Browser, platform: Platfor
         expect(phone.operator.locator("#state-label")).to_have_text("Practice")
 
 
+def test_an_episode_is_begun_and_discarded_by_the_phone(browser: Browser, platform: Platform) -> None:
+    with paired(browser, platform, xr=True) as phone:
+        phone.start()
+        phone.page.get_by_role("button", name="Ready", exact=True).click()
+        expect(phone.page.locator("#link")).to_contain_text("Recording")
+        phone.is_fine("phone-recording")
+        phone.page.get_by_role("button", name="Discard").click()
+        phone.page.get_by_role("button", name="Press again to discard").click()
+        expect(phone.operator.locator("#state-label")).to_have_text("Discarded")
+
+
 def test_the_gripper_bar_slides_and_taps(browser: Browser, platform: Platform) -> None:
     with paired(browser, platform, xr=True) as phone:
         phone.start()

@@ -12,8 +12,11 @@ from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import (
     BARRIER_PHASE_STALLED,
     CUE_WAIT,
+    EPISODE_PHASE_RECORDING,
     ArmState,
+    Episode,
     RoomStatus,
+    Seat,
     State,
     Waiting,
 )
@@ -43,7 +46,12 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
     state = State(
         tick=182, real_time_factor=0.9987, arms=[ArmState(arm="arm1"), ArmState(arm="arm0", sequence=100)]
     )
-    room = RoomStatus(barrier=BARRIER_PHASE_STALLED, waiting_for=[Waiting(arm="arm1", since_s=0.801)])
+    room = RoomStatus(
+        barrier=BARRIER_PHASE_STALLED,
+        waiting_for=[Waiting(arm="arm1", since_s=0.801)],
+        seats=[Seat(arm="arm1"), Seat(arm="arm0", ready=True)],
+        episode=Episode(phase=EPISODE_PHASE_RECORDING),
+    )
     text = status_channel.tick(state, room, driving(), 10.016, frames_per_s=19.98, latency=LATENCY)
     assert json.loads(text) == {
         "type": "tick",
@@ -55,6 +63,8 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "gripper": 0.25,
         "gripper_set": 1,
         "holding": False,
+        "phase": "recording",
+        "ready": True,
         "barrier": "stalled",
         "stopped_by": "",
         "waiting": [{"arm": "arm1", "since_s": 0.8}],

@@ -33,6 +33,26 @@ async def test_who_stopped_is_told_and_somebody_else_lets_go(enter: Enter, room:
     assert (again.status_code, again.json()["error"]["code"]) == (409, "Conflict")
 
 
+async def test_a_phone_says_that_its_person_is_ready(enter: Enter, room: Room) -> None:
+    ana, phone = await enter("Ana"), await enter()
+    await ana.post(SEAT, json={"operator": "human"})
+    code = (await ana.post(f"{SEAT}/pair")).json()["code"]
+    token = (await phone.post("/api/pair", json={"code": code})).json()["token"]
+    headers = {"Authorization": f"Bearer {token}"}
+    assert (await phone.post(f"{SEAT}/episode", json={"action": "ready"})).status_code == 403
+    assert (
+        await phone.post(f"{SEAT}/episode", json={"action": "success"}, headers=headers)
+    ).status_code == 400
+    assert (await phone.post(f"{SEAT}/episode", json={"action": "ready"}, headers=headers)).status_code == 200
+    assert (await room_of(ana))["episode"]["phase"] == "countdown"
+    assert (
+        await phone.post(f"{SEAT}/episode", json={"action": "unready"}, headers=headers)
+    ).status_code == 200
+    assert (await room_of(ana))["episode"]["phase"] == "practice"
+    early = await phone.post(f"{SEAT}/episode", json={"action": "discard"}, headers=headers)
+    assert (early.status_code, early.json()["error"]["code"]) == (409, "Conflict")
+
+
 async def test_a_phone_stops_and_lets_go_in_the_name_of_its_person(enter: Enter, room: Room) -> None:
     ana, phone, stranger = await enter("Ana"), await enter(), await enter()
     await ana.post(SEAT, json={"operator": "human"})

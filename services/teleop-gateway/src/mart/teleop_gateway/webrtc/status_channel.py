@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from mart.protocol.errors import InvalidInput
-from mart.protocol.messages import Cue, RoomStatus, State, barrier_word, cue_from_word
+from mart.protocol.messages import Cue, RoomStatus, State, barrier_word, cue_from_word, phase_word
 from mart.teleop_gateway.input.driving import Driving, InputDevice, PhoneState
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 
 MAX_CHARACTERS = 1100  # one SCTP packet
 _LARGEST = 2**63 - 1
-_NAME_CHARACTERS = 40
-_REASON_CHARACTERS = 120
+_NAME_CHARACTERS = 24
+_REASON_CHARACTERS = 100
 
 
 @dataclass(frozen=True)
@@ -125,6 +125,8 @@ def tick(
             "gripper": round(driving.gripper, 3),
             "gripper_set": driving.gripper_set,
             "holding": driving.holding,
+            "phase": phase_word(room.episode.phase),
+            "ready": any(seat.ready for seat in room.seats if seat.arm == driving.arm),
             "barrier": barrier_word(room.barrier),
             "stopped_by": room.stop.name[:_NAME_CHARACTERS],
             "waiting": [{"arm": w.arm, "since_s": round(w.since_s, 2)} for w in room.waiting_for],

@@ -96,7 +96,7 @@ async def phone_token(room: str, arm: str, app: App, authorization: Authorizatio
 
     It stays with the user who paired it: its token is renewed while, and whenever, they hold the seat.
     """
-    paired = _claims(app, room, arm, authorization)
+    paired = claims_of(app, room, arm, authorization)
     if paired.role is not Role.PHONE:
         raise Forbidden(f"The token of a {paired.role} was given; only a phone's is renewed here.")
     seat = _seat(app, room, arm)
@@ -109,27 +109,12 @@ async def phone_token(room: str, arm: str, app: App, authorization: Authorizatio
     return {"token": renewed, "epoch": seat.epoch, "ice_servers": _ice_servers(app)}
 
 
-@router.post("/rooms/{room}/seats/{arm}/stop")
-async def stop_by_phone(room: str, arm: str, app: App, authorization: Authorization = "") -> Json:
-    """Stop everything in the room of a phone, until somebody lets go; send its name."""
-    paired = _claims(app, room, arm, authorization)
-    await app.rooms.stop(room, paired.holder_id, _name_of(app, paired))
-    return {"room": room}
-
-
-@router.delete("/rooms/{room}/seats/{arm}/stop")
-async def let_go_of_stop_by_phone(room: str, arm: str, app: App, authorization: Authorization = "") -> Json:
-    """Let everything go on in the room of a phone, whoever stopped it; send its name."""
-    await app.rooms.let_go_of_stop(room, _name_of(app, _claims(app, room, arm, authorization)))
-    return {"room": room}
-
-
 @router.post("/rooms/{room}/seats/{arm}/offer")
 async def offer(
     room: str, arm: str, body: SdpOffer, *, app: App, address: Address, authorization: Authorization = ""
 ) -> Json:
     """Have the seat's gateway answer an offer and send the answer."""
-    seat_token = _claims(app, room, arm, authorization)
+    seat_token = claims_of(app, room, arm, authorization)
     if seat_token.epoch != _seat(app, room, arm).epoch:
         raise Forbidden(
             "This seat has changed hands since you got your token; take a seat in the lobby again."
@@ -148,18 +133,12 @@ def _bearer(authorization: str) -> str:
     return authorization.removeprefix("Bearer ")
 
 
-def _claims(app: AppState, room: str, arm: str, authorization: str) -> SeatToken:
-    """What the sent token says; raises Forbidden where it is not good for this seat."""
+def claims_of(app: AppState, room: str, arm: str, authorization: str) -> SeatToken:
+    """Return what the sent token says; raises Forbidden where it is not good for this seat."""
     claims = verify(_bearer(authorization), app.secret)
     if (claims.room, claims.arm) != (room, arm):
         raise Forbidden(f"This seat token is for {claims.arm} in {claims.room}, not for {arm} in {room}.")
     return claims
-
-
-def _name_of(app: AppState, paired: SeatToken) -> str:
-    """Return what others call whoever holds this token."""
-    seat = _seat(app, paired.room, paired.arm)
-    return seat.name if seat.holder_id == paired.holder_id and seat.name else "A phone"
 
 
 def _seat(app: AppState, room: str, arm: str) -> Seat:

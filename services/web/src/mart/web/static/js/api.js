@@ -127,6 +127,13 @@ export const pairPhone = (room, arm) => request("POST", `${seatPath(room, arm)}/
 export const stopByPhone = (room, arm, token) =>
   request("POST", `${seatPath(room, arm)}/stop`, undefined, bearer(token));
 
+/**
+ * Says how an episode goes on, from a paired phone.
+ * @type {(room: string, arm: string, token: string, action: "ready" | "unready" | "discard") => Promise<unknown>}
+ */
+export const actByPhone = (room, arm, token, action) =>
+  request("POST", `${seatPath(room, arm)}/episode`, { action }, bearer(token));
+
 /** Lets everything go on, from a phone. @type {(room: string, arm: string, token: string) => Promise<unknown>} */
 export const letGoByPhone = (room, arm, token) =>
   request("DELETE", `${seatPath(room, arm)}/stop`, undefined, bearer(token));

@@ -1,6 +1,6 @@
 // The phone: a hand that is usable without looking.
 
-import { letGoByPhone, messageOf, phoneToken, redeemPairing, stopByPhone } from "./api.js";
+import { actByPhone, letGoByPhone, messageOf, phoneToken, redeemPairing, stopByPhone } from "./api.js";
 import { armName, theArm } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
@@ -9,6 +9,7 @@ import { IDENTITY } from "./drive/quaternion.js";
 import { everyFrame } from "./drive/ticker.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { ClutchPad, GripperBar, StopButton } from "./phone/controls.js";
+import { EpisodeButton, episodeText } from "./phone/episode-button.js";
 import { keepScreenOn, vibrate, vibrationsFor } from "./phone/feedback.js";
 import { TouchTracker } from "./phone/touch-tracker.js";
 import { Tutorial } from "./phone/tutorial.js";
@@ -18,12 +19,17 @@ import { canTrack, XrTracker } from "./phone/xr.js";
 /** @import { Sample } from "./phone/xr.js" */
 
 const STOP_TOLD_MS = 1000;
+const PROBLEM_MS = 4000;
 const PAIRING_KEY = "mart.pairing";
 const TUTORIAL_DONE_KEY = "mart.coached";
 
 const gripper = new GripperBar(byId("gripper"));
 const clutch = new ClutchPad(byId("hold"), byId("height"), (held) => held && vibrate("engaged"));
 const stop = new StopButton(byId("stop"), byId("stop-text"), { onStop: pressStop, onLetGo: letGoOfStop });
+
+const episode = new EpisodeButton(byId("episode"), (action) =>
+  ask((room, seat, token) => actByPhone(room, seat, token, action)),
+);
 
 /** @type {XrTracker | TouchTracker | null} */
 let tracker = null;
@@ -37,7 +43,8 @@ let arm = "";
 /** @type {Api.PairedPhone | null} */
 let paired = null;
 let stopPressedMs = -Infinity;
-let problem = ""; // of the stop button's last press
+let problem = ""; // of the last press of a button
+let problemUntilMs = 0;
 
 begin();
 
@@ -195,6 +202,7 @@ async function ask(request) {
     if (paired) await request(paired.room, paired.arm, paired.token);
   } catch (error) {
     problem = messageOf(error);
+    problemUntilMs = performance.now() + PROBLEM_MS;
   }
 }
 
@@ -237,7 +245,8 @@ function showLink(link) {
   const live = link.state === LinkState.LIVE && status !== null;
   const stopped = live && status?.barrier === "stopped";
   if (live) stop.update(stopped);
-  if (!stopped && performance.now() - stopPressedMs > STOP_TOLD_MS) problem = "";
+  episode.update(live ? status : null);
+  if (performance.now() > problemUntilMs) problem = "";
   byId("app").classList.toggle("stopped", stopped);
   setText(byId("link"), problem || linkText(link));
   setText(byId("hold-text"), holdText(live));
@@ -265,13 +274,13 @@ function linkText(link) {
 }
 
 /** @param {StatusChannel.Tick} tick */
-function statusText({ barrier, input, waiting, latency, stopped_by: stoppedBy }) {
-  if (barrier === "stopped") return stoppedBy ? `Stopped by ${stoppedBy}` : "Everything is stopped";
-  if (input !== "phone") return "The keyboard drives";
-  const other = waiting.find((one) => one.arm !== arm);
+function statusText(tick) {
+  if (tick.barrier === "stopped") return tick.stopped_by ? `Stopped by ${tick.stopped_by}` : "Everything is stopped";
+  if (tick.input !== "phone") return "The keyboard drives";
+  const other = tick.waiting.find((one) => one.arm !== arm);
   if (other) return `Waiting for ${theArm(other.arm)}`;
-  const delay = latency ? `${Math.round(latency.p50_ms)} ms` : "connected";
-  return tracker ? `${delay}, ${trackingText()}` : `${delay}. Press Start to drive.`;
+  const delay = tick.latency ? `${Math.round(tick.latency.p50_ms)} ms` : "connected";
+  return `${episodeText(tick)}${delay}${tracker ? `, ${trackingText()}` : ". Press Start to drive."}`;
 }
 
 function trackingText() {
