@@ -84,6 +84,10 @@ bench: $(addprefix bench-,$(BENCHMARKS)) ## Run every benchmark; results go to b
 bench-%: $(VENV)/.tools ## Run one benchmark, for example bench-barrier
 	@$(BIN)/python benchmarks/$(subst -,_,$*).py
 
+.PHONY: chaos
+chaos: $(VENV)/.tools ## Try every fault once and write the table of docs/reliability.md: about half an hour on a quiet machine
+	@$(BIN)/python -m tools.chaos
+
 .PHONY: docs
 docs: $(VENV)/.tools ## Build the documentation site into build/site; every warning is an error
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
 
+from mart.runtime import steady_libm
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.ports import free_port
 from tests.support import processes
@@ -17,12 +19,23 @@ _FOLDERS = ("contract", "system", "browser", "compose")
 _KINDS = ("unit", *_FOLDERS)  # a broken unit explains a broken session, so units run first
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
+    _begin_anew(config)
     # How long one example takes says more about the machine than about the code.
     settings.register_profile("mart", deadline=None)
     settings.load_profile("mart")
     for name in [name for name in os.environ if name.startswith("MART_")]:
         del os.environ[name]
+
+
+def _begin_anew(config: pytest.Config) -> None:
+    """Compute as services do, whose mathematics is the same on every processor: tests compare worlds with theirs."""
+    environment = steady_libm.steady_environment(os.environ)
+    if environment is not None:
+        capture = config.pluginmanager.getplugin("capturemanager")
+        if capture is not None:
+            capture.stop_global_capturing()
+        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
 
 
 @pytest.hookimpl(tryfirst=True)  # before `-m` chooses

@@ -18,7 +18,7 @@ from tests.recorder import synthetic
 
 
 def by_toy_replica(file: EpisodeFile, room: RoomRecord) -> VerificationRecord:
-    return verify(file, room, synthetic.resimulate)
+    return verify(file, room, synthetic.ToyReplica())
 
 
 def write_part(

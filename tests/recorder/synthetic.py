@@ -25,6 +25,7 @@ from mart.protocol.messages import (
     EpisodePhase,
     Event,
     Model,
+    Numerics,
     Outcome,
     PoseMessage,
     RolloutReply,
@@ -32,6 +33,7 @@ from mart.protocol.messages import (
     RoomStatus,
     Seat,
     State,
+    StateDifference,
     TickStamps,
 )
 
@@ -43,9 +45,11 @@ PERIOD_NS = 50_000_000
 RESET = b"reset".ljust(64)  # as long as every state after it
 START_NS = 1_790_000_000_000_000_000  # 2026-09-21, UTC
 MJB = bytes(range(256)) * 40
+NUMERICS = Numerics(processor="toy", libm="toy 1.0", mujoco_build="4.0.0 toy", fingerprint="aa")
 MODEL = Model(
-    sha256=sha256(MJB).hexdigest(), mjb=MJB, task=TASK, control_hz=20.0, arms=ARMS, mujoco_version="4.0.0"
-)
+    sha256=sha256(MJB).hexdigest(), mjb=MJB, task=TASK, control_hz=20.0, arms=ARMS, mujoco_version="4.0.0",
+    numerics=NUMERICS,
+)  # fmt: skip
 
 
 def wall_ns(tick: int) -> int:
@@ -79,9 +83,48 @@ def resimulate(request: RolloutRequest.Resimulate) -> bytes:
     return digests
 
 
+class ToyReplica:
+    """A replica of the toy world on a processor of this fingerprint, with another where it steps natively.
+
+    What is recorded on a processor of `follows` follows bit for bit; else it differs from the second tick on, by
+    `differs_by` in one tick.
+    """
+
+    def __init__(
+        self,
+        fingerprint: str = "aa",
+        native: str = "bb",
+        follows: tuple[str, ...] = ("aa", "bb"),
+        differs_by: float = 1e-9,
+    ) -> None:
+        self._fingerprints = {False: fingerprint, True: native}
+        self._follows, self._differs_by = follows, differs_by
+
+    def __call__(self, request: RolloutRequest) -> RolloutReply:
+        asked = request.compare_ticks if request.HasField("compare_ticks") else request.resimulate
+        fingerprint = self._fingerprints[asked.native]
+        reply = RolloutReply(numerics=Numerics(processor="toy", fingerprint=fingerprint))
+        if isinstance(asked, RolloutRequest.CompareTicks):
+            reply.differences.extend(self._differences(asked, fingerprint))
+        else:
+            digests = resimulate(asked)
+            reply.state_digests = (
+                digests if fingerprint in self._follows else digests[:16] + bytes(len(digests) - 16)
+            )
+        return reply
+
+    def _differences(self, asked: RolloutRequest.CompareTicks, fingerprint: str) -> Iterator[StateDifference]:
+        actions = np.frombuffer(asked.actions, "<f8").reshape(-1, asked.arms, 7)
+        states = [asked.states[i : i + 64] for i in range(0, len(asked.states), 64)]
+        differ = [float(step(a, done) != b) for a, b, done in zip(states, states[1:], actions, strict=False)]
+        if fingerprint not in self._follows:
+            differ = [self._differs_by + one for one in differ]
+        for group in ("positions", "velocities", "warm_start"):
+            yield StateDifference(group=group, largest=max(differ), transition=int(np.argmax(differ)))
+
+
 def rollout_reply(payload: bytes) -> bytes:
-    request = codec.decode(RolloutRequest, payload)
-    return codec.encode(RolloutReply(state_digests=resimulate(request.resimulate)))
+    return codec.encode(ToyReplica()(codec.decode(RolloutRequest, payload)))
 
 
 def states(

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import click
 import pytest
+from click.testing import CliRunner
 
 from mart.protocol.errors import Conflict
 from mart.runtime import cli
@@ -23,6 +24,34 @@ def test_an_unknown_command_is_one_line_and_a_bad_exit_code(
     assert captured.out == ""
     assert captured.err.startswith("mart: No such command 'teleport'")
     assert captured.err.count("\n") == 1
+    assert run(monkeypatch, "rnu") != 0
+    assert "Did you mean 'run'?" in capsys.readouterr().err
+
+
+def test_commands_are_listed_by_what_they_are_for_and_none_is_left_out() -> None:
+    told = CliRunner().invoke(cli.cli, ["--help"]).output
+    titles = [line for line in told.splitlines() if line.endswith(":") and not line.startswith(" ")]
+    assert titles == [
+        "Options:",
+        "A session:",
+        "Episodes:",
+        "Policies:",
+        "Services, which `mart run` starts:",
+    ]
+    for name in cli.cli.list_commands(click.Context(cli.cli)):
+        assert f"\n  {name} " in told
+
+
+def test_what_the_system_refuses_is_a_sentence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    @click.command()
+    def write() -> None:
+        raise OSError(28, "No space left on device", "data/run")
+
+    monkeypatch.setattr(cli.cli, "get_command", lambda ctx, name: write)
+    assert run(monkeypatch, "write") == 1
+    assert capsys.readouterr().err == "mart: data/run: No space left on device.\n"
 
 
 def test_an_error_on_purpose_is_its_sentence(

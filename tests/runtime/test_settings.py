@@ -25,3 +25,17 @@ def test_a_value_that_is_not_allowed_is_named(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setenv("MART_RATE_HZ", "fast")
     with pytest.raises(InvalidInput, match=r"'fast' was given.*MART_RATE_HZ"):
         RateSettings()
+
+
+@pytest.mark.parametrize(
+    "given", ["", "lab", "tcp/lab", "tcp/lab:", "tcp/lab:99999", "tcp/lab:0", "http://lab:7447"]
+)
+def test_a_router_that_cannot_be_one_is_named(monkeypatch: pytest.MonkeyPatch, given: str) -> None:
+    monkeypatch.setenv("MART_ROUTER", given)
+    with pytest.raises(InvalidInput, match="tcp/HOST:PORT"):
+        Settings()
+
+
+def test_routers_may_be_other_than_tcp() -> None:
+    for given in ("tls/lab.org:7447", "tcp/[::1]:7447", "unixsock-stream//run/mart.sock"):
+        assert Settings(router=given).router == given

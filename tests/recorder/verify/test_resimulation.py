@@ -15,15 +15,19 @@ from mart.protocol.keys import alive, rollout
 from mart.protocol.messages import Error, RolloutReply, RolloutRequest, State
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.vocabulary import ServiceKind, Verdict
-from mart.recorder.verify.resimulation import compare, replica, stretches, verify
+from mart.recorder.verify.replica import AskReplica, replica
+from mart.recorder.verify.resimulation import compare, verify
+from mart.recorder.verify.stretches import stretches
 from mart.runtime.bus.memory import MemoryNetwork
 from tests.recorder import synthetic
 from tests.recorder.files import write_part
 from tests.support.deaf_bus import DeafBus
 
-_ROOM = RoomRecord(
+_BEFORE_FINGERPRINTS = RoomRecord(
     room=synthetic.ROOM, task=synthetic.TASK, control_hz=20.0, model_sha256=synthetic.MODEL.sha256
 )
+_REPLICA = synthetic.ToyReplica()
+_ROOM = _BEFORE_FINGERPRINTS.with_numerics(synthetic.NUMERICS)
 
 
 def recorded(root: Path, states: list[State]) -> EpisodeFile:
@@ -33,8 +37,10 @@ def recorded(root: Path, states: list[State]) -> EpisodeFile:
     return EpisodeFile(file.path, {})
 
 
-def verdict(root: Path, states: list[State], room: RoomRecord = _ROOM) -> VerificationRecord:
-    return verify(recorded(root, states), room, synthetic.resimulate)
+def verdict(
+    root: Path, states: list[State], room: RoomRecord = _ROOM, ask: AskReplica = _REPLICA
+) -> VerificationRecord:
+    return verify(recorded(root, states), room, ask)
 
 
 def test_an_episode_follows_bit_for_bit(tmp_path: Path) -> None:
@@ -49,7 +55,10 @@ def test_one_bit_is_enough_to_differ(tmp_path: Path) -> None:
     world[-1] ^= 1
     states[17].integration_state = bytes(world)
     said = verdict(tmp_path, states)
-    assert (said.verdict, said.detail) == (Verdict.DIVERGED, "Re-simulation differs from tick 17 on.")
+    assert said.verdict is Verdict.DIVERGED
+    assert said.detail.startswith("Re-simulation differs from tick 17 on.")
+    assert (said.first_different_tick, said.within_tolerance) == (17, False)
+    assert said.largest_difference == {"positions": 1.0, "velocities": 1.0, "warm_start": 1.0}
 
 
 def test_an_action_that_was_not_applied_differs(tmp_path: Path) -> None:
@@ -63,9 +72,63 @@ def test_a_model_with_one_spoilt_bit_is_never_verified(tmp_path: Path) -> None:
     data = bytearray(file.path.read_bytes())
     data[data.index(synthetic.MJB)] ^= 1
     file.path.write_bytes(data)
-    said = verify(file, _ROOM, synthetic.resimulate)
+    said = verify(file, _ROOM, synthetic.ToyReplica())
     assert said.verdict is Verdict.UNVERIFIED
     assert "model.mjb" in said.detail
+
+
+def on(fingerprint: str, native: str, differs_by: float = 1e-9) -> synthetic.ToyReplica:
+    """A replica on a processor where nothing follows that was recorded on another."""
+    return synthetic.ToyReplica(fingerprint, native, ("aa",), differs_by)
+
+
+def test_on_another_processor_it_is_unverified_with_the_difference(tmp_path: Path) -> None:
+    said = verdict(tmp_path, synthetic.states(30), ask=on("cc", "dd"))
+    assert (said.verdict, said.pending) == (Verdict.UNVERIFIED, False)
+    assert said.detail.startswith(
+        "Other processor: recorded on toy, toy 1.0, MuJoCo 4.0.0 toy (fingerprint aa)."
+    )
+    assert (said.first_different_tick, said.within_tolerance, said.numeric_fingerprint) == (2, True, "cc")
+    assert said.largest_difference["positions"] == 1e-9
+
+
+def test_a_spoilt_state_on_another_processor_is_no_divergence_and_out_of_tolerance(tmp_path: Path) -> None:
+    states = synthetic.states(30)
+    states[9].integration_state = bytes(64)
+    said = verdict(tmp_path, states, ask=on("cc", "dd"))
+    assert (said.verdict, said.within_tolerance) == (Verdict.UNVERIFIED, False)
+
+
+@pytest.mark.parametrize("ask", [on("cc", "aa"), on("aa", "cc")], ids=["natively", "as services compute"])
+@pytest.mark.parametrize("room", [_ROOM, _BEFORE_FINGERPRINTS], ids=["with", "before"])
+def test_what_follows_in_one_of_two_ways_is_verified(
+    tmp_path: Path, room: RoomRecord, ask: synthetic.ToyReplica
+) -> None:
+    said = verdict(tmp_path, synthetic.states(30), room, ask)
+    assert (said.verdict, said.detail) == (Verdict.VERIFIED, "30 ticks re-simulated bit for bit.")
+    assert said.numeric_fingerprint == "aa"
+
+
+def test_what_differs_natively_on_its_own_processor_diverged(tmp_path: Path) -> None:
+    states = synthetic.states(30)
+    states[9].integration_state = bytes(64)
+    said = verdict(tmp_path, states, ask=on("cc", "aa"))
+    assert (said.verdict, said.first_different_tick) == (Verdict.DIVERGED, 9)
+
+
+@pytest.mark.parametrize(("differs_by", "expected"), [(1e-9, Verdict.UNVERIFIED), (1.0, Verdict.DIVERGED)])
+def test_a_file_from_before_fingerprints_is_judged_by_its_size(
+    tmp_path: Path, differs_by: float, expected: Verdict
+) -> None:
+    said = verdict(tmp_path, synthetic.states(30), _BEFORE_FINGERPRINTS, on("cc", "dd", differs_by))
+    assert said.verdict is expected
+    assert said.pending is False
+
+
+def test_an_infinite_difference_is_a_verdict_too(tmp_path: Path) -> None:
+    said = verdict(tmp_path, synthetic.states(30), ask=on("cc", "dd", float("inf")))
+    assert (said.verdict, said.within_tolerance) == (Verdict.UNVERIFIED, False)
+    assert VerificationRecord.from_strings(said.to_strings()) == said
 
 
 def test_a_gap_is_said(tmp_path: Path) -> None:
@@ -98,7 +161,7 @@ def test_a_room_that_is_not_known_cannot_be_stepped(tmp_path: Path) -> None:
 def test_every_tick_that_differs_is_listed(tmp_path: Path) -> None:
     states = synthetic.states(10)
     states[4].integration_state = b"elsewhere"
-    (stretch,) = compare(recorded(tmp_path, states), _ROOM, synthetic.resimulate)
+    (stretch,) = compare(recorded(tmp_path, states), _ROOM, synthetic.ToyReplica())
     assert (stretch.first_tick, stretch.last_tick, stretch.different) == (0, 10, (4,))
 
 
@@ -131,6 +194,7 @@ def test_a_replica_that_is_away_leaves_the_file_unverified(tmp_path: Path) -> No
     said = verify(recorded(tmp_path, synthetic.states(30)), _ROOM, ask)
     assert said.verdict is Verdict.UNVERIFIED
     assert "No replica 'replica-1' is up" in said.detail
+    assert said.pending
 
 
 def test_a_replica_of_which_the_router_knows_nothing_for_a_moment_is_awaited(tmp_path: Path) -> None:
@@ -163,11 +227,12 @@ def test_what_a_replica_refuses_is_said(tmp_path: Path) -> None:
     server.announce(alive(ServiceKind.REPLICA, "replica-1"))
     said = verify(recorded(tmp_path, synthetic.states(3)), _ROOM, replica(network.connect(), "replica-1"))
     assert (said.verdict, said.detail) == (Verdict.UNVERIFIED, "Another model is compiled.")
+    assert said.pending is False
 
 
 def test_an_answer_of_the_wrong_length_is_corrupt(tmp_path: Path) -> None:
-    def short(_request: RolloutRequest.Resimulate) -> bytes:
-        return b"short"
+    def short(_request: RolloutRequest) -> RolloutReply:
+        return RolloutReply(state_digests=b"short")
 
     with pytest.raises(Corrupt):
         list(compare(recorded(tmp_path, synthetic.states(3)), _ROOM, short))

@@ -16,6 +16,7 @@ from mart.platform.run.plan import DEFAULT_TASK
 from mart.protocol import clock
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
 from mart.runtime.cli import cli, json_option, print_result
+from mart.runtime.progress import counted, progress
 
 if TYPE_CHECKING:
     from mart.platform.collect.collection import CollectionSpec
@@ -113,7 +114,7 @@ def stop(as_json: bool) -> None:
 def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, as_json: bool) -> None:
     """Record episodes with nobody there: one emulated phone and one real browser per seat, over WebRTC.
 
-    Prints one JSON line per episode, with or without --json.
+    Prints one line per episode: JSON with --json, or where it is piped into something.
     """
     from mart.platform.collect.collection import (
         CollectionSpec,
@@ -123,7 +124,7 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
 
     seated = parse_operators(task, None)
     spec = CollectionSpec(task, episodes, "expert", seed, control_hz, out, seated, browsers=True)
-    _print_collected(spec, collect_episodes(spec), as_json=False)
+    _print_collected(spec, collect_episodes(spec), as_json)
 
 
 @click.command()
@@ -160,8 +161,8 @@ def collect(
 
     Trained policies may sit beside them.
 
-    Prints one JSON line per episode as it is saved and a summary on standard error; with --json the summary is the last
-    line.
+    Prints one line per episode as it is saved, of JSON with --json or where it is piped into something, and a summary
+    on standard error; with --json the summary is the last line.
     """
     from mart.platform.collect.collection import (
         CollectionSpec,
@@ -195,9 +196,9 @@ def rooms(as_json: bool) -> None:
 def doctor(as_json: bool) -> None:
     """Name what is missing or unreachable, layer by layer, and the mend."""
     from mart.platform.inspect.doctor import examine
-    from mart.runtime.settings import Settings
+    from mart.runtime.ice_servers import IceSettings
 
-    findings = list(examine(Settings()))
+    findings = list(examine(IceSettings()))
     lines = [
         f"{'ok ' if f.ok else 'BAD'}  {f.layer:<14} {f.found}{f'  →  {f.mend}' if f.mend else ''}"
         for f in findings
@@ -208,16 +209,22 @@ def doctor(as_json: bool) -> None:
 
 
 def _print_collected(spec: CollectionSpec, episodes: Iterator[CollectedEpisode], as_json: bool) -> None:
-    """Each episode as it is saved, then the summary: for people on standard error, with --json as the last line."""
+    """Each episode as it is saved, then the summary: for people on standard error, with --json as the last line.
+
+    An episode is a line of JSON, and on a terminal without --json a line for people, with a bar below.
+    """
     from mart.platform.collect.summary import CollectionSummary
 
     logging.getLogger("httpx").setLevel(logging.WARNING)
     summary = CollectionSummary(clock.monotonic_s())
-    for episode in episodes:
-        summary.add(episode)
-        line = episode.as_json()
-        click.echo(json.dumps({**line, "path": str(spec.out / line["path"])}))
-        sys.stdout.flush()  # whoever reads a pipe hears of it now
+    for_people = sys.stdout.isatty() and not as_json
+    with progress("Episodes", spec.episodes, as_json=as_json) as shown:
+        for episode in counted(episodes, shown):
+            summary.add(episode)
+            path = str(spec.out / episode.path)
+            shown.say(
+                episode.in_words(path) if for_people else json.dumps({**episode.as_json(), "path": path})
+            )
     told = summary.as_json(clock.monotonic_s())
     if as_json:
         click.echo(json.dumps(told))

@@ -30,7 +30,7 @@ from mart.v1.command_pb2 import (
     Operator,
 )
 from mart.v1.pose_pb2 import Pose as PoseMessage
-from mart.v1.rollout_pb2 import RolloutReply, RolloutRequest, WorldArrays
+from mart.v1.rollout_pb2 import RolloutReply, RolloutRequest, StateDifference, WorldArrays
 from mart.v1.room_pb2 import (
     BARRIER_PHASE_PAUSED,
     BARRIER_PHASE_RUNNING,
@@ -72,7 +72,7 @@ from mart.v1.room_pb2 import (
     Waiting,
 )
 from mart.v1.signal_pb2 import Answer, Offer, OpenSeat, OpenSeatReply
-from mart.v1.state_pb2 import ArmState, Model, Observation, Progress, State, Subtask, TickStamps
+from mart.v1.state_pb2 import ArmState, Model, Numerics, Observation, Progress, State, Subtask, TickStamps
 from mart.v1.trainer_pb2 import (
     JOB_STATE_CANCELLED,
     JOB_STATE_DONE,
@@ -150,6 +150,7 @@ __all__ = [
     "Learned",
     "Model",
     "NamedDataSet",
+    "Numerics",
     "Observation",
     "Offer",
     "OpenSeat",
@@ -174,6 +175,7 @@ __all__ = [
     "SeatRequest",
     "Span",
     "State",
+    "StateDifference",
     "Subtask",
     "SubtaskCount",
     "TickStamps",

@@ -12,20 +12,18 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Self
+from typing import ClassVar
 
 from pydantic import (
-    AfterValidator,
     BaseModel,
     ConfigDict,
     Field,
-    ValidationError,
-    ValidationInfo,
     field_validator,
-    model_validator,
 )
 
 from mart.protocol.errors import Corrupt
+from mart.protocol.messages import Numerics
+from mart.protocol.record import ControlHz, Count, Number, Record, Seed, Tick, UnixNs
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 
 PROFILE = "mart"
@@ -56,55 +54,6 @@ def gripper_topic(arm: str) -> str:
 
 def video_topic(camera: str) -> str:
     return f"/view/{camera}/video"
-
-
-def _within(low: float, high: float) -> AfterValidator:
-    """Bound a number where it is read from a file; what is written is what was measured."""
-
-    def check(value: float, info: ValidationInfo) -> float:
-        if info.context is not None and not low <= value <= high:
-            raise ValueError(f"it must be from {low:g} to {high:g}")
-        return value
-
-    return AfterValidator(check)
-
-
-# What a number of a record may be: what the messages and databases that carry it on can hold.
-Count = Annotated[int, _within(0, 2**32 - 1)]
-Tick = Annotated[int, _within(0, 2**63 - 1)]
-UnixNs = Annotated[int, _within(0, 2**63 - 1)]
-Seed = Annotated[int, _within(0, 2**64 - 1)]
-Number = Annotated[float, _within(-1e15, 1e15)]
-ControlHz = Annotated[float, _within(1e-3, 1e5)]
-
-_MAX_TEXT_CHARACTERS = 4096
-_FROM_FILE: Mapping[str, object] = {}  # that there is a context is all that is asked
-
-
-class Record(BaseModel):
-    """One metadata record: each field is one string in the file."""
-
-    model_config = ConfigDict(frozen=True, allow_inf_nan=False)
-
-    NAME: ClassVar[str]
-
-    def to_strings(self) -> dict[str, str]:
-        return {name: _text(value) for name, value in self if value is not None}
-
-    @classmethod
-    def from_strings(cls, strings: Mapping[str, str]) -> Self:
-        for name, text in strings.items():
-            if len(text) > _MAX_TEXT_CHARACTERS:
-                raise Corrupt(
-                    f"The record {cls.NAME} cannot be read: {name[:64]} has {len(text)} characters, more than "
-                    f"{_MAX_TEXT_CHARACTERS}."
-                )
-        try:
-            return cls.model_validate(dict(strings), context=_FROM_FILE)
-        except ValidationError as error:
-            first = error.errors()[0]
-            where = ".".join(map(str, first["loc"])) or "a value"
-            raise Corrupt(f"The record {cls.NAME} cannot be read: {where}: {first['msg']}.") from error
 
 
 class EpisodeRecord(Record):
@@ -149,7 +98,11 @@ class EpisodeRecord(Record):
 
 
 class RoomRecord(Record):
-    """Tell of what room the file is: written when it is opened, so that a file that was cut short still says it."""
+    """Tell of what room the file is: written when it is opened, so that a file that was cut short still says it.
+
+    processor, libm, mujoco_build, numeric_fingerprint: what the numbers of the process depended on that stepped the
+    room's world; absent before version 0.3.
+    """
 
     NAME = "mart.room"
 
@@ -158,6 +111,26 @@ class RoomRecord(Record):
     control_hz: ControlHz | None = None
     model_sha256: str | None = None
     mujoco_version: str | None = None
+    processor: str | None = None
+    libm: str | None = None
+    mujoco_build: str | None = None
+    numeric_fingerprint: str | None = None
+
+    def with_numerics(self, numerics: Numerics) -> RoomRecord:
+        """Return this record with what a process says of its numbers; what it does not say is absent."""
+        said = {"processor": numerics.processor, "libm": numerics.libm, "mujoco_build": numerics.mujoco_build}
+        fields = said | {"numeric_fingerprint": numerics.fingerprint}
+        return self.model_copy(update={name: value or None for name, value in fields.items()})
+
+    @property
+    def numerics(self) -> Numerics:
+        """What the process said of its numbers; empty where it said nothing."""
+        return Numerics(
+            processor=self.processor or "",
+            libm=self.libm or "",
+            mujoco_build=self.mujoco_build or "",
+            fingerprint=self.numeric_fingerprint or "",
+        )
 
 
 class CadenceRecord(Record):
@@ -180,32 +153,35 @@ class CadenceRecord(Record):
     motion_to_photon_p50_ms: Mapping[str, Number] = Field(default_factory=dict)  # the seat's newest report
     motion_to_photon_p95_ms: Mapping[str, Number] = Field(default_factory=dict)
 
-    _PER_ARM: ClassVar[Mapping[str, str]] = {
+    _MAPS: ClassVar[Mapping[str, str]] = {
         "waited_for_s": "waited_for_{}_s",
         "motion_to_photon_p50_ms": "motion_to_photon_{}_p50_ms",
         "motion_to_photon_p95_ms": "motion_to_photon_{}_p95_ms",
     }
 
-    def to_strings(self) -> dict[str, str]:
-        strings = {name: text for name, text in super().to_strings().items() if name not in self._PER_ARM}
-        for name, key in self._PER_ARM.items():
-            strings |= {key.format(arm): _text(value) for arm, value in getattr(self, name).items()}
-        return strings
-
-    @model_validator(mode="before")
-    @classmethod
-    def _gather(cls, values: dict[str, Any]) -> dict[str, Any]:
-        gathered = {name: _matching(key, values) for name, key in cls._PER_ARM.items()}
-        return values | {name: found for name, found in gathered.items() if found}
-
 
 class VerificationRecord(Record):
+    """What re-simulation said. It covers states and the actions between them, nothing else that the file says.
+
+    pending: whether it could not be had and is tried again; None in files of versions that did not try.
+    numeric_fingerprint: of the process that stepped again. first_different_tick, within_tolerance, largest_difference:
+    where it came to other states; the differences are those one tick ahead of each recorded state, by the parts of the
+    state, in their units.
+    """
+
     NAME = "mart.verification"
 
     verdict: Verdict
     detail: str
     model_sha256: str | None = None
     mujoco_version: str | None = None
+    pending: bool | None = None
+    numeric_fingerprint: str | None = None
+    first_different_tick: Tick | None = None
+    within_tolerance: bool | None = None
+    largest_difference: Mapping[str, Number] = Field(default_factory=dict)
+
+    _MAPS: ClassVar[Mapping[str, str]] = {"largest_difference": "largest_difference_{}"}
 
 
 class Shift(BaseModel):
@@ -267,16 +243,3 @@ def metadata_checksum(strings: Mapping[str, str]) -> str:
     """Return the SHA-256 of what a metadata record says, in hexadecimal digits, whatever the order of its keys."""
     said = json.dumps(sorted(strings.items()), ensure_ascii=True, separators=(",", ":"))
     return hashlib.sha256(said.encode()).hexdigest()
-
-
-def _text(value: object) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return ",".join(value) if isinstance(value, tuple) else str(value)
-
-
-def _matching(key: str, values: Mapping[str, Any]) -> dict[str, Any]:
-    """The values whose names fit `key`, by what stands at its {}."""
-    before, after = key.split("{}")
-    matches = {name: re.fullmatch(f"{before}(.+){after}", name) for name in values}
-    return {match[1]: values[name] for name, match in matches.items() if match}

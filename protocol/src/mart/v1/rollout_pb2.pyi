@@ -9,7 +9,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class RolloutRequest(_message.Message):
-    __slots__ = ("reset", "step", "close", "resimulate", "describe")
+    __slots__ = ("reset", "step", "close", "resimulate", "describe", "compare_ticks")
     class Reset(_message.Message):
         __slots__ = ("task", "control_hz", "arms", "seeds", "integration_states")
         TASK_FIELD_NUMBER: _ClassVar[int]
@@ -40,20 +40,39 @@ class RolloutRequest(_message.Message):
         session: str
         def __init__(self, session: _Optional[str] = ...) -> None: ...
     class Resimulate(_message.Message):
-        __slots__ = ("model_sha256", "task", "control_hz", "arms", "first_state", "actions")
+        __slots__ = ("model_sha256", "task", "control_hz", "arms", "first_state", "actions", "native")
         MODEL_SHA256_FIELD_NUMBER: _ClassVar[int]
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
         ARMS_FIELD_NUMBER: _ClassVar[int]
         FIRST_STATE_FIELD_NUMBER: _ClassVar[int]
         ACTIONS_FIELD_NUMBER: _ClassVar[int]
+        NATIVE_FIELD_NUMBER: _ClassVar[int]
         model_sha256: str
         task: str
         control_hz: float
         arms: int
         first_state: bytes
         actions: bytes
-        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., first_state: _Optional[bytes] = ..., actions: _Optional[bytes] = ...) -> None: ...
+        native: bool
+        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., first_state: _Optional[bytes] = ..., actions: _Optional[bytes] = ..., native: _Optional[bool] = ...) -> None: ...
+    class CompareTicks(_message.Message):
+        __slots__ = ("model_sha256", "task", "control_hz", "arms", "states", "actions", "native")
+        MODEL_SHA256_FIELD_NUMBER: _ClassVar[int]
+        TASK_FIELD_NUMBER: _ClassVar[int]
+        CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
+        ARMS_FIELD_NUMBER: _ClassVar[int]
+        STATES_FIELD_NUMBER: _ClassVar[int]
+        ACTIONS_FIELD_NUMBER: _ClassVar[int]
+        NATIVE_FIELD_NUMBER: _ClassVar[int]
+        model_sha256: str
+        task: str
+        control_hz: float
+        arms: int
+        states: bytes
+        actions: bytes
+        native: bool
+        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., states: _Optional[bytes] = ..., actions: _Optional[bytes] = ..., native: _Optional[bool] = ...) -> None: ...
     class Describe(_message.Message):
         __slots__ = ("task", "control_hz", "arms")
         TASK_FIELD_NUMBER: _ClassVar[int]
@@ -68,12 +87,24 @@ class RolloutRequest(_message.Message):
     CLOSE_FIELD_NUMBER: _ClassVar[int]
     RESIMULATE_FIELD_NUMBER: _ClassVar[int]
     DESCRIBE_FIELD_NUMBER: _ClassVar[int]
+    COMPARE_TICKS_FIELD_NUMBER: _ClassVar[int]
     reset: RolloutRequest.Reset
     step: RolloutRequest.Step
     close: RolloutRequest.Close
     resimulate: RolloutRequest.Resimulate
     describe: RolloutRequest.Describe
-    def __init__(self, reset: _Optional[_Union[RolloutRequest.Reset, _Mapping]] = ..., step: _Optional[_Union[RolloutRequest.Step, _Mapping]] = ..., close: _Optional[_Union[RolloutRequest.Close, _Mapping]] = ..., resimulate: _Optional[_Union[RolloutRequest.Resimulate, _Mapping]] = ..., describe: _Optional[_Union[RolloutRequest.Describe, _Mapping]] = ...) -> None: ...
+    compare_ticks: RolloutRequest.CompareTicks
+    def __init__(self, reset: _Optional[_Union[RolloutRequest.Reset, _Mapping]] = ..., step: _Optional[_Union[RolloutRequest.Step, _Mapping]] = ..., close: _Optional[_Union[RolloutRequest.Close, _Mapping]] = ..., resimulate: _Optional[_Union[RolloutRequest.Resimulate, _Mapping]] = ..., describe: _Optional[_Union[RolloutRequest.Describe, _Mapping]] = ..., compare_ticks: _Optional[_Union[RolloutRequest.CompareTicks, _Mapping]] = ...) -> None: ...
+
+class StateDifference(_message.Message):
+    __slots__ = ("group", "largest", "transition")
+    GROUP_FIELD_NUMBER: _ClassVar[int]
+    LARGEST_FIELD_NUMBER: _ClassVar[int]
+    TRANSITION_FIELD_NUMBER: _ClassVar[int]
+    group: str
+    largest: float
+    transition: int
+    def __init__(self, group: _Optional[str] = ..., largest: _Optional[float] = ..., transition: _Optional[int] = ...) -> None: ...
 
 class WorldArrays(_message.Message):
     __slots__ = ("observations", "subtasks", "success_ticks", "success", "failed", "sim_time_s", "integration_states")
@@ -94,15 +125,19 @@ class WorldArrays(_message.Message):
     def __init__(self, observations: _Optional[bytes] = ..., subtasks: _Optional[bytes] = ..., success_ticks: _Optional[bytes] = ..., success: _Optional[bytes] = ..., failed: _Optional[_Iterable[str]] = ..., sim_time_s: _Optional[bytes] = ..., integration_states: _Optional[bytes] = ...) -> None: ...
 
 class RolloutReply(_message.Message):
-    __slots__ = ("error", "session", "worlds", "state_digests", "model")
+    __slots__ = ("error", "session", "worlds", "state_digests", "model", "numerics", "differences")
     ERROR_FIELD_NUMBER: _ClassVar[int]
     SESSION_FIELD_NUMBER: _ClassVar[int]
     WORLDS_FIELD_NUMBER: _ClassVar[int]
     STATE_DIGESTS_FIELD_NUMBER: _ClassVar[int]
     MODEL_FIELD_NUMBER: _ClassVar[int]
+    NUMERICS_FIELD_NUMBER: _ClassVar[int]
+    DIFFERENCES_FIELD_NUMBER: _ClassVar[int]
     error: _room_pb2.Error
     session: str
     worlds: WorldArrays
     state_digests: bytes
     model: _state_pb2.Model
-    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., session: _Optional[str] = ..., worlds: _Optional[_Union[WorldArrays, _Mapping]] = ..., state_digests: _Optional[bytes] = ..., model: _Optional[_Union[_state_pb2.Model, _Mapping]] = ...) -> None: ...
+    numerics: _state_pb2.Numerics
+    differences: _containers.RepeatedCompositeFieldContainer[StateDifference]
+    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., session: _Optional[str] = ..., worlds: _Optional[_Union[WorldArrays, _Mapping]] = ..., state_digests: _Optional[bytes] = ..., model: _Optional[_Union[_state_pb2.Model, _Mapping]] = ..., numerics: _Optional[_Union[_state_pb2.Numerics, _Mapping]] = ..., differences: _Optional[_Iterable[_Union[StateDifference, _Mapping]]] = ...) -> None: ...

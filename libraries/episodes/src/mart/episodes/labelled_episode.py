@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from mart.episodes.labels import EpisodeLabels
 from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, MartError
-from mart.protocol.recording import OperatorsRecord, Shift
+from mart.protocol.recording import OperatorsRecord, Shift, VerificationRecord
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 
 _log = logging.getLogger(__name__)
@@ -22,6 +22,7 @@ class LabelledEpisode(BaseModel):
 
     path: below the folder of its labels, as labels name it. file_path: where it lies, as it was asked for.
     outcome, verdict: as labelled, else as recorded. operators: who drove each arm (`human Ana | tick 57: hold`).
+    verification_pending: it is unverified because nobody could step it again yet; the recorder tries until it can.
     ended_by: task, time, operator, absence or room; None where nobody wrote it down. subtasks_done: in the last state.
     missing_commands: how many commands the states name and the file lacks; None where nobody counted.
     error: why the file cannot be used; what else it says is not known then. dropped: nobody shall learn from it.
@@ -39,6 +40,7 @@ class LabelledEpisode(BaseModel):
     arms: tuple[str, ...] = ()
     outcome: str = EpisodeOutcome.UNSPECIFIED.value
     verdict: str = Verdict.UNVERIFIED.value
+    verification_pending: bool = False
     reason: str = ""
     ended_by: str | None = None
     ended_by_name: str | None = None
@@ -89,6 +91,7 @@ class LabelledEpisode(BaseModel):
         changes = {
             "outcome": said.outcome or self.outcome,
             "verdict": said.verdict or self.verdict,
+            "verification_pending": self.verification_pending and said.verdict is None,
             "note": said.note,
             "dropped": said.dropped,
             "datasets": tuple(sorted(said.datasets)),
@@ -115,14 +118,21 @@ def describe(file_path: Path, path: str) -> LabelledEpisode:
 def _facts(file: EpisodeFile) -> dict[str, object]:
     episode, cadence = file.episode, file.cadence
     known = {name: value for name, value in episode if name in LabelledEpisode.model_fields}
+    verification = file.verification
     return (
         known
-        | {"verdict": file.verification.verdict.value, "operators": file.operators.to_strings()}
+        | {"verdict": verification.verdict.value, "verification_pending": is_pending(verification)}
+        | {"operators": file.operators.to_strings()}
         | {"real_time_factor": cadence.real_time_factor}
         | {"missing_ticks": cadence.missing_ticks, "missing_commands": cadence.missing_commands}
         | {"waited_s": cadence.waited_s}
         | {"simulated_s": episode.ticks / episode.control_hz if episode.control_hz else 0.0}
     )
+
+
+def is_pending(verification: VerificationRecord) -> bool:
+    """Whether a verdict is still to be had; files of versions that did not say so are tried once more."""
+    return verification.verdict is Verdict.UNVERIFIED and verification.pending is not False
 
 
 def _size_of(path: Path) -> int:

@@ -32,7 +32,7 @@ class EpisodeWriter:
         path.parent.mkdir(parents=True, exist_ok=True)
         self.path = path
         self.messages = 0
-        self.described = False
+        self.description: RoomRecord | None = None
         self.has_model = False
         opening = path.with_name(f".{path.name}.opening")  # a repair must not find it before it is locked
         self._file = opening.open("wb")
@@ -56,9 +56,10 @@ class EpisodeWriter:
         self.messages += 1
 
     def describe(self, record: RoomRecord) -> None:
-        """Say of what room this file is, once that is known."""
-        self.described = True
-        self.add_record(record.NAME, record.to_strings())
+        """Say of what room this file is, once that is known, and again once more is known: the last word holds."""
+        if record != self.description:
+            self.description = record
+            self.add_record(record.NAME, record.to_strings())
 
     def attach_model(self, model: Model, now_ns: int) -> None:
         """Attach the compiled MuJoCo model. now_ns: Unix time."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Protocol
 
 import mujoco
@@ -36,10 +37,18 @@ def open_context(
         _filter_textures_cheaply(uploaded)
     except Exception as error:  # MuJoCo, PyOpenGL and EGL have no error class in common
         raise Unavailable(
-            f"Nothing can be drawn on this machine ({type(error).__name__}: {error}). Drawing needs PyOpenGL, "
-            "which comes with mart-render, and the system's libegl1, libgles2 and libgl1-mesa-dri; see `mart doctor`."
+            f"Nothing can be drawn on this machine ({type(error).__name__}: {error}). {_mend()} See `mart doctor`."
         ) from error
     return context, uploaded
+
+
+def _mend() -> str:
+    device = os.environ.get("MUJOCO_EGL_DEVICE_ID")
+    if device is not None:
+        return (
+            f"MUJOCO_EGL_DEVICE_ID={device} names the device to draw on: unset it, or name one that is there."
+        )
+    return "Drawing needs PyOpenGL, which comes with mart-render, and libegl1, libgles2 and libgl1-mesa-dri."
 
 
 def _filter_textures_cheaply(context: mujoco.MjrContext) -> None:

@@ -12,18 +12,34 @@ import signal
 import sys
 import traceback
 from collections.abc import Mapping
+from difflib import get_close_matches
 from importlib.metadata import entry_points
 from typing import Any
 
 import click
 
 from mart.protocol.errors import MartError
+from mart.runtime import steady_libm
 from mart.runtime.stop_signals import stop_signals
 from mart.runtime.supervision import SUPERVISOR_PID, end_with_supervisor
 
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object on standard output."
 )
+
+
+# What commands are for, in the order of a newcomer's needs; of parts that are not installed nothing is shown.
+_PURPOSES = {
+    "A session": ("run", "stop", "doctor", "rooms", "demo"),
+    "Episodes": ("collect", "episodes", "datasets"),
+    "Policies": ("train", "eval", "report", "jobs", "operate"),
+    "Services, which `mart run` starts": (
+        *("router", "sim", "replica", "experts", "gateway", "phone", "recorder", "catalogue", "web"),
+        *("trainer", "policies", "alive"),
+    ),
+}
+_HELP_WIDTH = 64
+_NEAR = 0.6  # of 1: how alike a command must be to be meant
 
 
 class Gathered(click.Group):
@@ -40,6 +56,17 @@ class Gathered(click.Group):
         gathered = (entry.name for entry in entry_points(group=self._entry_group))
         return sorted({*super().list_commands(ctx), *gathered})
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Name the nearest command where there is none of that name."""
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            near = get_close_matches(args[0], self.list_commands(ctx), n=1, cutoff=_NEAR)
+            meant = f"Did you mean {near[0]!r}?" if near else f"{ctx.command_path} --help lists them."
+            raise click.UsageError(f"No such command {args[0]!r}. {meant}", ctx) from error
+
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         for entry in entry_points(group=self._entry_group, name=cmd_name):
             command = entry.load()
@@ -48,8 +75,24 @@ class Gathered(click.Group):
         return super().get_command(ctx, cmd_name)
 
 
+class Grouped(Gathered):
+    """The same with its commands listed by what they are for."""
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write a list for each purpose, and what belongs to none of them last."""
+        left = self.list_commands(ctx)
+        sections = [(title, [name for name in names if name in left]) for title, names in _PURPOSES.items()]
+        known = {name for _, names in sections for name in names}
+        for title, names in (*sections, ("Others", [name for name in left if name not in known])):
+            commands = [(name, self.get_command(ctx, name)) for name in names]
+            rows = [(name, command.get_short_help_str(_HELP_WIDTH)) for name, command in commands if command]
+            if rows:
+                with formatter.section(title):
+                    formatter.write_dl(rows)
+
+
 @click.group(
-    cls=Gathered, entry_group="mart.commands", context_settings={"help_option_names": ["-h", "--help"]}
+    cls=Grouped, entry_group="mart.commands", context_settings={"help_option_names": ["-h", "--help"]}
 )
 @click.version_option(package_name="mart-protocol", prog_name="mart")
 def cli() -> None:
@@ -62,6 +105,7 @@ def print_result(result: Mapping[str, Any], text: str, as_json: bool) -> None:
 
 
 def main() -> None:
+    steady_libm.begin_anew()
     end_with_supervisor()
     # Asked to end by a supervisor or a closed terminal, a command unwinds as on Ctrl-C: what it started is stopped.
     for number in stop_signals():

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
 
 from mart.protocol.errors import InvalidInput
+
+_TCP = re.compile(r"(?:tcp|tls|quic|ws)/(?P<host>.+):(?P<port>\d{1,5})")
+_LOCAL = ("unixsock-stream/", "unixpipe/")
 
 
 class Settings(BaseSettings):
@@ -31,6 +35,14 @@ class Settings(BaseSettings):
             raise InvalidInput(
                 f"MART_{name.upper()} is no JSON; see --help for what it may be, or unset it."
             ) from error
+
+    @field_validator("router")
+    @classmethod
+    def _require_endpoint(cls, given: str) -> str:
+        found = _TCP.fullmatch(given)
+        if not given.startswith(_LOCAL) and (found is None or int(found["port"]) not in range(1, 65_536)):
+            raise ValueError("Write tcp/HOST:PORT, with a port from 1 to 65535")
+        return given
 
     @property
     def episodes_dir(self) -> Path:

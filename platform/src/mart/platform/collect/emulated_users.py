@@ -111,7 +111,7 @@ class EmulatedUsers:
 
 
 def _leave(web_client: WebClient, room: str, arm: str) -> None:
-    with contextlib.suppress(Forbidden):  # handed back meanwhile
+    with contextlib.suppress(Forbidden, Unavailable):  # handed back meanwhile, or the platform has gone
         web_client.leave(room, arm)
 
 

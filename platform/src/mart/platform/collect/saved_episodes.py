@@ -42,6 +42,11 @@ class CollectedEpisode:
         """Whether re-simulation gave the recorded states bit for bit."""
         return self.verdict is Verdict.VERIFIED
 
+    def in_words(self, path: str) -> str:
+        """Return one line for people; `path` is where its file lies."""
+        why = f" ({self.reason})" if self.reason else ""
+        return f"{self.outcome}{why}  {self.simulated_s:.1f} s  {self.verdict}  {path}"
+
     def as_json(self) -> dict[str, Any]:
         """Return what `mart collect` and `mart demo` print of it."""
         worst = max(self.latencies, key=lambda latency: latency.p95_ms, default=None)

@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-import ctypes.util
+import asyncio
 import shutil
 import socket
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from mart.platform.collect.browser import chromium_path
+from mart.platform.run.folder_claim import claim_holder, leftovers_of
 from mart.platform.run.room_statuses import open_rooms
-from mart.protocol import keys
+from mart.protocol import clock, keys
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import barrier_word
 from mart.runtime.bus.zenoh_bus import ZenohBus
-from mart.runtime.settings import Settings
+from mart.runtime.ice_check import check_ice_server
+from mart.runtime.ice_servers import IceServer, IceSettings
 
 _NEEDED_KINDS = ("sim", "replica", "experts", "gateway", "recorder", "catalogue", "web")
+_MISSED_FOR = {"trainer": "train", "policies": "let a policy drive"}  # what people do without
+_PROBE_TIMEOUT_S = 60.0
+_SOFTWARE = ("llvmpipe", "softpipe", "swrast")
 _LEAST_FREE_BYTES = 2 * 1024**3
 
 
@@ -35,11 +42,13 @@ class Diagnosis:
         return asdict(self)
 
 
-def examine(settings: Settings) -> Iterator[Diagnosis]:
+def examine(settings: IceSettings) -> Iterator[Diagnosis]:
     """Examine the layers from the machine upwards; what stands on a missing layer is not looked at."""
     yield _graphics()
     yield _chromium()
     yield _disk(settings.data_dir)
+    yield _platform(settings.data_dir)
+    yield from map(_relay, settings.ice_servers_at(clock.wall_ns() / 1e9))
     router = _router(settings.router)
     yield router
     if router.ok:
@@ -47,14 +56,37 @@ def examine(settings: Settings) -> Iterator[Diagnosis]:
             alive = bus.alive(keys.EVERY_ALIVE)
             for kind in _NEEDED_KINDS:
                 yield _service(kind, alive)
+            for kind, missed in _MISSED_FOR.items():
+                yield _optional(kind, alive, missed)
             for status in open_rooms(bus):
                 yield Diagnosis(f"room {status.room}", True, f"{status.task}, {barrier_word(status.barrier)}")
 
 
 def _graphics() -> Diagnosis:
-    if ctypes.util.find_library("EGL"):
-        return Diagnosis("graphics", True, "EGL is there")
-    return Diagnosis("graphics", False, "no EGL library", "apt-get install libegl1 libgles2 libgl1-mesa-dri")
+    """Open a context as the gateway does, in a process of its own: a driver that dies takes nobody along."""
+    try:
+        asked = subprocess.run(
+            [sys.executable, "-m", "mart.render.probe"],
+            check=False,
+            capture_output=True,
+            text=True,
+            timeout=_PROBE_TIMEOUT_S,
+        )
+    except subprocess.TimeoutExpired:
+        mend = "set MUJOCO_EGL_DEVICE_ID to another device, or update its driver"
+        return Diagnosis("graphics", False, f"no context within {_PROBE_TIMEOUT_S:g} s", mend)
+    told = next(iter(asked.stdout.strip().splitlines()[-1:]), "")
+    if asked.returncode == 0:
+        how = "in software, on the processor" if told.startswith(_SOFTWARE) else "on the graphics card"
+        return Diagnosis("graphics", True, f"{told}, {how}")
+    if "ModuleNotFoundError" in asked.stderr:
+        return Diagnosis("graphics", True, "mart-render is not installed here; pictures are drawn elsewhere")
+    mend = "apt-get install libegl1 libgles2 libgl1-mesa-dri; MUJOCO_EGL_DEVICE_ID names the device, if it is set"
+    return Diagnosis("graphics", False, told or _last_line(asked.stderr), mend)
+
+
+def _last_line(text: str) -> str:
+    return next(iter(text.strip().splitlines()[-1:]), "the driver ended the process that tried it")
 
 
 def _chromium() -> Diagnosis:
@@ -74,6 +106,26 @@ def _disk(data_dir: Path) -> Diagnosis:
     return Diagnosis("disk", False, found, "free some space, or set MART_DATA_DIR to a larger disk")
 
 
+def _platform(data_dir: Path) -> Diagnosis:
+    holder = claim_holder(data_dir / "run")
+    if holder is not None:
+        return Diagnosis("platform", True, f"runs here as {holder.in_words()}")
+    left = leftovers_of(data_dir / "run")
+    if left is not None:
+        found = f"{left.in_words()} was killed, and what it started still runs"
+        return Diagnosis("platform", False, found, "`mart stop` ends it, and so does the next `mart run`")
+    return Diagnosis("platform", True, "none runs with this data folder on this machine")
+
+
+def _relay(server: IceServer) -> Diagnosis:
+    layer = "TURN" if server.is_relay else "STUN"
+    try:
+        return Diagnosis(layer, True, f"{server.url} {asyncio.run(check_ice_server(server))}")
+    except Unavailable as error:
+        mend = "mend the server or MART_ICE_SERVERS; connections on one network do without"
+        return Diagnosis(layer, False, str(error), mend)
+
+
 def _router(endpoint: str) -> Diagnosis:
     host, _, port = endpoint.rpartition("/")[2].rpartition(":")
     try:
@@ -89,3 +141,8 @@ def _service(kind: str, alive: list[str]) -> Diagnosis:
     if ids:
         return Diagnosis(kind, True, ", ".join(ids))
     return Diagnosis(kind, False, "none is running", f"start it with `mart {kind}` and read its log")
+
+
+def _optional(kind: str, alive: list[str], missed: str) -> Diagnosis:
+    found = _service(kind, alive)
+    return found if found.ok else Diagnosis(kind, True, f"none is running; only needed to {missed}")

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,9 +20,10 @@ from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
+from mart.runtime.progress import progress, tracked
 
 if TYPE_CHECKING:
-    from mart.recorder.verify.resimulation import Resimulate
+    from mart.recorder.verify.replica import AskReplica
 
 _path = click.argument("path", type=click.Path(path_type=Path))
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
@@ -84,20 +87,23 @@ def show(path: Path, as_json: bool) -> None:
 @_replica
 @json_option
 def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
-    """Step episodes again in a replica: do they follow bit for bit? The answer is kept as a label."""
-    from mart.episodes import labels
+    """Step episodes again in a replica: do their states follow from their actions bit for bit?
+
+    The answer is kept as a label. It covers states and actions; what else a file says is not part of it.
+    """
     from mart.episodes.folder import episode_files
     from mart.episodes.reader import EpisodeFile
+    from mart.recorder import formatting
     from mart.recorder.verify.resimulation import verify as verify_file
+    from mart.recorder.verify.verdict_label import keep_verdict
 
     found = []
-    with _resimulation(replica) as resimulate:
-        for path in episode_files(_given(paths)):
+    with _resimulation(replica) as ask:
+        for path in tracked(episode_files(_given(paths)), "Verified", as_json=as_json):
             file = EpisodeFile.open(path)
-            said = verify_file(file, file.room, resimulate)
-            if said.verdict is not Verdict.UNVERIFIED:  # a replica that is away takes nothing back
-                labels.say(path, labels.LabelKind.VERDICT, said.verdict.value, clock.wall_ns(), said.detail)
-            found.append({"path": str(path), "verdict": said.verdict.value, "detail": said.detail})
+            said = verify_file(file, file.room, ask)
+            keep_verdict(path, said, clock.wall_ns())
+            found.append(formatting.verified(path, said))
     lines = [f"{entry['path']}: {entry['verdict']}. {entry['detail']}" for entry in found]
     print_result({"episodes": found}, "\n".join(lines) or "There are no episodes.", as_json)
     return 0 if all(entry["verdict"] == Verdict.VERIFIED for entry in found) else 1
@@ -144,11 +150,16 @@ def repair(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     Finished files never change, and what is being recorded, or is not MART's, is left alone.
     """
     from mart.recorder import formatting
-    from mart.recorder.repair.repair import repair_paths
+    from mart.recorder.repair.repair import file_count, repair_paths
     from mart.recorder.verify.resimulation import verify as verify_file
 
-    with _resimulation(replica, wherever_possible=True) as resimulate:
-        repaired = list(repair_paths(_given(paths), lambda file, room: verify_file(file, room, resimulate)))
+    given = _given(paths)
+    with (
+        _resimulation(replica, wherever_possible=True) as ask,
+        progress("Files", file_count(given), as_json=as_json) as shown,
+    ):
+        mended = repair_paths(given, lambda file, room: verify_file(file, room, ask), shown.advance)
+        repaired = list(mended)
     print_result(*formatting.repaired(repaired), as_json)
     return 0 if all(one.saved or one.needless for one in repaired) else 1
 
@@ -212,7 +223,8 @@ def export(
     of_dataset = EpisodeFilter(datasets=(dataset,) if dataset else (), unusable=True)
     listed = of_dataset.apply(list_paths(_given(paths)))
     selection = choose(listed, filter_of(wanted, unusable=False))
-    ticks = write(selection, out)
+    each = partial(tracked, label="Episodes", as_json=as_json)
+    ticks = write(replace(selection, each=each), out)
     count, task = len(selection.episodes), selection.task.name
     result = {"path": str(out), "format": file_format, "task": task, "episodes": count, "ticks": ticks}
     print_result(result, f"{out}: {count} of {len(listed)} episodes of {task}, {ticks} ticks.", as_json)
@@ -228,7 +240,7 @@ def _given(paths: tuple[Path, ...]) -> tuple[Path, ...]:
 
 
 @contextmanager
-def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> Iterator[Resimulate]:
+def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> Iterator[AskReplica]:
     """Ask a replica. Without a router this raises Unavailable: at once, or `wherever_possible` when it is asked."""
     from mart.recorder.verify import resimulation as verification
     from mart.runtime.bus.zenoh_bus import ZenohBus

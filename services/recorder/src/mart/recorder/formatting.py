@@ -11,6 +11,7 @@ from mart.episodes.datasets import NamedDataSet
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, NotFound
+from mart.protocol.recording import VerificationRecord
 from mart.protocol.vocabulary import EpisodeEndedBy
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.repair.repair import RepairResult
@@ -46,6 +47,7 @@ def _cells(path: str, row: LabelledEpisode) -> tuple[str, ...]:
         "repaired": row.repaired,
         "paused": row.interrupted,
         "dropped": row.dropped,
+        "verification pending": row.verification_pending,
     }
     remarks = [ending(row)] if ending(row) else []
     remarks += [word for word, holds in marks.items() if holds] + ([row.note] if row.note else [])
@@ -87,6 +89,20 @@ def _lines(facts: Mapping[str, Any], indent: str) -> list[str]:
         elif value is not None:
             lines.append(f"{indent}{name}: {value}")
     return lines
+
+
+def verified(path: Path, said: VerificationRecord) -> dict[str, Any]:
+    """Return what `verify --json` says of one file; covers: what the verdict is about."""
+    return {
+        "path": str(path),
+        "verdict": said.verdict.value,
+        "detail": said.detail,
+        "covers": "states and actions",
+        "pending": bool(said.pending),
+        "first_different_tick": said.first_different_tick,
+        "within_tolerance": said.within_tolerance,
+        "largest_difference": dict(said.largest_difference),
+    }
 
 
 def replayed(path: Path, stretches: Sequence[ComparedStretch]) -> tuple[dict[str, Any], str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from fractions import Fraction
 from pathlib import Path
@@ -16,16 +16,31 @@ from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.messages import State
-from mart.protocol.recording import STATE
+from mart.protocol.recording import STATE, EpisodeRecord
 from mart.render import Renderer, load_model
 from mart.runtime.atomic_file import PUBLIC, write_atomically
 
 _QUALITY = {"crf": "20", "preset": "veryfast"}  # of x264: no difference to see, about 1 MB a minute
 
 
-def render_episode(path: Path, out: Path, viewpoint: str, width_px: int, height_px: int) -> int:
+def picture_count(path: Path) -> int:
+    """Return how many pictures a video of the whole episode has, as its file says; 0 where it does not say."""
+    file = EpisodeFile.open(path)
+    return file.episode.ticks + 1 if EpisodeRecord.NAME in file.metadata else 0
+
+
+def render_episode(
+    path: Path,
+    out: Path,
+    viewpoint: str,
+    width_px: int,
+    height_px: int,
+    *,
+    on_picture: Callable[[], None] = lambda: None,
+) -> int:
     """Write `out` (MP4, H.264) with one picture for each recorded state, in real time; return how many.
 
+    on_picture: called after each.
     Raises NotFound for an unknown viewpoint, InvalidInput for a size that cannot be, Corrupt where the file does not
     hold what it should.
     """
@@ -37,7 +52,7 @@ def render_episode(path: Path, out: Path, viewpoint: str, width_px: int, height_
         raise Corrupt(f"{path} does not say how many ticks a second has: repair it.")
     video = io.BytesIO()
     with closing(Renderer(_model(file), viewpoint, width_px, height_px)) as renderer:
-        frames = _encode(file, renderer, video, Fraction(control_hz).limit_denominator(1000))
+        frames = _encode(file, renderer, video, Fraction(control_hz).limit_denominator(1000), on_picture)
     write_atomically(out, video.getvalue(), PUBLIC)
     return frames
 
@@ -62,7 +77,13 @@ def _states(file: EpisodeFile) -> Iterator[bytes]:
             yield state.integration_state
 
 
-def _encode(file: EpisodeFile, renderer: Renderer, out: BinaryIO, frames_per_s: Fraction) -> int:
+def _encode(
+    file: EpisodeFile,
+    renderer: Renderer,
+    out: BinaryIO,
+    frames_per_s: Fraction,
+    on_picture: Callable[[], None],
+) -> int:
     frames = 0
     with av.open(out, "w", format="mp4") as container:
         stream = container.add_stream("libx264", rate=frames_per_s, options=_QUALITY)
@@ -70,5 +91,6 @@ def _encode(file: EpisodeFile, renderer: Renderer, out: BinaryIO, frames_per_s: 
         for state in _states(file):
             container.mux(stream.encode(av.VideoFrame.from_ndarray(renderer.draw(state), format="rgb24")))
             frames += 1
+            on_picture()
         container.mux(stream.encode())
     return frames

@@ -56,7 +56,7 @@ def write_lerobot(selection: ExportSelection, path: Path) -> int:
 def _write(selection: ExportSelection, folder: Path) -> int:
     episodes = [
         _frames(read_data(episode, selection.task), selection, number)
-        for number, episode in enumerate(selection.episodes)
+        for number, episode in enumerate(selection.each(selection.episodes))
     ]
     columns = {name: np.concatenate([episode[name] for episode in episodes]) for name in episodes[0]}
     frames = len(columns["index"])

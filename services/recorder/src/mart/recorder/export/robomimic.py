@@ -54,7 +54,7 @@ def key_of(name: str) -> str:
 def _write(file: h5py.File, selection: ExportSelection) -> int:
     data = file.create_group("data")
     total, groups = 0, defaultdict(list)
-    for number, episode in enumerate(selection.episodes):
+    for number, episode in enumerate(selection.each(selection.episodes)):
         demo = f"demo_{number}"
         episode_data = read_data(episode, selection.task)
         _write_demo(data.create_group(demo), episode_data, episode)

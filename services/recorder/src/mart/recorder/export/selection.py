@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,11 +18,15 @@ from mart.protocol.tasks import Task, get_task
 
 @dataclass(frozen=True)
 class ExportSelection:
-    """Hold episodes of one task, one control rate and the same arms, the oldest first."""
+    """Hold episodes of one task, one control rate and the same arms, the oldest first.
+
+    each: how a writer goes through them, for whoever counts along.
+    """
 
     task: Task
     control_hz: float
     episodes: tuple[LabelledEpisode, ...]
+    each: Callable[[Sequence[LabelledEpisode]], Iterable[LabelledEpisode]] = iter
 
 
 def choose(episodes: Iterable[LabelledEpisode], wanted: EpisodeFilter) -> ExportSelection:

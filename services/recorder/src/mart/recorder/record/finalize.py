@@ -84,8 +84,7 @@ def complete(
     recorded: RecordedFacts = RecordedFacts(),
 ) -> SavedEpisode:
     """Complete `file` and give it its name, as `finalize`. recorded: what an earlier file said of the episode."""
-    if not file.described:
-        file.describe(facts.record())
+    file.describe(facts.record())
     file.flush()
     verification = verify(EpisodeFile(file.path, {}), facts.record())
     record, cadence = _as_recorded(recorded.episode, episode.record(facts, repaired)), episode.cadence()
@@ -157,7 +156,7 @@ def describe_room(file: EpisodeWriter, facts: RoomFacts, model: Model | None) ->
     """Write what is known about the room and its model into an open file, once each, as soon as it is known."""
     if model is not None and not file.has_model:
         facts.learn_model(model)
-    if facts.is_complete and not file.described:
+    if facts.is_complete and (file.description is None or (model is not None and not file.has_model)):
         file.describe(facts.record())
-    if model is not None and not file.has_model and file.described:
+    if model is not None and not file.has_model and file.description is not None:
         file.attach_model(model, clock.wall_ns())

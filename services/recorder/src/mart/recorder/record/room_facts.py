@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mart.protocol.messages import Event, Model, RoomStatus, Seat
+from mart.protocol.messages import Event, Model, Numerics, RoomStatus, Seat
 from mart.protocol.recording import RoomRecord
 
 _TASK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
@@ -24,6 +24,7 @@ class RoomFacts:
     control_hz: float | None = None
     model_sha256: str | None = None
     mujoco_version: str | None = None
+    numerics: Numerics = field(default_factory=Numerics)
     names: dict[tuple[str, int], str] = field(default_factory=dict)  # (arm, seat epoch) → who
 
     def learn_status(self, status: RoomStatus) -> None:
@@ -45,12 +46,15 @@ class RoomFacts:
         """Learn which compiled model the room steps, and with which MuJoCo."""
         self._learn_task(model.task, model.control_hz)
         self.model_sha256, self.mujoco_version = model.sha256, model.mujoco_version
+        self.numerics = model.numerics
 
     def learn_record(self, record: RoomRecord) -> None:
         """Learn what the room's record in a file says."""
         self._learn_task(record.task or "", record.control_hz or 0.0)
         self.model_sha256 = record.model_sha256 or self.model_sha256
         self.mujoco_version = record.mujoco_version or self.mujoco_version
+        if record.numeric_fingerprint:
+            self.numerics = record.numerics
 
     @property
     def is_complete(self) -> bool:
@@ -65,7 +69,7 @@ class RoomFacts:
             control_hz=self.control_hz,
             model_sha256=self.model_sha256,
             mujoco_version=self.mujoco_version,
-        )
+        ).with_numerics(self.numerics)
 
     def _learn_task(self, task: str, control_hz: float) -> None:
         if _TASK_NAME.fullmatch(task):  # it becomes part of a file's name

@@ -48,32 +48,47 @@ class RepairResult:
     needless: bool = False
 
 
-def repair_paths(paths: Iterable[Path], verify: VerifyFile) -> Iterator[RepairResult]:
+def repair_paths(
+    paths: Iterable[Path], verify: VerifyFile, on_file: Callable[[], None] = lambda: None
+) -> Iterator[RepairResult]:
     """Repair files, and all that needs it in folders, finished files too. Raises NotFound for a path that is not there.
 
     A file that was named itself has a result in any case, one of a folder only where something is amiss.
+    on_file: called when one of the files that `file_count` counts is done with.
     """
     for path in paths:
         if path.is_dir():
-            yield from repair_all(path, verify)
+            yield from repair_all(path, verify, on_file)
             yield from _one_by_one(
-                files_below(path), lambda file: _repair_finished(file, verify, named=False)
+                files_below(path), lambda file: _repair_finished(file, verify, named=False), on_file
             )
         elif not os.path.lexists(path):
             raise NotFound(f"There is no {path}; name episode files or folders of them.")
         elif path.name.endswith(PART_SUFFIX):
-            yield from _one_by_one([path], lambda part: _repair_part(part, labels.root_of(part), verify))
+            yield from _one_by_one(
+                [path], lambda part: _repair_part(part, labels.root_of(part), verify), on_file
+            )
         else:
-            yield from _one_by_one([path], lambda file: _repair_finished(file, verify, named=True))
+            yield from _one_by_one([path], lambda file: _repair_finished(file, verify, named=True), on_file)
 
 
-def repair_all(root: Path, verify: VerifyFile) -> Iterator[RepairResult]:
+def file_count(paths: Iterable[Path]) -> int:
+    """Return how many files `repair_paths` looks at."""
+    return sum(
+        len(files_below(path)) + len(files_below(path, PART_SUFFIX)) if path.is_dir() else 1 for path in paths
+    )
+
+
+def repair_all(
+    root: Path, verify: VerifyFile, on_file: Callable[[], None] = lambda: None
+) -> Iterator[RepairResult]:
     """Repair every leftover under `root`. Files that a recorder is writing are locked, and left alone."""
     for stale in files_below(root, _MENDING_SUFFIX):
         with _exclusive(stale) as free:
             if free:
                 stale.unlink()
-    yield from _one_by_one(files_below(root, PART_SUFFIX), lambda part: _repair_part(part, root, verify))
+    parts = files_below(root, PART_SUFFIX)
+    yield from _one_by_one(parts, lambda part: _repair_part(part, root, verify), on_file)
 
 
 def damage_of(path: Path) -> str:
@@ -98,7 +113,7 @@ def log_repairs(repairs: Iterable[RepairResult], told: dict[Path, str]) -> Itera
 
 
 def _one_by_one(
-    files: Iterable[Path], repair: Callable[[Path], RepairResult | None]
+    files: Iterable[Path], repair: Callable[[Path], RepairResult | None], on_file: Callable[[], None]
 ) -> Iterator[RepairResult]:
     for file in files:
         try:
@@ -109,6 +124,7 @@ def _one_by_one(
         except Exception as error:  # noqa: BLE001 - logged whole; one file never keeps others from being repaired
             _log.exception("%s could not be repaired", file)
             result = RepairResult(file, None, f"It stays as it is, by a fault of MART's: {error!r}.")
+        on_file()
         if result is not None:
             yield result
 

@@ -1,186 +1,187 @@
 """Tell whether a file's ticks follow from each other: re-simulated by a replica, compared bit for bit.
 
 From the first state on, the applied actions of each tick are stepped again in the same world, and a digest of every
-integration state is compared with the recorded one. A stretch ends where ticks are missing, and after `_STRETCH_TICKS`,
-so that a request stays small; each begins at a recorded state.
+integration state is compared with the recorded one. A stretch ends where ticks are missing, and after some thousand
+ticks; each begins at a recorded state. What else a file says is not covered: who drove, outcome, stamps, pictures.
+
+Numbers depend on processor and C library as well (`Numerics`). Where a re-simulation differs, and was computed with
+others than the recording, it says nothing about the recording: the verdict is `unverified`, with the difference.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
-
-import numpy as np
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from mart.episodes.reader import EpisodeFile
-from mart.protocol import codec, keys
-from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Corrupt, MartError, Unavailable
-from mart.protocol.messages import RolloutReply, RolloutRequest, State, raise_error
-from mart.protocol.received import decode_received
+from mart.protocol.messages import Numerics, RolloutRequest
 from mart.protocol.recording import RoomRecord, VerificationRecord
-from mart.protocol.state_digest import DIGEST_BYTES, state_digest
-from mart.protocol.vocabulary import ServiceKind, Verdict
-from mart.runtime.alive_wait import await_alive
-from mart.runtime.bus import Bus
+from mart.protocol.state_digest import DIGEST_BYTES
+from mart.protocol.vocabulary import Verdict
+from mart.recorder.verify.replica import AskReplica, nobody, replica
+from mart.recorder.verify.stretches import Stretch, stretches
+from mart.recorder.verify.tolerance import Comparison, compare_ticks
 
-_STRETCH_TICKS = 2000
-_TIMEOUT_S = 20.0
-_TIMEOUT_PER_TICK_S = 0.02
-_PATIENCE_S = 5.0
+_FAR = 1e15  # what a record's number may be
 
-Resimulate = Callable[[RolloutRequest.Resimulate], bytes]
+__all__ = ["AskReplica", "ComparedStretch", "Stretch", "compare", "nobody", "replica", "stretches", "verify"]
 
 
-@dataclass
-class Stretch:
-    """Hold ticks without a gap: where they begin and what each one applied and led to."""
-
-    first_tick: int
-    first_state: bytes
-    arms: tuple[str, ...]
-    actions: list[list[float]] = field(default_factory=list)
-    digests: list[bytes] = field(default_factory=list)
-
-    @property
-    def last_tick(self) -> int:
-        """The tick of the last state that was added."""
-        return self.first_tick + len(self.digests)
-
-    def add(self, state: State) -> None:
-        """Add the state that follows."""
-        self.actions.append([number for arm in state.arms for number in arm.action])
-        self.digests.append(state_digest(state.integration_state))
-
-    def request(self, room: RoomRecord) -> RolloutRequest.Resimulate:
-        """Return what a replica is asked. Raises Corrupt where an action is not of seven finite numbers an arm."""
-        shape = (len(self.actions), len(self.arms), ACTION_SIZE)
-        if {len(action) for action in self.actions} - {ACTION_SIZE * len(self.arms)}:
-            raise Corrupt(
-                f"After tick {self.first_tick} an applied action has not {ACTION_SIZE} numbers for each arm."
-            )
-        actions = np.array(self.actions, dtype="<f8").reshape(shape)
-        if not np.isfinite(actions).all():
-            raise Corrupt(f"After tick {self.first_tick} an applied action is not finite.")
-        return RolloutRequest.Resimulate(
-            model_sha256=room.model_sha256 or "",
-            task=room.task or "",
-            control_hz=room.control_hz or 0.0,
-            arms=len(self.arms),
-            first_state=self.first_state,
-            actions=actions.tobytes(),
-        )
-
-
-def stretches(states: Iterator[State], most_ticks: int = _STRETCH_TICKS) -> Iterator[Stretch]:
-    """Cut an episode's states where ticks are missing and where a stretch gets longer than `most_ticks`."""
-    current: Stretch | None = None
-    previous: State | None = None
-    for state in states:
-        arms = tuple(arm.arm for arm in state.arms)
-        if current is not None and previous is not None:
-            follows = state.tick == current.last_tick + 1 and arms == current.arms
-            if not follows or len(current.digests) >= most_ticks:
-                yield current
-                current = _begin(previous) if follows else None
-        if current is None:
-            current = _begin(state)
-        else:
-            current.add(state)
-        previous = state
-    if current is not None:
-        yield current
-
-
-def _begin(state: State) -> Stretch:
-    return Stretch(state.tick, state.integration_state, tuple(arm.arm for arm in state.arms))
-
-
-def verify(file: EpisodeFile, room: RoomRecord, resimulate: Resimulate) -> VerificationRecord:
+def verify(file: EpisodeFile, room: RoomRecord, ask: AskReplica) -> VerificationRecord:
     """Step a file again and return the verdict. Never raises for what it finds: a doubt is a verdict."""
     try:
-        verdict, detail = _judge(file, room, resimulate)
+        return _judge(file, room, ask)
     except MartError as error:
-        verdict, detail = Verdict.UNVERIFIED, str(error)
-    return VerificationRecord(
-        verdict=verdict, detail=detail, model_sha256=room.model_sha256, mujoco_version=room.mujoco_version
-    )
+        return _record(room, Verdict.UNVERIFIED, str(error), pending=isinstance(error, Unavailable))
 
 
 @dataclass(frozen=True)
 class ComparedStretch:
-    """Tell of one stretch that was stepped again which of its ticks led elsewhere."""
+    """Tell of one stretch that was stepped again which of its ticks led elsewhere.
+
+    numerics: of the process that stepped it; empty where nothing had to be stepped.
+    """
 
     first_tick: int
     last_tick: int
     different: tuple[int, ...]
+    numerics: Numerics
 
 
-def compare(file: EpisodeFile, room: RoomRecord, resimulate: Resimulate) -> Iterator[ComparedStretch]:
-    """Step every stretch of a file again. Raises Corrupt, or what the replica says where it cannot answer."""
+def compare(
+    file: EpisodeFile, room: RoomRecord, ask: AskReplica, *, native: bool = False
+) -> Iterator[ComparedStretch]:
+    """Step every stretch of a file again. Raises Corrupt, or what the replica says where it cannot answer.
+
+    native: in a process that computes with the C library's own choice for the replica's processor.
+    """
     if not (room.task and room.control_hz and room.model_sha256):
         raise Corrupt(
             f"{file.path} does not say its task, its rate and its model; it cannot be stepped again."
         )
     EpisodeFile(file.path, {RoomRecord.NAME: room.to_strings()}).check_model()
     for stretch in stretches(file.states()):
-        answered = resimulate(stretch.request(room)) if stretch.digests else b""
+        answered, numerics = b"", Numerics()
+        if stretch.digests:
+            reply = ask(RolloutRequest(resimulate=stretch.request(room, native=native)))
+            answered, numerics = reply.state_digests, reply.numerics
         if len(answered) != DIGEST_BYTES * len(stretch.digests):
             raise Corrupt(f"The replica answered {len(answered)} bytes for {len(stretch.digests)} ticks.")
         again = [answered[i : i + DIGEST_BYTES] for i in range(0, len(answered), DIGEST_BYTES)]
         pairs = enumerate(zip(stretch.digests, again, strict=True), stretch.first_tick + 1)
-        yield ComparedStretch(
-            stretch.first_tick, stretch.last_tick, tuple(tick for tick, (a, b) in pairs if a != b)
-        )
+        different = tuple(tick for tick, (a, b) in pairs if a != b)
+        yield ComparedStretch(stretch.first_tick, stretch.last_tick, different, numerics)
 
 
-def _judge(file: EpisodeFile, room: RoomRecord, resimulate: Resimulate) -> tuple[Verdict, str]:
-    checked, gaps, last_tick = 0, list[str](), None
-    for stretch in compare(file, room, resimulate):
+@dataclass(frozen=True)
+class _SteppedAgain:
+    """How far a file follows: its first tick that differs, or what was checked."""
+
+    first_different: int | None
+    checked: int
+    gaps: tuple[str, ...]
+    numerics: Numerics
+
+
+def _judge(file: EpisodeFile, room: RoomRecord, ask: AskReplica) -> VerificationRecord:
+    found = _step_again(file, room, ask, native=False)
+    native = False
+    if found.first_different is not None and not _same(room, found.numerics):
+        other = _step_again(file, room, ask, native=True)
+        if other.first_different is None or _same(room, other.numerics) or not room.numeric_fingerprint:
+            found, native = other, True
+    if found.first_different is not None:
+        return _judge_difference(file, room, ask, found, native=native)
+    fingerprint = found.numerics.fingerprint
+    if not found.checked:
+        return _record(room, Verdict.UNVERIFIED, "It holds no tick that follows from another.")
+    ticks = f"{found.checked} ticks re-simulated bit for bit"
+    if found.gaps:
+        detail = f"{ticks}; not those from {', '.join(found.gaps[:8])}."
+        return _record(room, Verdict.UNVERIFIED, detail, fingerprint=fingerprint)
+    return _record(room, Verdict.VERIFIED, f"{ticks}.", fingerprint=fingerprint)
+
+
+def _judge_difference(
+    file: EpisodeFile, room: RoomRecord, ask: AskReplica, found: _SteppedAgain, *, native: bool
+) -> VerificationRecord:
+    comparison, size = _compared(file, room, ask, native=native)
+    differs = f"Re-simulation differs from tick {found.first_different} on. {size}"
+    recorded, again = room.numerics, found.numerics
+    if recorded.fingerprint == again.fingerprint:
+        verdict, why = Verdict.DIVERGED, ""
+    elif recorded.fingerprint:
+        verdict, why = Verdict.UNVERIFIED, f"Other processor: recorded on {_words(recorded)}. "
+    elif comparison and comparison.within_tolerance:
+        verdict, why = Verdict.UNVERIFIED, "Recorded before fingerprints, it may be, on another processor. "
+    else:
+        verdict, why = Verdict.DIVERGED, ""
+    detail = f"{why}{differs}" + (f" It was stepped on {_words(again)}." if why else "")
+    return _record(
+        room,
+        verdict,
+        detail,
+        fingerprint=again.fingerprint,
+        first_different=found.first_different,
+        comparison=comparison,
+    )
+
+
+def _compared(
+    file: EpisodeFile, room: RoomRecord, ask: AskReplica, *, native: bool
+) -> tuple[Comparison | None, str]:
+    """Return by how much it differs, and that in words. Raises Unavailable."""
+    try:
+        comparison = compare_ticks(file, room, ask, native=native)
+    except Unavailable:
+        raise
+    except MartError as error:
+        return None, f"By how much cannot be told: {error}"
+    return comparison, str(comparison)
+
+
+def _step_again(file: EpisodeFile, room: RoomRecord, ask: AskReplica, *, native: bool) -> _SteppedAgain:
+    checked, gaps, last_tick, numerics = 0, list[str](), None, Numerics()
+    for stretch in compare(file, room, ask, native=native):
+        numerics = stretch.numerics if stretch.numerics.fingerprint else numerics
         if stretch.different:
-            return Verdict.DIVERGED, f"Re-simulation differs from tick {stretch.different[0]} on."
+            return _SteppedAgain(stretch.different[0], checked, (), numerics)
         if last_tick not in (None, stretch.first_tick):
             gaps.append(f"{last_tick} to {stretch.first_tick}")
         last_tick = stretch.last_tick
         checked += stretch.last_tick - stretch.first_tick
-    if not checked:
-        return Verdict.UNVERIFIED, "It holds no tick that follows from another."
-    if gaps:
-        return (
-            Verdict.UNVERIFIED,
-            f"{checked} ticks re-simulated bit for bit; not those from {', '.join(gaps[:8])}.",
-        )
-    return Verdict.VERIFIED, f"{checked} ticks re-simulated bit for bit."
+    return _SteppedAgain(None, checked, tuple(gaps), numerics)
 
 
-def replica(bus: Bus, name: str, patience_s: float = _PATIENCE_S) -> Resimulate:
-    """Ask the replica called `name`. Raises Unavailable, at once where there was none, or where it does not answer.
-
-    One that was there is awaited for `patience_s`: a router that is started anew forgets for about 2 s who is alive.
-    """
-    token = keys.alive(ServiceKind.REPLICA, name)
-    was_up = False
-
-    def resimulate(request: RolloutRequest.Resimulate) -> bytes:
-        nonlocal was_up
-        is_up = token in await_alive(bus, token, {token}, patience_s) if was_up else bool(bus.alive(token))
-        was_up = is_up
-        if not is_up:
-            raise Unavailable(f"No replica {name!r} is up; start one with `mart replica --name {name}`.")
-        ticks = len(request.actions) // (8 * ACTION_SIZE * max(request.arms, 1))
-        payload = codec.encode(RolloutRequest(resimulate=request))
-        answer = bus.query(keys.rollout(name), payload, _TIMEOUT_S + _TIMEOUT_PER_TICK_S * ticks)
-        reply = decode_received(RolloutReply, answer)
-        raise_error(reply.error)
-        return reply.state_digests
-
-    return resimulate
+def _same(room: RoomRecord, numerics: Numerics) -> bool:
+    return bool(numerics.fingerprint) and room.numeric_fingerprint == numerics.fingerprint
 
 
-def nobody(why: MartError) -> Resimulate:
-    """Stand in where no replica can be asked: the function raises why."""
+def _words(numerics: Numerics) -> str:
+    said = filter(None, (numerics.processor, numerics.libm, f"MuJoCo {numerics.mujoco_build}"))
+    return f"{', '.join(said)} (fingerprint {numerics.fingerprint})"
 
-    def resimulate(_request: RolloutRequest.Resimulate) -> bytes:
-        raise why
 
-    return resimulate
+def _record(
+    room: RoomRecord,
+    verdict: Verdict,
+    detail: str,
+    *,
+    fingerprint: str = "",
+    first_different: int | None = None,
+    comparison: Comparison | None = None,
+    pending: bool = False,
+) -> VerificationRecord:
+    differences = comparison.differences.items() if comparison else ()
+    return VerificationRecord(
+        verdict=verdict,
+        detail=detail,
+        model_sha256=room.model_sha256,
+        mujoco_version=room.mujoco_version,
+        pending=pending,
+        numeric_fingerprint=fingerprint or None,
+        first_different_tick=first_different,
+        within_tolerance=comparison.within_tolerance if comparison else None,
+        largest_difference={name: min(one.largest, _FAR) for name, one in differences},
+    )

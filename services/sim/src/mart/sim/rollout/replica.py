@@ -18,6 +18,7 @@ from mart.runtime.bus import Request
 from mart.runtime.service import announced, connected
 from mart.runtime.serving import BoundedInbox, RequestAnswerer
 from mart.runtime.throttled_log import ThrottledLog
+from mart.sim.rollout.native_process import NativeRollouts
 from mart.sim.rollout.rollout_server import RolloutServer
 from mart.sim.settings import ReplicaSettings
 from mart.sim.world.divergence import DivergenceArchive
@@ -37,8 +38,9 @@ def serve_replica(settings: ReplicaSettings) -> None:
         connected(settings, ServiceKind.REPLICA, settings.name) as service,
         contextlib.closing(service.bus.serve(keys.rollout(settings.name), inbox.put)),
         announced(service),
+        contextlib.closing(NativeRollouts(os.environ)) as native,
     ):
-        _answer_all(RolloutServer(explain=archive.keep), inbox, service.stop)
+        _answer_all(RolloutServer(explain=archive.keep, native=native), inbox, service.stop)
 
 
 def _answer_all(server: RolloutServer, inbox: BoundedInbox[Request], stop: threading.Event) -> None:

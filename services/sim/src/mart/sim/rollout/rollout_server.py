@@ -17,24 +17,15 @@ import numpy as np
 from mart.protocol.batch_state import ACTION_SIZE, Array, Flags, check_actions, pack
 from mart.protocol.errors import Conflict, InvalidInput, NotFound, Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest
-from mart.protocol.state_digest import state_digest
-from mart.sim.world import Diverged, World, WorldBatch
+from mart.sim.rollout.compiled_worlds import CompiledWorlds, WorldSpec
+from mart.sim.rollout.resimulation import NativeProcess, Resimulator
+from mart.sim.world import Diverged, WorldBatch
 from mart.sim.world.model_message import model_message
 
 MAX_SESSIONS = 8
 # Of all sessions. By calculation 150 MB with three arms: states, kept six times, and poses.
 MAX_WORLDS = 4096
-MAX_TICKS = 100_000  # a re-simulation: over an hour at 20 Hz
 IDLE_S = 600.0
-
-
-@dataclass(frozen=True)
-class WorldSpec:
-    """Name what decides a world's model."""
-
-    task: str
-    control_hz: float
-    arms: int | None
 
 
 @dataclass
@@ -53,15 +44,21 @@ class _Session:
 class RolloutServer:
     """Answer rollout requests with worlds of this process; `threads` step a batch, all cores by default.
 
-    explain: says in words why a world has failed whose physics left its bounds.
+    explain: says in words why a world has failed whose physics left its bounds. native: see `Resimulator`.
     """
 
-    def __init__(self, threads: int | None = None, explain: Callable[[Diverged], str] = str) -> None:
+    def __init__(
+        self,
+        threads: int | None = None,
+        explain: Callable[[Diverged], str] = str,
+        native: NativeProcess | None = None,
+    ) -> None:
         self._explain = explain
         self._threads = threads or os.cpu_count() or 1
         self._boot = secrets.token_hex(4)  # tells a session of an earlier run from one that was closed
         self._opened = 0
-        self._worlds: dict[WorldSpec, World] = {}
+        self._worlds = CompiledWorlds()
+        self._resimulator = Resimulator(self._worlds, native)
         self._sessions: dict[str, _Session] = {}
 
     def answer(self, request: RolloutRequest, now_s: float) -> RolloutReply:
@@ -77,16 +74,18 @@ class RolloutServer:
                 del self._sessions[request.close.session]
                 return RolloutReply(session=request.close.session)
             case "resimulate":
-                return self._resimulate(request.resimulate)
+                return self._resimulator.resimulate(request.resimulate)
+            case "compare_ticks":
+                return self._resimulator.compare(request.compare_ticks)
             case "describe":
                 return self._describe(request.describe)
         raise InvalidInput(
-            "An empty rollout request was given; ask for reset, step, close, resimulate or describe."
+            "An empty rollout request was given; ask for reset, step, close, resimulate, compare_ticks or describe."
         )
 
     def _reset(self, reset: RolloutRequest.Reset, now_s: float) -> RolloutReply:
         self._require_room(len(reset.seeds))
-        world = self._world(WorldSpec(reset.task, reset.control_hz, reset.arms or None))
+        world = self._worlds.get(WorldSpec(reset.task, reset.control_hz, reset.arms or None))
         worlds = WorldBatch(world, len(reset.seeds), self._threads, self._explain)
         worlds.reset(reset.seeds)
         self._opened += 1
@@ -109,22 +108,8 @@ class RolloutServer:
         session.steps += 1
         return session.reply(step.session)
 
-    def _resimulate(self, request: RolloutRequest.Resimulate) -> RolloutReply:
-        world = self._world(WorldSpec(request.task, request.control_hz, request.arms or None))
-        if request.model_sha256 != world.model_sha256:
-            raise Conflict(
-                f"A recording of model {request.model_sha256[:12]} was given, but this replica compiles "
-                f"{request.task} to {world.model_sha256[:12]}; use the versions that recorded it."
-            )
-        arms = len(world.arms)
-        ticks = len(request.actions) // (arms * ACTION_SIZE * 8)
-        if ticks > MAX_TICKS:
-            raise InvalidInput(f"{ticks} ticks were given; at most {MAX_TICKS} are re-simulated at once.")
-        actions = _actions(request.actions, (ticks, arms, ACTION_SIZE))
-        return RolloutReply(state_digests=_digests(world, request.first_state, actions))
-
     def _describe(self, request: RolloutRequest.Describe) -> RolloutReply:
-        world = self._world(WorldSpec(request.task, request.control_hz, request.arms or None))
+        world = self._worlds.get(WorldSpec(request.task, request.control_hz, request.arms or None))
         return RolloutReply(model=model_message(world))
 
     def _require_room(self, worlds: int) -> None:
@@ -151,25 +136,10 @@ class RolloutServer:
             why = "it is not of this run of the replica, which has been restarted since"
         raise NotFound(f"There is no session {name!r}: {why}; reset to get one.")
 
-    def _world(self, spec: WorldSpec) -> World:
-        if spec not in self._worlds:
-            self._worlds[spec] = World.build(spec.task, spec.control_hz, spec.arms)
-        return self._worlds[spec]
-
     def _forget_idle(self, now_s: float) -> None:
         idle = [name for name, session in self._sessions.items() if now_s - session.used_s > IDLE_S]
         for name in idle:
             del self._sessions[name]
-
-
-def _digests(world: World, first_state: bytes, actions: Array) -> bytes:
-    """Digest every state after the first; raises InvalidInput where `first_state` is not this model's, or Diverged."""
-    world.set_integration_state(first_state)
-    digests = []
-    for action in actions:
-        world.step(action)
-        digests.append(state_digest(world.integration_state()))
-    return b"".join(digests)
 
 
 def _actions(payload: bytes, shape: tuple[int, ...]) -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import mujoco
 
 from mart.protocol.messages import Model
+from mart.sim.world.numerics import own_numerics
 from mart.sim.world.world import World
 
 
@@ -17,4 +18,5 @@ def model_message(world: World) -> Model:
         control_hz=world.control_hz,
         arms=world.arms,
         mujoco_version=mujoco.__version__,
+        numerics=own_numerics(),
     )

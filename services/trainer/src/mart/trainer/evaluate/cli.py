@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mart.runtime.cli import json_option, print_result
+from mart.runtime.progress import Progress, progress
 
 if TYPE_CHECKING:
+    from mart.trainer.evaluate.config import EvalConfig
     from mart.trainer.evaluate.evaluation import Evaluation
     from mart.trainer.evaluate.evaluator import Evaluator
 
@@ -63,9 +65,12 @@ def evaluate(
 
     config = EvalConfig(episodes, score_episodes, seed, time_limit, keep)
     chosen = _chosen(checkpoint, task)
-    with worlds([name for name in replicas.split(",") if name]) as client:
-        evaluator = Evaluator(client, config, device)
-        evaluations = _evaluated(evaluator, chosen, as_json=as_json)
+    with (
+        worlds([name for name in replicas.split(",") if name]) as client,
+        progress("Ticks", _ticks_ahead(chosen, config), as_json=as_json) as shown,
+    ):
+        evaluator = Evaluator(client, config, device, shown.advance)
+        evaluations = _evaluated(evaluator, chosen, shown, as_json=as_json)
     result: dict[str, Any] = {"evaluations": [formatting.as_json(found) for found in evaluations]}
     print_result(result, formatting.summary(evaluations), as_json)
 
@@ -92,7 +97,31 @@ def _chosen(checkpoint: Path, task: str | None) -> Path:
     return checkpoint
 
 
-def _evaluated(evaluator: Evaluator, chosen: Path, *, as_json: bool) -> list[Evaluation]:
+def _ticks_ahead(chosen: Path, config: EvalConfig) -> int:
+    """Return the ticks of all episodes that last as long as they may; what was judged before is not ahead."""
+    from mart.protocol.tasks import get_task
+    from mart.trainer.evaluate.rollouts import batch_count
+    from mart.trainer.models.checkpoint import RECORD, read_record
+    from mart.trainer.train.run_directory import RunDirectory
+
+    if (chosen / RECORD).is_file():
+        first, seeds, rounds = chosen, 1, 1
+    else:
+        run = RunDirectory(chosen)
+        updates = run.checkpointed()
+        if not updates:
+            return 0
+        seeds, rounds = len(run.seeds(updates[0])), len(updates)
+        first = run.checkpoint(updates[0], run.seeds(updates[0])[0])
+    record = read_record(first)
+    limit_s = config.time_limit_s or get_task(record.task, len(record.arms)).trial_limit_s
+    batches = rounds * batch_count(seeds, config.episodes)
+    if rounds > 1 and config.score_episodes:
+        batches += batch_count(seeds, config.score_episodes)
+    return batches * round(limit_s * record.control_hz)
+
+
+def _evaluated(evaluator: Evaluator, chosen: Path, shown: Progress, *, as_json: bool) -> list[Evaluation]:
     from mart.trainer.evaluate import formatting
     from mart.trainer.evaluate.evaluator import run_of
     from mart.trainer.evaluate.world_seeds import Purpose
@@ -101,7 +130,7 @@ def _evaluated(evaluator: Evaluator, chosen: Path, *, as_json: bool) -> list[Eva
 
     def say(evaluation: Evaluation) -> None:
         if not as_json:
-            click.echo(formatting.line(evaluation), err=True)
+            shown.say(formatting.line(evaluation), err=True)
 
     if not (chosen / RECORD).is_file():
         run = RunDirectory(chosen)

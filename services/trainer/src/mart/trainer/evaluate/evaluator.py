@@ -30,11 +30,15 @@ OnEvaluation = Callable[[Evaluation], None]
 
 @dataclass(frozen=True)
 class Evaluator:
-    """Evaluate checkpoints in worlds of one client. Raises what loading and rolling out raise."""
+    """Evaluate checkpoints in worlds of one client. Raises what loading and rolling out raise.
+
+    on_ticks: told how many ticks more are done with, as by `roll_out`.
+    """
 
     client: RolloutClient
     config: EvalConfig
     device: str = "cpu"
+    on_ticks: Callable[[int], None] = lambda _: None
 
     def evaluate_checkpoints(
         self, paths: Sequence[Path], purpose: Purpose, kept_in: Path | None = None
@@ -46,7 +50,9 @@ class Evaluator:
         config = self.config
         policies = [load_policy(path, self.device) for path in paths]
         seeds = world_seeds(purpose, config.world_seed, config.number(purpose))
-        rollouts = roll_out(policies, self.client, seeds, config.world_seed, config.time_limit_s)
+        rollouts = roll_out(
+            policies, self.client, seeds, config.world_seed, config.time_limit_s, on_ticks=self.on_ticks
+        )
         return [
             self._evaluation(path, purpose, own, kept_in) for path, own in zip(paths, rollouts, strict=True)
         ]

@@ -141,7 +141,7 @@ def write(path: Path, rollout: RolloutEpisode, model: Model, started_ns: int) ->
         control_hz=rollout.control_hz,
         model_sha256=model.sha256,
         mujoco_version=model.mujoco_version,
-    )
+    ).with_numerics(model.numerics)
     file = EpisodeWriter(path.with_name(f".{path.name}.half"))
     file.describe(room)
     file.attach_model(model, started_ns)
@@ -164,5 +164,7 @@ def _records(
         rollout.record(started_ns),
         OperatorsRecord(shifts=dict.fromkeys(rollout.task.arm_names, (shift,))),
         CadenceRecord(wall_s=time_s, sim_s=time_s, missing_ticks=0, waited_s=0.0),
-        VerificationRecord(verdict=Verdict.UNVERIFIED, detail="stepped by a replica, for an evaluation"),
+        VerificationRecord(
+            verdict=Verdict.UNVERIFIED, detail="stepped by a replica, for an evaluation", pending=False
+        ),
     )

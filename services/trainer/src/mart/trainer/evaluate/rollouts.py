@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -40,17 +41,20 @@ def roll_out(
     seeds: Sequence[int],
     policy_seed: int,
     time_limit_s: float | None = None,
+    *,
+    on_ticks: Callable[[int], None] = lambda _: None,
 ) -> list[list[RolloutResult]]:
     """Let every policy act for one episode in every world; return the results by policy, in the order of `seeds`.
 
     All policies are of one task and rate and drive all of its arms. An episode ends with success, with an irrecoverable
     failure, or after `time_limit_s`, the length of the task's trials unless told.
+    on_ticks: told how many ticks more are done with: each of `batch_count` batches has as many as the limit allows.
     Raises InvalidInput where the policies do not fit together, or without seeds.
     """
     if not len(seeds):
         raise InvalidInput("No seeds were given; give one for each world.")
     task = common_task(policies)
-    together = _WORLDS_AT_ONCE // min(len(seeds), SEEDS_AT_ONCE)
+    together = _policies_at_once(len(seeds))
     groups = [policies[first : first + together] for first in range(0, len(policies), together)]
     limit_s = task.trial_limit_s if time_limit_s is None else time_limit_s
     results: list[list[RolloutResult]] = []
@@ -58,11 +62,20 @@ def roll_out(
         found: list[list[RolloutResult]] = [[] for _ in group]
         for first in range(0, len(seeds), SEEDS_AT_ONCE):
             batch = _PolicyBatch(task, group, seeds[first : first + SEEDS_AT_ONCE])
-            batch.roll_out(client, policy_seed + first, limit_s)
+            batch.roll_out(client, policy_seed + first, limit_s, on_ticks)
             for of_policy, more in zip(found, batch.results(), strict=True):
                 of_policy.extend(more)
         results += found
     return results
+
+
+def batch_count(policies: int, seeds: int) -> int:
+    """Return in how many batches so many policies act in so many worlds."""
+    return math.ceil(policies / _policies_at_once(seeds)) * math.ceil(seeds / SEEDS_AT_ONCE)
+
+
+def _policies_at_once(seeds: int) -> int:
+    return _WORLDS_AT_ONCE // min(seeds, SEEDS_AT_ONCE)
 
 
 class _PolicyBatch:
@@ -80,20 +93,25 @@ class _PolicyBatch:
         self._ticks = np.zeros(number, int)
         self._actions: list[Array] = []
 
-    def roll_out(self, client: RolloutClient, policy_seed: int, limit_s: float) -> None:
+    def roll_out(
+        self, client: RolloutClient, policy_seed: int, limit_s: float, on_ticks: Callable[[int], None]
+    ) -> None:
         control_hz, arms = self._policies[0].control_hz, len(self._task.arms)
         worlds = client.reset(self._task.name, list(self._seeds) * len(self._policies), control_hz, arms)
         for policy in self._policies:
             policy.begin(len(self._seeds), policy_seed)
         self._look(worlds)
-        for _ in range(round(limit_s * control_hz)):
+        most = round(limit_s * control_hz)
+        for tick in range(most):
             running = ~self._ended
             if not running.any():
+                on_ticks(most - tick)
                 return
             self._actions.append(self._act(worlds.observations))
             self._ticks += running
             worlds = client.step(self._actions[-1], running)
             self._look(worlds)
+            on_ticks(1)
 
     @property
     def _ended(self) -> NDArray[np.bool_]:

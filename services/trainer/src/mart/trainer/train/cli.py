@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +15,7 @@ from pydantic import ValidationError
 from mart.protocol.errors import InvalidInput
 from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind, Verdict
 from mart.runtime.cli import json_option, print_result
+from mart.runtime.progress import Progress, progress
 from mart.trainer.data.data_spec import DataSetName, Selection
 from mart.trainer.models.architecture import model_names
 from mart.trainer.train.presets import PRESETS
@@ -81,11 +85,29 @@ def train(resume: Path | None, out: Path | None, as_json: bool, **options: Any) 
 
     run = RunDirectory(_folder(resume, out))
     spec = run.spec if resume else _spec(options)
-    with stop_requested() as stop:
-        train_run(spec, run.path, stop, lambda progress: click.echo(_line(progress), err=True))
+    with stop_requested() as stop, _telling(as_json=as_json) as tell:
+        train_run(spec, run.path, stop, tell)
     result = {**_result(run), "complete": not stop.is_set()}
     print_result(result, _words(result), as_json)
     return 130 if stop.is_set() else 0
+
+
+@contextlib.contextmanager
+def _telling(*, as_json: bool) -> Iterator[Callable[[TrainingProgress], None]]:
+    """Show a bar on a terminal; a line a report where standard error goes into a file."""
+    with contextlib.ExitStack() as stack:
+        bars: list[Progress] = []
+
+        def tell(made: TrainingProgress) -> None:
+            if not sys.stderr.isatty():
+                if not as_json:
+                    click.echo(_line(made), err=True)
+                return
+            if not bars:
+                bars.append(stack.enter_context(progress("Updates", made.updates_in_all, as_json=as_json)))
+            bars[0].reach(made.updates)
+
+        yield tell
 
 
 def _folder(resume: Path | None, out: Path | None) -> Path:

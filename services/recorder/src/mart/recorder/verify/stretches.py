@@ -1,0 +1,98 @@
+"""Cut an episode where ticks are missing: what lies between can be stepped again, in requests of a bounded size."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mart.protocol.batch_state import ACTION_SIZE
+from mart.protocol.errors import Corrupt
+from mart.protocol.messages import RolloutRequest, State
+from mart.protocol.recording import RoomRecord
+from mart.protocol.state_digest import state_digest
+
+_STRETCH_TICKS = 2000
+
+
+@dataclass
+class Stretch:
+    """Hold ticks without a gap: where they begin and what each one applied and led to.
+
+    states: every state, the first included, where they are wanted.
+    """
+
+    first_tick: int
+    first_state: bytes
+    arms: tuple[str, ...]
+    actions: list[list[float]] = field(default_factory=list)
+    digests: list[bytes] = field(default_factory=list)
+    states: list[bytes] | None = None
+
+    @property
+    def last_tick(self) -> int:
+        """The tick of the last state that was added."""
+        return self.first_tick + len(self.digests)
+
+    def add(self, state: State) -> None:
+        """Add the state that follows."""
+        self.actions.append([number for arm in state.arms for number in arm.action])
+        self.digests.append(state_digest(state.integration_state))
+        if self.states is not None:
+            self.states.append(state.integration_state)
+
+    def request(self, room: RoomRecord, *, native: bool = False) -> RolloutRequest.Resimulate:
+        """Return what a replica is asked to step again. Raises Corrupt as `packed_actions` does."""
+        return RolloutRequest.Resimulate(
+            model_sha256=room.model_sha256 or "",
+            task=room.task or "",
+            control_hz=room.control_hz or 0.0,
+            arms=len(self.arms),
+            first_state=self.first_state,
+            actions=self.packed_actions(),
+            native=native,
+        )
+
+    def packed_actions(self) -> bytes:
+        """Return every action, float64, shape (ticks, arms, 7).
+
+        Raises Corrupt where an action is not of seven finite numbers an arm.
+        """
+        shape = (len(self.actions), len(self.arms), ACTION_SIZE)
+        if {len(action) for action in self.actions} - {ACTION_SIZE * len(self.arms)}:
+            raise Corrupt(
+                f"After tick {self.first_tick} an applied action has not {ACTION_SIZE} numbers for each arm."
+            )
+        actions = np.array(self.actions, dtype="<f8").reshape(shape)
+        if not np.isfinite(actions).all():
+            raise Corrupt(f"After tick {self.first_tick} an applied action is not finite.")
+        return actions.tobytes()
+
+
+def stretches(
+    states: Iterator[State], most_ticks: int = _STRETCH_TICKS, *, with_states: bool = False
+) -> Iterator[Stretch]:
+    """Cut an episode's states where ticks are missing and where a stretch gets longer than `most_ticks`."""
+    current: Stretch | None = None
+    previous: State | None = None
+    for state in states:
+        arms = tuple(arm.arm for arm in state.arms)
+        if current is not None and previous is not None:
+            follows = state.tick == current.last_tick + 1 and arms == current.arms
+            if not follows or len(current.digests) >= most_ticks:
+                yield current
+                current = _begin(previous, with_states=with_states) if follows else None
+        if current is None:
+            current = _begin(state, with_states=with_states)
+        else:
+            current.add(state)
+        previous = state
+    if current is not None:
+        yield current
+
+
+def _begin(state: State, *, with_states: bool) -> Stretch:
+    arms = tuple(arm.arm for arm in state.arms)
+    kept = [state.integration_state] if with_states else None
+    return Stretch(state.tick, state.integration_state, arms, states=kept)
