@@ -92,14 +92,18 @@ class ToyRoom:
     def __init__(self, bus: Bus) -> None:
         self._states = bus.publisher(keys.state(_ROOM))
         self._events = bus.publisher(keys.event(_ROOM))
+        self._commands = bus.publisher(keys.command(_ROOM, "arm0"))
         self._model = bus.serve(
             keys.model(_ROOM), lambda request: request.reply(codec.encode(synthetic.MODEL))
         )
+        self._token = bus.announce(keys.alive(ServiceKind.SIM, _ROOM))
 
     def play(self, states: list[State], period_s: float = 0.05) -> None:
         due_s = clock.monotonic_s()
         for state in states:
             clock.sleep_s(due_s - clock.monotonic_s())
+            for command in synthetic.commands_of(state):
+                self._commands.put(codec.encode(command))
             self._states.put(codec.encode(state))
             due_s += period_s
 
@@ -107,6 +111,7 @@ class ToyRoom:
         self._events.put(codec.encode(event))
 
     def close(self) -> None:
+        self._token.close()
         self._model.close()
 
 
@@ -143,6 +148,22 @@ def test_kill_9_loses_a_second_at_most_and_recording_goes_on(endpoint: str, bus:
     assert not EpisodeFile.open(rest).episode.complete
     assert EpisodeFile.open(rest).episode.outcome == "success"
     assert EpisodeFile.open(second).episode.complete
+
+
+def test_a_frozen_recorder_asks_for_what_it_missed(endpoint: str, bus: Bus, tmp_path: Path) -> None:
+    """Longer than its link lives, and across the end of the episode."""
+    states = synthetic.states(100)
+    with closing(Ear(bus)) as ear, closing(ToyRoom(bus)) as room, recorder(endpoint, tmp_path) as running:
+        room.say(synthetic.started())
+        room.play(states[:20])
+        with running.frozen():
+            room.play(states[20:], period_s=0.08)
+            room.say(synthetic.ended(100))
+        (saved,) = ear.await_saved(1)
+    assert recorded_ticks(tmp_path / saved.path) == list(range(101))
+    episode = EpisodeFile.open(tmp_path / saved.path).episode
+    assert (episode.outcome, episode.complete) == ("success", True)
+    assert (saved.missing_ticks, saved.missing_commands) == (0, 0)
 
 
 def _ask(bus: Bus, topic: keys.Topic, request: SeatRequest | EpisodeRequest) -> None:

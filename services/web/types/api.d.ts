@@ -11,6 +11,7 @@ declare namespace Api {
     title: string;
     instruction: string;
     arms: number;
+    arm_counts: number[];
   }
 
   interface NewRoom {
@@ -18,6 +19,7 @@ declare namespace Api {
     room: string;
     control_hz: number;
     episodes: number;
+    arms: number;
   }
 
   interface Finding {
@@ -84,6 +86,9 @@ declare namespace Api {
     number: number;
     outcome: Messages.Outcome | "unspecified";
     reason: string;
+    ended_by: string;
+    subtasks_done: number;
+    subtasks: number;
     since_s: number;
     epochs: Record<string, number>;
     saved: SavedFile | null;

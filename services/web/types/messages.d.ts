@@ -26,6 +26,8 @@ declare namespace Messages {
     cadence: Record<string, string>;
     versions: Record<string, string>;
     verification: string;
+    simulated: boolean;
+    viewpoints: string[];
   }
 
   interface CatalogueReplyListing {
@@ -171,6 +173,7 @@ declare namespace Messages {
     ended_by_arm: string;
     subtasks_done?: number;
     subtasks?: number;
+    outcome_by: string;
   }
 
   interface RecordedView {

@@ -269,13 +269,78 @@ def test_whatever_is_typed_becomes_a_name_that_a_data_set_may_have(run: Run) -> 
     typed = ["Cubes, good", "  -_a", "Ünder 2", "x" * 99, "ok_1-2", "!?"]
     names = run("names.js", "({ nameFrom }, typed) => typed.map((text) => nameFrom(text))", typed)
     assert names == ["cubes-good", "a", "nder-2", "x" * 64, "ok_1-2", ""]
+    assert run("names.js", "({ finalName }) => finalName('My Set!')") == "my-set"
     for name in filter(None, names):
         Label("a", LabelKind.JOIN, name, 1)
 
 
-def test_who_takes_all_that_are_shown_knows_how_many_did_not_succeed(run: Run) -> None:
-    texts = run("episodes/formatting.js", "({ allText }, counts) => counts.map(allText)", [0, 3])
-    assert texts == [
-        "All that are shown; tick some to choose fewer",
-        "All that are shown, also 3 without success; tick some to choose fewer",
-    ]
+@pytest.mark.parametrize(
+    ("chosen", "tasks", "text"),
+    [
+        ({}, 1, "All that succeeded; tick some to choose others."),
+        ({}, 2, "Choose one task above, or tick episodes."),
+        ({"task": "two_arm_multi_cube_lifting"}, 2, "All that succeeded; tick some to choose others."),
+        ({"task": "two_arm_multi_cube_lifting", "outcome": "failure"}, 2, "All that are shown; tick"),
+    ],
+)
+def test_who_ticks_nothing_takes_what_succeeded_of_one_task(
+    run: Run, chosen: dict[str, str], tasks: int, text: str
+) -> None:
+    told = run(
+        "episodes/formatting.js",
+        "({ allText }, { chosen, tasks }) => allText(chosen, tasks)",
+        {"chosen": chosen, "tasks": tasks},
+    )
+    assert told.startswith(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "plain"),
+    [
+        (
+            "Ana gave no command for 30 s: arm2 is free.",
+            "Ana gave no command for 30 s: the green arm is free.",
+        ),
+        ("arm0 waits.", "The blue arm waits."),
+        ("of three_arm_lift_wiping, two_arm_nothing", "Of “Lift and wipe”, two_arm_nothing"),
+        (
+            "2026/room-1-0001-two_arm_multi_cube_lifting.mcap",
+            "2026/room-1-0001-two_arm_multi_cube_lifting.mcap",
+        ),
+        ("See arm0/shadow.", "See arm0/shadow."),
+    ],
+)
+def test_people_read_of_arms_and_tasks_by_the_names_that_they_know(run: Run, text: str, plain: str) -> None:
+    assert run("plain-words.js", "({ inPlainWords }, text) => inPlainWords(text)", text) == plain
+
+
+def test_whose_word_an_outcome_is_stands_beside_it(run: Run) -> None:
+    ended = {
+        "ended_by": "operator",
+        "ended_by_name": "Ana",
+        "subtasks_done": 0,
+        "subtasks": 3,
+        "outcome_by": "",
+    }
+    told = run(
+        "episodes/formatting.js",
+        "({ saidText }, episodes) => episodes.map(saidText)",
+        [ended, ended | {"ended_by": "task"}, ended | {"outcome_by": "Rita"}, ended | {"subtasks": None}],
+    )
+    assert told == ["said by Ana, 0 of 3 steps done", "", "labelled by Rita", "said by Ana"]
+
+
+def test_what_is_said_of_an_episode_can_be_taken_back(run: Run) -> None:
+    before = {"outcome": "success", "dropped": False, "note": ""}
+    script = (
+        "({ undoing, labelledText }, { before, now }) => [undoing(before, now), labelledText(before, now)]"
+    )
+
+    def told(was: dict[str, Any], now: dict[str, Any]) -> Any:
+        return run("episodes/formatting.js", script, {"before": was, "now": now})
+
+    failed = before | {"outcome": "failure"}
+    assert told(before, failed) == [{"outcome": "success"}, "Saved: Failed. It was: Success."]
+    assert told(before, before | {"dropped": True}) == [{"dropped": False}, "Saved: left out of data sets."]
+    assert told(before, before | {"note": "x"}) == [{"note": ""}, "Saved: the note."]
+    assert told(before | {"outcome": "unspecified"}, failed)[0] is None

@@ -20,6 +20,7 @@ def room(*seats: dict[str, Any], phase: str = "practice", **episode: Any) -> dic
         "seats": list(seats),
         "stale": False,
         "last_episode": None,
+        "unrecorded": "",
         "plan": None,
         "progress": {"subtasks": [{"title": "Cube 0 is up", "done": False}] * 3, "success": False},
         "barrier": "running",
@@ -133,6 +134,20 @@ def test_an_episode_is_told_from_its_end_until_the_next_one_begins(run: Run) -> 
     assert (saving["label"], saving["detail"]) == ("Failed", "Time is up. Saving…")
     assert (saved["label"], saved["detail"][:32]) == ("Failed", "Time is up. Saved and verified: ")
     assert "Not saved yet, 42.0 s" in view(run, after(saved=None, since_s=42.0))["detail"]
+
+
+def test_a_success_by_hand_says_how_far_it_was(run: Run) -> None:
+    by_hand = after(outcome="success", reason="said by Ana", ended_by="operator", subtasks_done=0, subtasks=3)
+    assert "Said by Ana. 0 of 3 steps were done. Saved" in view(run, by_hand)["detail"]
+
+
+def test_what_nobody_keeps_is_not_called_a_recording(run: Run) -> None:
+    shown = view(run, room(MINE, phase="recording") | {"unrecorded": "no recorder runs"})
+    assert (shown["label"], shown["detail"], shown["recording"]) == (
+        "Not recorded",
+        "No recorder runs.",
+        False,
+    )
 
 
 def test_whoever_sits_down_afterwards_is_told_of_the_goal_instead(run: Run) -> None:

@@ -134,7 +134,7 @@ def test_a_refusal_stands_beside_the_button_until_the_form_changes(
     trainer.refusal = "There is no successful episode of this task; record some."
     with page_of(browser, site, refused=True) as page:
         page.get_by_role("button", name="Train r-HBC").click()
-        refusal = page.locator("#order").get_by_role("alert")
+        refusal = page.locator("#order .message")
         expect(refusal).to_have_text(trainer.refusal)
         with page.expect_response("**/api/training/jobs"):  # what is asked every 2 s wipes nothing
             pass

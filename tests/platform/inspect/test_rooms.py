@@ -16,8 +16,8 @@ from tests.protocol.message_examples import examples
 class Answering(MemoryBus):
     """A bus on which a room tells its status as soon as somebody listens."""
 
-    def subscribe(self, key_expression: str, handler: Handler) -> Closable:
-        subscription = super().subscribe(key_expression, handler)
+    def subscribe(self, key_expression: str, handler: Handler, *, recover: bool = False) -> Closable:
+        subscription = super().subscribe(key_expression, handler, recover=recover)
         self.publisher(keys.status("room-1")).put(encode(examples()["RoomStatus"]))
         return subscription
 

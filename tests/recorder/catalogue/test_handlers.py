@@ -58,12 +58,14 @@ def test_a_new_episode_is_found_when_it_is_asked_for(root: Path) -> None:
 
 def test_what_people_say_is_kept_beside_the_file(root: Path) -> None:
     asked = CatalogueHandlers(root)
-    said = CatalogueRequest.Label(path=PATH, outcome="failure", note="dropped it", dropped=True)
+    said = CatalogueRequest.Label(path=PATH, outcome="failure", note="dropped it", dropped=True, by="Rita")
     episode = asked.answer(CatalogueRequest(label=said)).episode
     assert (episode.outcome, episode.note, episode.dropped) == ("failure", "dropped it", True)
+    assert episode.outcome_by == "Rita"
+    assert {label.by for label in labels.read(root)} == {"Rita"}
     assert {label.kind for label in labels.read(root)} == {"outcome", "note", "use"}
     again = asked.answer(CatalogueRequest(label=CatalogueRequest.Label(path=PATH, dropped=False))).episode
-    assert (again.outcome, again.dropped) == ("failure", False)
+    assert (again.outcome, again.outcome_by, again.dropped) == ("failure", "Rita", False)
     assert show(CatalogueHandlers(root)).episode.note == "dropped it"
 
 

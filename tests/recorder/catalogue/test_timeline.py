@@ -48,6 +48,15 @@ def test_it_tells_what_was_done_who_drove_and_for_whom_the_world_waited() -> Non
     assert lane(lanes, "notice") == [(1.0, 1.0, "The link broke.")]
 
 
+def test_where_the_wall_means_nothing_time_is_simulated() -> None:
+    cue = Event(wall_ns=state(2).stamps.stepped_ns + 1, cue_given=Event.CueGiven(arm="arm0", cue=CUE_GO))
+    early = Event(wall_ns=1, notice=Event.Notice(text="before"))
+    details = timeline([state(tick) for tick in range(5)], [cue, early], control_hz=20.0)
+    assert (details.simulated, details.wall_s) == (True, 0.2)
+    assert lane(list(details.lanes), "cue") == [(0.1, 0.1, "go")]
+    assert lane(list(details.lanes), "notice") == []
+
+
 def test_long_episodes_are_thinned() -> None:
     details = timeline([state(tick) for tick in range(3 * MAX_POINTS)], [])
     assert {len(trace.values) for trace in details.traces} == {MAX_POINTS}

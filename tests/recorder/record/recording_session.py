@@ -56,8 +56,14 @@ class RecordingSession:
             return verify(file, room, ask)
 
         root = data_dir / "episodes"
+        self.live_rooms = {"room-1", "room-2"}
         self.recorder = Recorder(
-            data_dir, self.bus, self.inbox, verify_file, lambda: tidy(root, verify_file, {})
+            data_dir,
+            self.bus,
+            self.inbox,
+            live_rooms=self.live_rooms,
+            verify=verify_file,
+            tidy=lambda: tidy(root, verify_file, {}),
         )
         self.subscriptions = RoomSubscriptions(network.connect(), network.connect(), self.inbox)
 

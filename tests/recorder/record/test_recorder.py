@@ -13,7 +13,6 @@ import pytest
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec, keys, recording
 from mart.protocol.keys import Topic
-from mart.protocol.messages import RoomStatus
 from mart.recorder.catalogue.episode_catalogue import FILE_NAME
 from mart.recorder.record.inbox import Inbox
 from mart.recorder.verify.file_check import check_file
@@ -104,20 +103,6 @@ def test_two_rooms_are_recorded_at_once(session: RecordingSession) -> None:
     assert sorted(rooms) == ["room-1", "room-2"]
 
 
-def test_rooms_that_were_closed_leave_their_places_to_others(
-    session: RecordingSession, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Nobody says that a room was closed."""
-    monkeypatch.setattr("mart.recorder.record.recorder.SILENCE_S", 0.0)
-    for number in range(64):
-        status = RoomStatus(room=f"old-{number}", boot=1)
-        session.put(keys.status(status.room), codec.encode(status))
-    session.recorder.step(0.0)
-    session.episode()
-    (event,) = session.told("episode_saved")
-    assert event.episode_saved.verified
-
-
 def test_an_outcome_whose_event_was_lost_is_learned_from_the_status(session: RecordingSession) -> None:
     session.event(synthetic.started())
     session.states(synthetic.states(10))
@@ -140,7 +125,7 @@ def test_a_model_that_was_not_to_be_had_is_asked_for_again_when_an_episode_begin
         session.put(keys.status(synthetic.ROOM), codec.encode(synthetic.status()))
         session.recorder.step(0.0)
         assert asked.wait(PATIENCE_S)
-        session.recorder._tools.finalizer._workers.submit(lambda: None).result()
+        session.recorder._tools.finalizer._fetchers.submit(lambda: None).result()
         session.event(synthetic.started())
         session.states(synthetic.states(10)[:1])
         session.until(lambda: session.recorder._tools.models.known(synthetic.ROOM, synthetic.BOOT))

@@ -15,7 +15,7 @@ from mart.runtime.bus.base import Bus, Request, Sample
 from mart.runtime.bus.memory import MemoryNetwork
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.ports import free_port
-from tests.support.processes import running_service
+from tests.support.processes import running_router, running_service
 
 Connect = Callable[[], Bus]
 WAIT_S = 30.0
@@ -210,3 +210,20 @@ def test_a_router_that_says_nothing_is_not_a_system_without_services() -> None:
         pytest.raises(Unavailable, match="who is alive"),
     ):
         bus.alive(keys.EVERY_ALIVE)
+
+
+@pytest.mark.system
+def test_what_was_put_while_there_was_no_router_is_asked_for_again() -> None:
+    port, inbox = free_port(), Inbox()
+    with running_router(port) as endpoint:
+        a, b = ZenohBus.connect(endpoint), ZenohBus.connect(endpoint)
+        b.subscribe(keys.EVERY_STATE, inbox, recover=True)
+        settled(b, keys.model("room-1"))
+        publisher = a.publisher(keys.state("room-1"))
+        publisher.put(b"0")
+        assert inbox.next().payload == b"0"
+    missed = [str(number).encode() for number in range(1, 20)]
+    for payload in missed:
+        publisher.put(payload)
+    with running_router(port), a, b:
+        assert [inbox.next().payload for _ in missed] == missed

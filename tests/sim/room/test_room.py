@@ -21,7 +21,6 @@ from mart.protocol.messages import (
     OUTCOME_FAILURE,
     OUTCOME_SUCCESS,
     EpisodeRequest,
-    Event,
     SeatRequest,
 )
 from mart.sim.room.command_validation import CommandRejection
@@ -242,22 +241,6 @@ def test_what_a_room_keeps_lets_it_go_on(harness: RoomHarness, world: World) -> 
     assert again.status().boot != harness.status().boot
     again.drive(2)
     assert all(arm.fresh for arm in again.newest.arms)
-
-
-def test_saved_and_good_episodes_are_counted(harness: RoomHarness) -> None:
-    for outcome, verified in ((OUTCOME_SUCCESS, True), (OUTCOME_SUCCESS, False), (OUTCOME_FAILURE, True)):
-        harness.room.episode_saved(Event.EpisodeSaved(number=1, outcome=outcome, verified=verified))
-    assert (harness.status().episodes_saved, harness.status().episodes_good) == (3, 1)
-    assert (harness.kept[-1].saved, harness.kept[-1].good) == (3, 1)
-
-
-def test_a_plan_counts_good_episodes_only(world: World) -> None:
-    harness = RoomHarness(world, SavedRoom(seed=1, saved=9, good=4).planned(world.task.name, 2))
-    assert (harness.status().plan.episodes, harness.status().plan.good) == (2, 0)
-    for outcome in (OUTCOME_FAILURE, OUTCOME_SUCCESS):
-        harness.room.episode_saved(Event.EpisodeSaved(number=1, outcome=outcome, verified=True))
-    assert harness.status().plan.good == 1
-    assert not RoomHarness(world).status().HasField("plan")
 
 
 def test_a_full_disk_does_not_stop_the_world(world: World) -> None:

@@ -12,6 +12,7 @@ from mart.protocol.messages import Event, Model, RoomReply
 from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
 from mart.sim.room.room import Room
 from mart.sim.room.room_server import RoomServer
+from mart.sim.room.saved_room import SavedRoom
 from mart.sim.world import World
 from tests.sim.room.room_harness import RoomHarness
 
@@ -41,7 +42,7 @@ def test_detailed_meshes_are_another_model_of_the_same_states(world: World) -> N
 def test_whoever_hears_what_the_room_says_does_none_of_its_work(world: World) -> None:
     """It could wait, in the middle of saying something, for room in the queue that only it can empty."""
     bus, left = MemoryNetwork().connect(), list[Work]()
-    harness = RoomHarness(world)
+    harness = RoomHarness(world, SavedRoom(seed=1, episodes=3))
     server = _server(bus, harness.room, world, leave=left.append)
     try:
         told = len(harness.publisher.events)

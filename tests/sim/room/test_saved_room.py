@@ -36,6 +36,32 @@ def test_a_plan_counts_from_when_it_was_made() -> None:
     assert record.planned("lift", None).plan is None
 
 
+def test_an_episode_counts_once_whatever_is_told_of_it_and_becomes_good_once() -> None:
+    record = SavedRoom(seed=5, episodes=600)
+    for number, good in (
+        (1, False),
+        (1, False),
+        (1, True),
+        (1, True),
+        (1, False),
+        (2, True),
+        (0, True),
+        (601, True),
+    ):
+        record = record.with_saved(number, good)
+    assert (record.saved, record.good) == (2, 2)
+    for number in range(3, 601):
+        record = record.with_saved(number, good=False)
+    assert (record.saved, record.good, len(record.counted)) == (600, 2, 256)
+    assert record.with_saved(1, good=True) is record
+
+
+def test_a_room_asks_for_its_newest_episodes_of_which_nobody_told() -> None:
+    assert SavedRoom(seed=5).uncounted() == ()
+    record = SavedRoom(seed=5, episodes=9).with_saved(8, good=True)
+    assert record.uncounted() == (6, 7, 9)
+
+
 def test_a_room_that_never_ran_has_no_record(tmp_path: Path) -> None:
     assert saved_room.load(tmp_path / "room-1.json") is None
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 from typing import Any
 
 from mart.protocol.messages import (
+    ENDED_BY_OPERATOR,
     EPISODE_PHASE_COUNTDOWN,
     EPISODE_PHASE_ENDED,
     EPISODE_PHASE_PRACTICE,
@@ -60,6 +61,22 @@ def test_an_episode_is_told_from_its_end_until_the_next_one_begins() -> None:
 def test_a_recording_that_is_gone_without_a_word_was_interrupted() -> None:
     last = told(after(EPISODE_PHASE_RECORDING, EPISODE_PHASE_PRACTICE))
     assert (last["number"], last["outcome"], last["reason"]) == (4, "unspecified", "")
+
+
+def test_who_ended_it_and_how_far_it_had_come_is_told() -> None:
+    ended = status(EPISODE_PHASE_PRACTICE)
+    ended.last_ended.number, ended.last_ended.reason = 4, "reset by Ana"
+    ended.last_ended.outcome, ended.last_ended.ended_by = OUTCOME_DISCARDED, ENDED_BY_OPERATOR
+    ended.last_ended.subtasks_done, ended.last_ended.subtasks = 1, 3
+    episodes = after(EPISODE_PHASE_RECORDING)
+    episodes.see_status(ended, 10.0)
+    last = told(episodes)
+    assert (last["outcome"], last["reason"], last["ended_by"]) == ("discarded", "reset by Ana", "operator")
+    assert (last["subtasks_done"], last["subtasks"]) == (1, 3)
+    ended.last_ended.number = 3  # of the one before
+    episodes = after(EPISODE_PHASE_RECORDING)
+    episodes.see_status(ended, 10.0)
+    assert (told(episodes)["outcome"], told(episodes)["ended_by"]) == ("unspecified", "")
 
 
 def test_practice_alone_tells_of_nothing() -> None:

@@ -30,16 +30,26 @@ class Priority(enum.Enum):
 
 @dataclass(frozen=True)
 class Topic:
-    """A key and how its messages travel. `express`: never wait to fill a batch. `must_arrive`: block, don't drop."""
+    """A key and how its messages travel. `express`: never wait to fill a batch. `must_arrive`: block, don't drop.
+
+    kept: how many of the newest a publisher keeps for subscribers that missed some and ask for them.
+    """
 
     key: str
     priority: Priority
     express: bool = False
     must_arrive: bool = False
+    kept: int = 0
+
+
+# What a recorder that stood still, or lost its link, asks for again: at 20 ticks a second 100 s of states.
+KEPT_STATES = 2048
+KEPT_COMMANDS = 2048
+KEPT_EVENTS = 512
 
 
 def command(room: str, arm: str) -> Topic:
-    return Topic(_key(room, "arm", arm, "command"), Priority.REAL_TIME, express=True)
+    return Topic(_key(room, "arm", arm, "command"), Priority.REAL_TIME, express=True, kept=KEPT_COMMANDS)
 
 
 def intent(room: str, arm: str) -> Topic:
@@ -61,7 +71,7 @@ def commands(room: str) -> str:
 
 
 def state(room: str) -> Topic:
-    return Topic(_key(room, "state"), Priority.HIGH, express=True, must_arrive=True)
+    return Topic(_key(room, "state"), Priority.HIGH, express=True, must_arrive=True, kept=KEPT_STATES)
 
 
 def status(room: str) -> Topic:
@@ -69,7 +79,12 @@ def status(room: str) -> Topic:
 
 
 def event(room: str) -> Topic:
-    return Topic(_key(room, "event"), Priority.NORMAL, must_arrive=True)
+    return Topic(_key(room, "event"), Priority.NORMAL, must_arrive=True, kept=KEPT_EVENTS)
+
+
+def recording(room: str) -> Topic:
+    """Return where a recorder says what it has kept of the episode that goes on."""
+    return Topic(_key(room, "recording"), Priority.NORMAL)
 
 
 def video(room: str, camera: str) -> Topic:

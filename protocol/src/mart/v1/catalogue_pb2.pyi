@@ -8,7 +8,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class RecordedEpisode(_message.Message):
-    __slots__ = ("path", "size_bytes", "room", "number", "task", "control_hz", "outcome", "verdict", "reason", "ticks", "simulated_s", "mode", "skill", "real_time_factor", "missing_ticks", "waited_s", "started_ns", "complete", "repaired", "interrupted", "operators", "error", "note", "dropped", "datasets", "missing_commands", "ended_by", "ended_by_name", "ended_by_arm", "subtasks_done", "subtasks")
+    __slots__ = ("path", "size_bytes", "room", "number", "task", "control_hz", "outcome", "verdict", "reason", "ticks", "simulated_s", "mode", "skill", "real_time_factor", "missing_ticks", "waited_s", "started_ns", "complete", "repaired", "interrupted", "operators", "error", "note", "dropped", "datasets", "missing_commands", "ended_by", "ended_by_name", "ended_by_arm", "subtasks_done", "subtasks", "outcome_by")
     class OperatorsEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -47,6 +47,7 @@ class RecordedEpisode(_message.Message):
     ENDED_BY_ARM_FIELD_NUMBER: _ClassVar[int]
     SUBTASKS_DONE_FIELD_NUMBER: _ClassVar[int]
     SUBTASKS_FIELD_NUMBER: _ClassVar[int]
+    OUTCOME_BY_FIELD_NUMBER: _ClassVar[int]
     path: str
     size_bytes: int
     room: str
@@ -78,7 +79,8 @@ class RecordedEpisode(_message.Message):
     ended_by_arm: str
     subtasks_done: int
     subtasks: int
-    def __init__(self, path: _Optional[str] = ..., size_bytes: _Optional[int] = ..., room: _Optional[str] = ..., number: _Optional[int] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., reason: _Optional[str] = ..., ticks: _Optional[int] = ..., simulated_s: _Optional[float] = ..., mode: _Optional[str] = ..., skill: _Optional[str] = ..., real_time_factor: _Optional[float] = ..., missing_ticks: _Optional[int] = ..., waited_s: _Optional[float] = ..., started_ns: _Optional[int] = ..., complete: _Optional[bool] = ..., repaired: _Optional[bool] = ..., interrupted: _Optional[bool] = ..., operators: _Optional[_Mapping[str, str]] = ..., error: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ..., datasets: _Optional[_Iterable[str]] = ..., missing_commands: _Optional[int] = ..., ended_by: _Optional[str] = ..., ended_by_name: _Optional[str] = ..., ended_by_arm: _Optional[str] = ..., subtasks_done: _Optional[int] = ..., subtasks: _Optional[int] = ...) -> None: ...
+    outcome_by: str
+    def __init__(self, path: _Optional[str] = ..., size_bytes: _Optional[int] = ..., room: _Optional[str] = ..., number: _Optional[int] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., reason: _Optional[str] = ..., ticks: _Optional[int] = ..., simulated_s: _Optional[float] = ..., mode: _Optional[str] = ..., skill: _Optional[str] = ..., real_time_factor: _Optional[float] = ..., missing_ticks: _Optional[int] = ..., waited_s: _Optional[float] = ..., started_ns: _Optional[int] = ..., complete: _Optional[bool] = ..., repaired: _Optional[bool] = ..., interrupted: _Optional[bool] = ..., operators: _Optional[_Mapping[str, str]] = ..., error: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ..., datasets: _Optional[_Iterable[str]] = ..., missing_commands: _Optional[int] = ..., ended_by: _Optional[str] = ..., ended_by_name: _Optional[str] = ..., ended_by_arm: _Optional[str] = ..., subtasks_done: _Optional[int] = ..., subtasks: _Optional[int] = ..., outcome_by: _Optional[str] = ...) -> None: ...
 
 class Span(_message.Message):
     __slots__ = ("begin_s", "end_s", "text")
@@ -163,16 +165,18 @@ class CatalogueRequest(_message.Message):
         path: str
         def __init__(self, path: _Optional[str] = ...) -> None: ...
     class Label(_message.Message):
-        __slots__ = ("path", "outcome", "note", "dropped")
+        __slots__ = ("path", "outcome", "note", "dropped", "by")
         PATH_FIELD_NUMBER: _ClassVar[int]
         OUTCOME_FIELD_NUMBER: _ClassVar[int]
         NOTE_FIELD_NUMBER: _ClassVar[int]
         DROPPED_FIELD_NUMBER: _ClassVar[int]
+        BY_FIELD_NUMBER: _ClassVar[int]
         path: str
         outcome: str
         note: str
         dropped: bool
-        def __init__(self, path: _Optional[str] = ..., outcome: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ...) -> None: ...
+        by: str
+        def __init__(self, path: _Optional[str] = ..., outcome: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ..., by: _Optional[str] = ...) -> None: ...
     class File(_message.Message):
         __slots__ = ("path", "offset")
         PATH_FIELD_NUMBER: _ClassVar[int]
@@ -250,7 +254,7 @@ class CatalogueReply(_message.Message):
         skills: _containers.RepeatedScalarFieldContainer[str]
         def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ..., datasets: _Optional[_Iterable[_Union[NamedDataSet, _Mapping]]] = ..., skills: _Optional[_Iterable[str]] = ...) -> None: ...
     class Details(_message.Message):
-        __slots__ = ("episode", "wall_s", "lanes", "traces", "views", "cadence", "versions", "verification")
+        __slots__ = ("episode", "wall_s", "lanes", "traces", "views", "cadence", "versions", "verification", "simulated", "viewpoints")
         class CadenceEntry(_message.Message):
             __slots__ = ("key", "value")
             KEY_FIELD_NUMBER: _ClassVar[int]
@@ -273,6 +277,8 @@ class CatalogueReply(_message.Message):
         CADENCE_FIELD_NUMBER: _ClassVar[int]
         VERSIONS_FIELD_NUMBER: _ClassVar[int]
         VERIFICATION_FIELD_NUMBER: _ClassVar[int]
+        SIMULATED_FIELD_NUMBER: _ClassVar[int]
+        VIEWPOINTS_FIELD_NUMBER: _ClassVar[int]
         episode: RecordedEpisode
         wall_s: float
         lanes: _containers.RepeatedCompositeFieldContainer[Lane]
@@ -281,14 +287,18 @@ class CatalogueReply(_message.Message):
         cadence: _containers.ScalarMap[str, str]
         versions: _containers.ScalarMap[str, str]
         verification: str
-        def __init__(self, episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., wall_s: _Optional[float] = ..., lanes: _Optional[_Iterable[_Union[Lane, _Mapping]]] = ..., traces: _Optional[_Iterable[_Union[Trace, _Mapping]]] = ..., views: _Optional[_Iterable[_Union[RecordedView, _Mapping]]] = ..., cadence: _Optional[_Mapping[str, str]] = ..., versions: _Optional[_Mapping[str, str]] = ..., verification: _Optional[str] = ...) -> None: ...
+        simulated: bool
+        viewpoints: _containers.RepeatedScalarFieldContainer[str]
+        def __init__(self, episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., wall_s: _Optional[float] = ..., lanes: _Optional[_Iterable[_Union[Lane, _Mapping]]] = ..., traces: _Optional[_Iterable[_Union[Trace, _Mapping]]] = ..., views: _Optional[_Iterable[_Union[RecordedView, _Mapping]]] = ..., cadence: _Optional[_Mapping[str, str]] = ..., versions: _Optional[_Mapping[str, str]] = ..., verification: _Optional[str] = ..., simulated: _Optional[bool] = ..., viewpoints: _Optional[_Iterable[str]] = ...) -> None: ...
     class Piece(_message.Message):
-        __slots__ = ("piece", "size_bytes")
+        __slots__ = ("piece", "size_bytes", "pending")
         PIECE_FIELD_NUMBER: _ClassVar[int]
         SIZE_BYTES_FIELD_NUMBER: _ClassVar[int]
+        PENDING_FIELD_NUMBER: _ClassVar[int]
         piece: bytes
         size_bytes: int
-        def __init__(self, piece: _Optional[bytes] = ..., size_bytes: _Optional[int] = ...) -> None: ...
+        pending: bool
+        def __init__(self, piece: _Optional[bytes] = ..., size_bytes: _Optional[int] = ..., pending: _Optional[bool] = ...) -> None: ...
     class Curated(_message.Message):
         __slots__ = ("dataset", "changed", "left_out", "episodes", "act_ns")
         class LeftOutEntry(_message.Message):

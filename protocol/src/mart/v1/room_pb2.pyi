@@ -292,16 +292,18 @@ class EpisodeRequest(_message.Message):
 class RoomsRequest(_message.Message):
     __slots__ = ("open", "close")
     class Open(_message.Message):
-        __slots__ = ("room", "task", "control_hz", "episodes")
+        __slots__ = ("room", "task", "control_hz", "episodes", "arms")
         ROOM_FIELD_NUMBER: _ClassVar[int]
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
         EPISODES_FIELD_NUMBER: _ClassVar[int]
+        ARMS_FIELD_NUMBER: _ClassVar[int]
         room: str
         task: str
         control_hz: float
         episodes: int
-        def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., episodes: _Optional[int] = ...) -> None: ...
+        arms: int
+        def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., episodes: _Optional[int] = ..., arms: _Optional[int] = ...) -> None: ...
     class Close(_message.Message):
         __slots__ = ("room",)
         ROOM_FIELD_NUMBER: _ClassVar[int]

@@ -21,7 +21,8 @@ class LabelledEpisode(BaseModel):
     """Describe one episode file by its metadata, overlaid with its labels.
 
     path: below the folder of its labels, as labels name it. file_path: where it lies, as it was asked for.
-    outcome, verdict: as labelled, else as recorded. operators: who drove each arm (`human Ana | tick 57: hold`).
+    outcome, verdict: as labelled, else as recorded. outcome_by: who labelled it so, where that is known.
+    operators: who drove each arm (`human Ana | tick 57: hold`).
     verification_pending: it is unverified because nobody could step it again yet; the recorder tries until it can.
     ended_by: task, time, operator, absence or room; None where nobody wrote it down. subtasks_done: in the last state.
     missing_commands: how many commands the states name and the file lacks; None where nobody counted.
@@ -63,6 +64,7 @@ class LabelledEpisode(BaseModel):
     interrupted: bool = False
     operators: dict[str, str] = {}
     error: str | None = None
+    outcome_by: str | None = None
     note: str | None = None
     dropped: bool = False
     datasets: tuple[str, ...] = ()  # that it is part of
@@ -90,6 +92,7 @@ class LabelledEpisode(BaseModel):
             return self
         changes = {
             "outcome": said.outcome or self.outcome,
+            "outcome_by": said.outcome_by or None,
             "verdict": said.verdict or self.verdict,
             "verification_pending": self.verification_pending and said.verdict is None,
             "note": said.note,

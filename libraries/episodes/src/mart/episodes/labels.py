@@ -56,7 +56,8 @@ _ALLOWED: dict[LabelKind, tuple[str, ...]] = {
 class Label:
     """Say one thing about one file. Raises InvalidInput for a value that the kind cannot have, and for such a path.
 
-    path: relative to the folder of the labels and below it, with forward slashes. at_ns: Unix time.
+    path: relative to the folder of the labels and below it, with forward slashes. at_ns: Unix time. by: who says it, as
+    others see them; empty where that is not known.
     """
 
     path: str
@@ -64,10 +65,11 @@ class Label:
     value: str
     at_ns: int
     detail: str = ""
+    by: str = ""
 
     def __post_init__(self) -> None:
         _require_path(self.path)
-        for text in (self.value, self.detail):
+        for text in (self.value, self.detail, self.by):
             _require_text(text)
         if not 0 <= self.at_ns < _MAX_NS:
             raise InvalidInput(f"A label of {self.at_ns} ns was given; it must be a time of before 2262.")
@@ -89,10 +91,12 @@ class Label:
 class EpisodeLabels:
     """Hold what is said about one file now; None where nothing was said.
 
+    outcome_by: who said the outcome, empty where that is not known.
     datasets: the names of those that it is part of, and since when (Unix time, nanoseconds).
     """
 
     outcome: str | None = None
+    outcome_by: str = ""
     note: str | None = None
     verdict: str | None = None
     dropped: bool = False
@@ -102,7 +106,7 @@ class EpisodeLabels:
         """Return what holds once `label` has been given."""
         match label.kind:
             case LabelKind.OUTCOME:
-                return replace(self, outcome=label.value)
+                return replace(self, outcome=label.value, outcome_by=label.by)
             case LabelKind.NOTE:
                 return replace(self, note=label.value)
             case LabelKind.VERDICT:
@@ -197,17 +201,17 @@ def say(episode: Path, kind: LabelKind, value: str, at_ns: int, detail: str = ""
 
 def _fields(label: Label) -> dict[str, object]:
     fields = {"at_ns": label.at_ns, "path": label.path, "kind": label.kind.value, "value": label.value}
-    return fields | ({"detail": label.detail} if label.detail else {})
+    return fields | {name: text for name, text in (("detail", label.detail), ("by", label.by)) if text}
 
 
 def _parse(fields: Mapping[str, Any] | None) -> Label:
     if fields is None:
         raise ValueError("it is not one JSON object")
-    at_ns, detail = fields["at_ns"], fields.get("detail", "")
-    said = fields["path"], fields["kind"], fields["value"], detail
+    at_ns, detail, by = fields["at_ns"], fields.get("detail", ""), fields.get("by", "")
+    said = fields["path"], fields["kind"], fields["value"], detail, by
     if not isinstance(at_ns, int) or not all(isinstance(text, str) for text in said):
         raise ValueError("its time is no whole number, or what it says no text")
-    return Label(fields["path"], LabelKind(fields["kind"]), fields["value"], at_ns, detail)
+    return Label(fields["path"], LabelKind(fields["kind"]), fields["value"], at_ns, detail, by)
 
 
 def _require_path(path: str) -> None:

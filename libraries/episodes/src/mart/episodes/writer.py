@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
 import os
 from collections.abc import Mapping
@@ -38,7 +39,7 @@ class EpisodeWriter:
         self._file = opening.open("wb")
         self._lock = opening.open("rb")
         fcntl.flock(self._lock, fcntl.LOCK_EX)
-        opening.rename(path)
+        rename_to_new(opening, path)
         self._mcap = Writer(
             self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True
         )
@@ -75,6 +76,11 @@ class EpisodeWriter:
         """Bring everything so far onto the disk: a kill or a power cut takes nothing of it afterwards."""
         self._mcap.flush()  # type: ignore[no-untyped-call]
         os.fsync(self._file.fileno())
+
+    def require_there(self) -> None:
+        """Raise FileNotFoundError where somebody has deleted the file: what is written would be lost."""
+        if not os.fstat(self._file.fileno()).st_nlink:
+            raise FileNotFoundError(errno.ENOENT, "its file was deleted", str(self.path))
 
     def finish(self) -> None:
         """Write the checksums of the metadata and the summary, and close the file, which stays locked."""

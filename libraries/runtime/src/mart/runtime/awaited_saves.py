@@ -70,6 +70,12 @@ class AwaitedSaves:
         elif episode.phase == EPISODE_PHASE_ENDED and episode.number:
             self._end(AwaitedSave(room, episode.number, status.wall_ns), now_s)
 
+    def await_saved(self, room: str, number: int, now_s: float) -> None:
+        """Await the file of an episode that ended some time ago; it is due at once."""
+        save = AwaitedSave(room, number, seen_ns=0)
+        self._waits.setdefault((room, number), _Wait(save, now_s, now_s))
+        _bound(self._waits, _MAX_AWAITED)
+
     def see_saved(self, room: str, number: int) -> None:
         """Take in that the file of an episode is there."""
         self._saved.append((room, number))

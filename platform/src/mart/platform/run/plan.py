@@ -125,7 +125,8 @@ def room(options: PlatformOptions, wanted: RoomsRequest.Open) -> Process:
     chosen = replace(
         options, task=wanted.task, control_hz=wanted.control_hz, episodes=wanted.episodes or None
     )
-    return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None), wanted.room)
+    arms = ("--arms", str(wanted.arms)) if wanted.arms else ()
+    return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None), wanted.room, *arms)
 
 
 def environment(options: PlatformOptions) -> dict[str, str]:

@@ -106,6 +106,7 @@ class RoomManager:
             task=asked.task,
             control_hz=asked.control_hz or DEFAULT_CONTROL_HZ,
             episodes=asked.episodes,
+            arms=asked.arms,
         )
         self._start(wanted)
         self._kept[wanted.room] = wanted
@@ -114,7 +115,7 @@ class RoomManager:
 
     def _start(self, wanted: RoomsRequest.Open) -> None:
         keys.status(wanted.room)  # raises where a room cannot be called so
-        get_task(wanted.task)
+        get_task(wanted.task, wanted.arms or None)
         require_control_hz(wanted.control_hz)
         if wanted.episodes > MAX_EPISODES:
             raise InvalidInput(

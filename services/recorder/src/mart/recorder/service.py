@@ -14,33 +14,51 @@ from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.catalogue.episode_catalogue import list_folder
 from mart.recorder.record.finalize import SavedEpisode, VerifyFile
+from mart.recorder.record.folder_claim import only_recorder_of
 from mart.recorder.record.inbox import Inbox, RoomSubscriptions
 from mart.recorder.record.recorder import Recorder
 from mart.recorder.repair.repair import log_repairs, repair_all
 from mart.recorder.settings import RecorderSettings
 from mart.recorder.verify.resimulation import replica, verify
 from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.live_services import LiveIds
 from mart.runtime.service import announced, connected
+
+_FORGOTTEN_AFTER_S = 10.0  # a router that is started anew forgets every token for about 2 s
 
 _log = logging.getLogger(__name__)
 
 
 def serve_recorder(settings: RecorderSettings, name: str) -> None:
-    """Record until the process is asked to stop; what is being recorded then is saved as it is."""
-    inbox = Inbox()
+    """Record until the process is asked to stop; what is being recorded then is saved as it is.
+
+    Raises Conflict where another recorder writes into the same folder.
+    """
+    inbox, root = Inbox(), settings.episodes_dir.resolve()
     with (
+        only_recorder_of(root),
         connected(settings, ServiceKind.RECORDER, name) as service,
         ZenohBus.connect(settings.router) as video_bus,
+        closing(LiveIds(service.bus, ServiceKind.SIM, _FORGOTTEN_AFTER_S)) as live_rooms,
     ):
         ask = replica(service.bus, settings.replica)
 
         def verify_file(file: EpisodeFile, room: RoomRecord) -> VerificationRecord:
             return verify(file, room, ask)
 
-        root = settings.episodes_dir.resolve()
         told: dict[Path, str] = {}
+
+        def tidy_folder() -> Iterator[SavedEpisode]:
+            return tidy(root, verify_file, told)
+
         recorder = Recorder(
-            settings.data_dir, service.bus, inbox, verify_file, lambda: tidy(root, verify_file, told)
+            settings.data_dir,
+            service.bus,
+            inbox,
+            live_rooms=live_rooms,
+            verify=verify_file,
+            tidy=tidy_folder,
+            name=name,
         )
         with closing(RoomSubscriptions(service.bus, video_bus, inbox)), announced(service):
             recorder.run(service.stop)

@@ -49,7 +49,12 @@ class Bus(ABC):
     def publisher(self, topic: Topic) -> Publisher: ...
 
     @abstractmethod
-    def subscribe(self, key_expression: str, handler: Handler) -> Closable: ...
+    def subscribe(self, key_expression: str, handler: Handler, *, recover: bool = False) -> Closable:
+        """Call `handler` for each sample, in a publisher's order.
+
+        recover: what was missed, because this process stood still or its link was lost, is asked for again, as far back
+        as its publisher keeps it (`Topic.kept`); what came after it waits meanwhile.
+        """
 
     @abstractmethod
     def serve(self, topic: Topic, handler: RequestHandler) -> Closable: ...

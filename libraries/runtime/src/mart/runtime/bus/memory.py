@@ -134,7 +134,7 @@ class MemoryBus(Bus):
     def publisher(self, topic: Topic) -> Publisher:
         return _MemoryPublisher(self._network, topic.key)
 
-    def subscribe(self, key_expression: str, handler: Handler) -> Closable:
+    def subscribe(self, key_expression: str, handler: Handler, *, recover: bool = False) -> Closable:
         return self._keep(self._network.subscribe(key_expression, handler))
 
     def serve(self, topic: Topic, handler: RequestHandler) -> Closable:

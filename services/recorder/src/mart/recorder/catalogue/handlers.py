@@ -15,8 +15,10 @@ from mart.protocol import clock, codec
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RecordedView, State
 from mart.protocol.recording import EVENT, VERSIONS, CadenceRecord, VerificationRecord, video_topic
+from mart.protocol.tasks import SHARED_VIEWPOINT
 from mart.recorder.catalogue import dataset_editing, pictures
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
+from mart.recorder.catalogue.drawings import Drawings
 from mart.recorder.catalogue.episode_catalogue import list_folder
 from mart.recorder.catalogue.listing import episode_message, filter_of, listing
 from mart.recorder.catalogue.timeline import timeline
@@ -28,10 +30,14 @@ _MAX_KEPT_BYTES = 128 * 1024 * 1024
 
 
 class CatalogueHandlers:
-    """Answer what is asked about the episodes in the folder `root`; of what is there, only labels ever change."""
+    """Answer what is asked about the episodes in the folder `root`; of what is there, only labels ever change.
 
-    def __init__(self, root: Path) -> None:
+    render_log: what the processes that draw videos print; beside the folder, in `logs`, where it is not given.
+    """
+
+    def __init__(self, root: Path, render_log: Path | None = None) -> None:
         self._root = root
+        self._drawings = Drawings(render_log or root.parent / "logs" / "render.log")
         self._rows: dict[str, LabelledEpisode] = {}
         self._read_s = float("-inf")
         self._kept: OrderedDict[tuple[str, ...], bytes] = OrderedDict()
@@ -52,6 +58,10 @@ class CatalogueHandlers:
         if what is None:
             raise InvalidInput(f"An empty request was given; ask for one of {', '.join(self._handlers)}.")
         return self._handlers[what](getattr(request, what))
+
+    def close(self) -> None:
+        """End what is being drawn, and forget what was."""
+        self._drawings.close()
 
     def _list(self, asked: CatalogueRequest.List) -> CatalogueReply:
         self._refresh()
@@ -83,10 +93,11 @@ class CatalogueHandlers:
         for state in file.states():
             states.setdefault(state.tick, state)
         events = [codec.decode(Event, message.payload) for message in file.messages(EVENT)]
-        details = timeline(list(states.values()), events)
+        views = _views(file, next(iter(states.values())).stamps.stepped_ns) if states else []
+        details = timeline(list(states.values()), events, None if views else file.room.control_hz)
         details.episode.CopyFrom(episode_message(self._rows[path]))
-        if states:
-            details.views.extend(_views(file, next(iter(states.values())).stamps.stepped_ns))
+        details.views.extend(views)
+        details.viewpoints.extend(_viewpoints(file) if states else ())
         details.cadence.update(file.metadata.get(CadenceRecord.NAME, {}))
         details.versions.update(file.metadata.get(VERSIONS, {}))
         details.verification = file.metadata.get(VerificationRecord.NAME, {}).get("detail", "")
@@ -103,7 +114,9 @@ class CatalogueHandlers:
             said[LabelKind.USE] = labels.DROP if asked.dropped else labels.KEEP
         if not said:
             raise InvalidInput("Nothing to say was given; say an outcome, a note, or whether to drop it.")
-        labels.append(self._root, [Label(row.path, kind, value, now_ns) for kind, value in said.items()])
+        labels.append(
+            self._root, [Label(row.path, kind, value, now_ns, by=asked.by) for kind, value in said.items()]
+        )
         row = row.with_labels(labels.read_folded(self._root).get(row.path))
         self._rows[row.path] = row
         return row
@@ -134,15 +147,20 @@ class CatalogueHandlers:
         return CatalogueReply(curated=curated)
 
     def _file_piece(self, asked: CatalogueRequest.File) -> CatalogueReply.Piece:
-        path = self._row(asked.path).file_path
-        size = path.stat().st_size
-        with path.open("rb") as file:
-            file.seek(min(asked.offset, size))
-            return CatalogueReply.Piece(piece=file.read(PIECE_BYTES), size_bytes=size)
+        return _file_piece(self._row(asked.path).file_path, asked.offset)
 
     def _video_piece(self, asked: CatalogueRequest.Video) -> CatalogueReply.Piece:
         path, camera = asked.path, asked.camera
+        file = self._file(path)
+        if next(iter(file.messages(video_topic(camera))), None) is None:
+            return self._drawn_piece(file, camera, asked.offset)
         return _piece(self._kept_or(("video", path, camera), lambda: self._video(path, camera)), asked.offset)
+
+    def _drawn_piece(self, file: EpisodeFile, viewpoint: str, offset: int) -> CatalogueReply.Piece:
+        if viewpoint not in _viewpoints(file):
+            raise NotFound.named("viewpoint", viewpoint, _viewpoints(file))
+        video = self._drawings.video(file, viewpoint)
+        return CatalogueReply.Piece(pending=True) if video is None else _file_piece(video, offset)
 
     def _video(self, path: str, camera: str) -> bytes:
         return pictures.as_mp4(pictures.frames_of(self._file(path), camera))
@@ -157,7 +175,7 @@ class CatalogueHandlers:
                 return pictures.last_picture(pictures.frames_of(file, arm))
             except NotFound:
                 continue
-        raise NotFound(f"No picture was recorded in {path}.")
+        return self._drawings.still(file)
 
     def _kept_or(self, key: tuple[str, ...], make: Callable[[], bytes]) -> bytes:
         """Return what was made before, as far as memory may be used for it; the oldest goes first."""
@@ -182,6 +200,18 @@ def _views(file: EpisodeFile, start_ns: int) -> list[RecordedView]:
         for camera in cameras.values()
         if camera in first_ns
     ]
+
+
+def _viewpoints(file: EpisodeFile) -> tuple[str, ...]:
+    """Return the viewpoints that every model of ours has."""
+    return (SHARED_VIEWPOINT, *file.episode.arms)
+
+
+def _file_piece(path: Path, offset: int) -> CatalogueReply.Piece:
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        file.seek(min(offset, size))
+        return CatalogueReply.Piece(piece=file.read(PIECE_BYTES), size_bytes=size)
 
 
 def _piece(whole: bytes, offset: int) -> CatalogueReply.Piece:

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import av
+import numpy as np
 from av.video.codeccontext import VideoCodecContext
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
+from numpy.typing import NDArray
 
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
@@ -16,7 +18,7 @@ from mart.protocol.errors import Corrupt, NotFound
 from mart.protocol.recording import video_topic
 
 _TIME_BASE = Fraction(1, 90_000)
-_PICTURE_WIDTH_PX = 320
+PICTURE_WIDTH_PX = 320
 _TICK_CODE_SHARE = Fraction(16, 496)  # the strip below the picture, docs/protocol.md
 _SPS = 7  # type of the NAL unit that only key frames have here
 
@@ -75,15 +77,20 @@ def last_picture(frames: list[RecordedFrame]) -> bytes:
     try:
         decoder = VideoCodecContext.create("h264", "r")
         picture = [*decoder.decode(av.Packet(newest.data)), *decoder.decode(None)][0]
-        image = picture.to_ndarray(format="rgb24")
-        shown = image[: round(picture.height * (1 - _TICK_CODE_SHARE))]
-        height_px = round(_PICTURE_WIDTH_PX * shown.shape[0] / picture.width / 2) * 2
-        small = av.VideoFrame.from_ndarray(shown, format="rgb24").reformat(
-            _PICTURE_WIDTH_PX, height_px, format="yuvj420p"
-        )
-        encoder = VideoCodecContext.create("mjpeg", "w")
-        encoder.width, encoder.height, encoder.pix_fmt = small.width, small.height, "yuvj420p"
-        encoder.time_base = _TIME_BASE
-        return b"".join(bytes(packet) for packet in [*encoder.encode(small), *encoder.encode(None)])
+        image = picture.to_ndarray(format="rgb24").astype(np.uint8, copy=False)
+        return as_jpeg(image[: round(picture.height * (1 - _TICK_CODE_SHARE))])
     except (av.FFmpegError, IndexError) as error:
         raise Corrupt(f"The recorded pictures cannot be read: {error}.") from error
+
+
+def as_jpeg(image: NDArray[np.uint8]) -> bytes:
+    """Return an sRGB picture, shape (rows, columns, 3), as a JPEG of 320 px width."""
+    rows, columns, _ = image.shape
+    height_px = round(PICTURE_WIDTH_PX * rows / columns / 2) * 2
+    small = av.VideoFrame.from_ndarray(image, format="rgb24").reformat(
+        PICTURE_WIDTH_PX, height_px, format="yuvj420p"
+    )
+    encoder = VideoCodecContext.create("mjpeg", "w")
+    encoder.width, encoder.height, encoder.pix_fmt = small.width, small.height, "yuvj420p"
+    encoder.time_base = _TIME_BASE
+    return b"".join(bytes(packet) for packet in [*encoder.encode(small), *encoder.encode(None)])

@@ -24,8 +24,10 @@ def serve_catalogue(settings: RecorderSettings, name: str) -> None:
     """Answer questions until the process is asked to stop."""
     os.nice(_NICENESS)
     inbox = BoundedInbox[Request](_MAX_WAITING)
-    answerer = catalogue_answerer(CatalogueHandlers(settings.episodes_dir))
+    handlers = CatalogueHandlers(settings.episodes_dir, settings.data_dir / "logs" / "render.log")
+    answerer = catalogue_answerer(handlers)
     with connected(settings, ServiceKind.CATALOGUE, name) as service, contextlib.ExitStack() as stack:
+        stack.enter_context(contextlib.closing(handlers))
         stack.enter_context(contextlib.closing(service.bus.serve(keys.catalogue(name), inbox.put)))
         stack.enter_context(announced(service))
         while not service.stop.is_set():

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from mart.protocol.messages import CatalogueReply, Event, Lane, Span, State, Trace, cue_word, operator_word
 from mart.protocol.vocabulary import OperatorKind
@@ -11,12 +12,26 @@ MAX_POINTS = 500
 WAITED_S = 0.25  # what people are told of as it happens: a stall
 
 
-def timeline(states: Sequence[State], events: Iterable[Event]) -> CatalogueReply.Details:
-    """Return `wall_s`, `lanes` and `traces`. Seconds are the wall's, since the first state was there."""
+def timeline(
+    states: Sequence[State], events: Iterable[Event], control_hz: float | None = None
+) -> CatalogueReply.Details:
+    """Return `wall_s`, `lanes` and `traces`.
+
+    Seconds are since the first state: simulated ones where `control_hz` is given, else the wall's.
+    """
     if not states:
         return CatalogueReply.Details()
-    start_ns = states[0].stamps.stepped_ns
-    seconds = [(state.stamps.stepped_ns - start_ns) / 1e9 for state in states]
+    stepped_ns = [state.stamps.stepped_ns for state in states]
+    seconds = [(one_ns - stepped_ns[0]) / 1e9 for one_ns in stepped_ns]
+    if control_hz is not None:
+        seconds = [(state.tick - states[0].tick) / control_hz for state in states]
+
+    def second_of(wall_ns: int) -> float:
+        """Return when something was said; negative for what was said before."""
+        if control_hz is None or wall_ns < stepped_ns[0]:
+            return (wall_ns - stepped_ns[0]) / 1e9
+        return seconds[bisect_right(stepped_ns, wall_ns) - 1]
+
     arms = range(len(states[0].arms))
     return CatalogueReply.Details(
         wall_s=seconds[-1],
@@ -24,9 +39,10 @@ def timeline(states: Sequence[State], events: Iterable[Event]) -> CatalogueReply
             *_subtasks(states, seconds),
             *(lane for arm in arms for lane in _of_arm(states, seconds, arm)),
             *_waiting(states, seconds),
-            *_said(events, start_ns),
+            *_said(events, second_of),
         ],
         traces=[trace for arm in arms for trace in _traces(states, seconds, arm)],
+        simulated=control_hz is not None,
     )
 
 
@@ -67,7 +83,7 @@ def _waiting(states: Sequence[State], seconds: Sequence[float]) -> Iterator[Lane
         yield Lane(kind="waiting", name=arm, spans=spans)
 
 
-def _said(events: Iterable[Event], start_ns: int) -> Iterator[Lane]:
+def _said(events: Iterable[Event], second_of: Callable[[int], float]) -> Iterator[Lane]:
     """Tell what partners said to each other, and what the services said."""
     said: dict[tuple[str, str], list[Span]] = {}
     for event in events:
@@ -78,7 +94,7 @@ def _said(events: Iterable[Event], start_ns: int) -> Iterator[Lane]:
                 lane, text = ("notice", ""), event.notice.text
             case _:
                 continue
-        if (at_s := (event.wall_ns - start_ns) / 1e9) >= 0.0:
+        if (at_s := second_of(event.wall_ns)) >= 0.0:
             said.setdefault(lane, []).append(Span(begin_s=at_s, end_s=at_s, text=text))
     for kind, name in sorted(said):
         yield Lane(kind=kind, name=name, spans=said[kind, name])

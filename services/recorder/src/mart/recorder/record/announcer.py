@@ -7,33 +7,42 @@ from __future__ import annotations
 
 import logging
 import threading
+from collections import OrderedDict
 from pathlib import Path
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput
-from mart.protocol.messages import Event, outcome_from_word
+from mart.protocol.keys import Topic
+from mart.protocol.messages import Event, RecordingReport, outcome_from_word
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.record.finalize import SavedEpisode
 from mart.runtime.bus import Bus, Publisher
 
 _log = logging.getLogger(__name__)
 
+_MAX_PUBLISHERS = 256
 _LEVELS = {"info": logging.INFO, "warning": logging.WARNING, "error": logging.ERROR}
 
 
 class Announcer:
     """Tell rooms of notices and saved episodes. Safe for several threads."""
 
-    def __init__(self, bus: Bus, data_dir: Path) -> None:
+    def __init__(self, bus: Bus, data_dir: Path, recorder: str) -> None:
+        """Speak as the recorder of this name about files below `data_dir`."""
         self._bus = bus
-        self._data_dir = data_dir
-        self._publishers: dict[str, Publisher] = {}
+        self._data_dir, self._recorder = data_dir, recorder
+        self._publishers: OrderedDict[str, Publisher] = OrderedDict()  # by key
         self._lock = threading.Lock()
 
     def notice(self, room: str, level: str, text: str) -> None:
         """Tell a room in words. level: info, warning or error."""
         _log.log(_LEVELS[level], "%s: %s", room, text)
         self._put(room, Event(notice=Event.Notice(level=level, text=text, **{"from": "recorder"})))
+
+    def report(self, room: str, boot: int, episode: int, last_tick: int) -> None:
+        """Tell a room that its episode is being recorded, up to this tick."""
+        report = RecordingReport(recorder=self._recorder, boot=boot, episode=episode, last_tick=last_tick)
+        self._publish(keys.recording(room), codec.encode(report))
 
     def saved(self, saved: SavedEpisode) -> None:
         """Tell a room that an episode of it has its file."""
@@ -55,14 +64,21 @@ class Announcer:
     def _put(self, room: str, event: Event) -> None:
         event.wall_ns = clock.wall_ns()
         event.room = room
+        try:
+            topic = keys.event(room)
+        except InvalidInput as error:  # a repaired file may name a room that cannot exist
+            _log.warning("Nobody can be told: %s", error)
+        else:
+            self._publish(topic, codec.encode(event))
+
+    def _publish(self, topic: Topic, payload: bytes) -> None:
         with self._lock:
-            if room not in self._publishers:
-                try:
-                    self._publishers[room] = self._bus.publisher(keys.event(room))
-                except InvalidInput as error:  # a repaired file may name a room that cannot exist
-                    _log.warning("Nobody can be told: %s", error)
-                    return
-            self._publishers[room].put(codec.encode(event))
+            if topic.key not in self._publishers:
+                self._publishers[topic.key] = self._bus.publisher(topic)
+            self._publishers.move_to_end(topic.key)
+            self._publishers[topic.key].put(payload)
+            while len(self._publishers) > _MAX_PUBLISHERS:
+                self._publishers.popitem(last=False)[1].close()
 
 
 def _in_words(saved: SavedEpisode) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol.errors import MartError
+from mart.protocol.messages import Model
 from mart.recorder.record.announcer import Announcer
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.finalize import SavedEpisode, VerifyFile, describe_room, finalize
@@ -18,6 +19,7 @@ from mart.recorder.record.room_models import RoomModels
 
 _log = logging.getLogger(__name__)
 
+_MAX_FETCHERS = 64  # one a room: who does not answer keeps nobody waiting
 
 # Repairs what crashes have left and brings the catalogue up to date; yields what became an episode.
 TidyFolder = Callable[[], Iterable[SavedEpisode]]
@@ -35,45 +37,76 @@ class FinalizeWorker:
         self._verify = verify
         self._tidy_folder = tidy
         self._unsaved = 0
+        self._fetching: set[str] = set()
         self._lock = threading.Lock()
         self._workers = ThreadPoolExecutor(max_workers=2, thread_name_prefix="finalize")
+        self._fetchers = ThreadPoolExecutor(max_workers=_MAX_FETCHERS, thread_name_prefix="model")
 
     def fetch_model(self, room: str, boot: int) -> None:
-        """Ask for the room's model, so that it is known when an episode begins."""
-        self._work("Fetching a model", self._models.fetch, room, boot)
+        """Ask for the room's model, so that it is known when an episode begins; one question a room at a time."""
+        with self._lock:
+            if room in self._fetching:
+                return
+            self._fetching.add(room)
+        self._work(self._fetchers, "Fetching a model", self._fetch, room, boot)
 
     def finalize(self, file: EpisodeWriter, episode: EpisodeAccumulator, facts: RoomFacts) -> None:
-        """Verify a file, complete it, give it its name, and tell the room."""
+        """Verify a file, complete it, give it its name, and tell the room. A model that lacks is awaited elsewhere."""
         with self._lock:
             self._unsaved += 1
-        self._work("Completing a file", self._finalize_counted, file, episode, facts)
+
+        def go_on(model: Model | None) -> None:
+            self._work(
+                self._workers, "Completing a file", self._finalize_counted, file, episode, facts, model
+            )
+
+        known = self._models.known(episode.room, episode.boot)
+        if known is not None:
+            go_on(known)
+        else:
+            fetched = self._fetchers.submit(self._models.fetch, episode.room, episode.boot)
+            fetched.add_done_callback(lambda done: go_on(None if done.exception() else done.result()))
 
     def tidy(self) -> None:
         """Make episodes of what an earlier run has left."""
-        self._work("Tidying the folder", self._tidy)
+        self._work(self._workers, "Tidying the folder", self._tidy)
 
     def close(self) -> None:
         """Wait until everything is done."""
+        self._fetchers.shutdown(wait=True)
         self._workers.shutdown(wait=True)
 
-    def _finalize_counted(self, file: EpisodeWriter, episode: EpisodeAccumulator, facts: RoomFacts) -> None:
+    def _fetch(self, room: str, boot: int) -> None:
+        try:
+            self._models.fetch(room, boot)
+        finally:
+            with self._lock:
+                self._fetching.discard(room)
+
+    def _finalize_counted(
+        self, file: EpisodeWriter, episode: EpisodeAccumulator, facts: RoomFacts, model: Model | None
+    ) -> None:
         """Complete a file; once none waits, look through the folder, which takes longer the more is in it."""
         try:
-            saved = self._finalize(file, episode, facts)
+            saved = self._finalize(file, episode, facts, model)
         finally:
             with self._lock:
                 self._unsaved -= 1
         if saved and not self._unsaved:
             self._tidy()  # what a full disk had left, now that there may be room
 
-    def _finalize(self, file: EpisodeWriter, episode: EpisodeAccumulator, facts: RoomFacts) -> bool:
+    def _finalize(
+        self, file: EpisodeWriter, episode: EpisodeAccumulator, facts: RoomFacts, model: Model | None
+    ) -> bool:
         try:
-            describe_room(file, facts, self._models.fetch(episode.room, episode.boot))
+            describe_room(file, facts, model)
             saved = finalize(file, episode, facts, self._root, self._verify, repaired=False)
-        except (OSError, MartError) as error:
+        except Exception as error:  # noqa: BLE001 - told, whatever it is; the next file is completed all the same
             file.abandon()
-            why = error.strerror if isinstance(error, OSError) else error
-            text = f"Episode {episode.number} could not be completed: {why}. It is kept as {file.path}."
+            if not isinstance(error, OSError | MartError):
+                _log.exception("Completing %s failed", file.path)
+            kept = f"It is kept as {file.path}." if file.path.exists() else f"Its file {file.path} is gone."
+            text = f"Episode {episode.number} could not be completed: {in_words(error)}. {kept}"
             self._announcer.notice(episode.room, "error", text)
             return False
         self._announcer.saved(saved)
@@ -83,10 +116,21 @@ class FinalizeWorker:
         for saved in self._tidy_folder():
             self._announcer.saved(saved)
 
-    def _work(self, what: str, call: Callable[..., object], *arguments: object) -> None:
+    def _work(
+        self, workers: ThreadPoolExecutor, what: str, call: Callable[..., object], *arguments: object
+    ) -> None:
         def report(done: Future[object]) -> None:
             error = done.exception()
             if error is not None:
                 _log.error("%s failed", what, exc_info=error)
 
-        self._workers.submit(call, *arguments).add_done_callback(report)
+        workers.submit(call, *arguments).add_done_callback(report)
+
+
+def in_words(error: Exception) -> str:
+    """Return what went wrong, for people: an unexpected error by its name."""
+    if isinstance(error, OSError):
+        return error.strerror or type(error).__name__
+    if isinstance(error, MartError):
+        return str(error).rstrip(".")
+    return f"the recorder failed at it ({type(error).__name__}), and its log says how"

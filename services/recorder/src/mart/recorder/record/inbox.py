@@ -100,10 +100,10 @@ class RoomSubscriptions:
             return lambda sample: inbox.offer(BusArrival(kind, sample.key, sample.payload, clock.wall_ns()))
 
         self._subscriptions: list[Closable] = [
-            bus.subscribe(keys.EVERY_STATE, into(ArrivalKind.STATE)),
+            bus.subscribe(keys.EVERY_STATE, into(ArrivalKind.STATE), recover=True),
             bus.subscribe(keys.EVERY_STATUS, into(ArrivalKind.STATUS)),
-            bus.subscribe(keys.EVERY_EVENT, into(ArrivalKind.EVENT)),
-            bus.subscribe(keys.EVERY_COMMAND, into(ArrivalKind.COMMAND)),
+            bus.subscribe(keys.EVERY_EVENT, into(ArrivalKind.EVENT), recover=True),
+            bus.subscribe(keys.EVERY_COMMAND, into(ArrivalKind.COMMAND), recover=True),
             video_bus.subscribe(keys.EVERY_VIDEO, into(ArrivalKind.VIDEO)),
         ]
 

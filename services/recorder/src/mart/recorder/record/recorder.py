@@ -2,41 +2,58 @@
 
 from __future__ import annotations
 
+import logging
 import threading
+from collections.abc import Container
 from pathlib import Path
 
 from mart.protocol import clock, keys
 from mart.protocol.errors import InvalidInput
 from mart.recorder.record.announcer import Announcer
 from mart.recorder.record.arrival_decoder import UnusableArrivals
-from mart.recorder.record.episode_closing import SILENCE_S
 from mart.recorder.record.finalize import VerifyFile
 from mart.recorder.record.finalize_worker import FinalizeWorker, TidyFolder
 from mart.recorder.record.inbox import Inbox, InboxBatch
 from mart.recorder.record.room_models import RoomModels
 from mart.recorder.record.room_recording import RecordingTools, RoomRecording
 from mart.runtime.bus import Bus
+from mart.runtime.rate_limit import KeyedRateLimit
 
 _STEP_S = 0.05
 _MAX_ROOMS = 64
+_TELL_AGAIN_S = 60.0
+
+_log = logging.getLogger(__name__)
 
 
 class Recorder:
     """Take arrivals from an inbox and write them, in the caller's thread.
 
-    data_dir: `episodes` below it is where files go. verify: says whether a finished file follows bit for bit.
-    tidy: repairs what an earlier run has left, and brings the catalogue up to date.
+    data_dir: `episodes` below it is where files go. live_rooms: the rooms that have a sim; no other is recorded.
+    verify: says whether a finished file follows bit for bit. tidy: repairs what an earlier run has left, and brings the
+    catalogue up to date. name: of this recorder, as rooms are told.
     """
 
-    def __init__(self, data_dir: Path, bus: Bus, inbox: Inbox, verify: VerifyFile, tidy: TidyFolder) -> None:
+    def __init__(
+        self,
+        data_dir: Path,
+        bus: Bus,
+        inbox: Inbox,
+        *,
+        live_rooms: Container[str],
+        verify: VerifyFile,
+        tidy: TidyFolder,
+        name: str = "recorder-1",
+    ) -> None:
         root = data_dir.resolve() / "episodes"
-        models, announcer = RoomModels(bus), Announcer(bus, data_dir.resolve())
+        models, announcer = RoomModels(bus), Announcer(bus, data_dir.resolve(), name)
         self._tools = RecordingTools(
             root, models, announcer, FinalizeWorker(root, models, announcer, verify, tidy)
         )
-        self._inbox = inbox
+        self._inbox, self._live_rooms = inbox, live_rooms
         self._rooms: dict[str, RoomRecording] = {}
         self._unusable = UnusableArrivals()
+        self._tellings = KeyedRateLimit(1, _TELL_AGAIN_S)
 
     def run(self, stop: threading.Event) -> None:
         """Record until `stop` is set, then save what is open."""
@@ -58,8 +75,11 @@ class Recorder:
                 self._recording(arrival.room, now_s).take(arrival, now_s)
             except InvalidInput as error:
                 self._unusable.add(arrival, error, now_s)
+            except Exception:  # noqa: BLE001 - one message must not end the recording of all rooms
+                _log.exception("A %s on %s could not be taken", arrival.kind.name.lower(), arrival.key)
         for room in self._rooms.values():
             room.advance(now_s)
+        self._forget()
 
     def close(self) -> None:
         """End what is being recorded and wait until everything is saved."""
@@ -70,20 +90,30 @@ class Recorder:
     def _recording(self, name: str, now_s: float) -> RoomRecording:
         if name not in self._rooms:
             keys.state(name)  # raises InvalidInput for a name that no room can have
+            if name not in self._live_rooms:
+                raise InvalidInput(f"Room {name!r} has no sim that is alive; it is not recorded.")
             if len(self._rooms) >= _MAX_ROOMS:
-                self._forget_silent(now_s)
-            if len(self._rooms) >= _MAX_ROOMS:
-                raise InvalidInput(f"Room {name!r} is one too many; at most {_MAX_ROOMS} are recorded.")
+                self._make_place(name, now_s)
             self._rooms[name] = RoomRecording(name, self._tools)
         return self._rooms[name]
 
-    def _forget_silent(self, now_s: float) -> None:
-        """Leave rooms that have ended: nobody tells of a room that it was closed."""
-        self._rooms = {
-            name: room
-            for name, room in self._rooms.items()
-            if room.is_writing or now_s - room.heard_s <= SILENCE_S
-        }
+    def _make_place(self, name: str, now_s: float) -> None:
+        """Leave the room that was silent longest; raises InvalidInput, and tells the room, where all are recorded."""
+        quiet = [room for room, recording in self._rooms.items() if not recording.is_writing]
+        if not quiet:
+            text = f"{_MAX_ROOMS} rooms are being recorded, which is the most; this one is not."
+            if not self._tellings.wait_s(name, now_s):
+                self._tellings.count(name, now_s)
+                self._tools.announcer.notice(name, "error", text)
+            raise InvalidInput(f"Room {name!r}: {text}")
+        del self._rooms[min(quiet, key=lambda room: self._rooms[room].heard_s)]
+
+    def _forget(self) -> None:
+        """Leave rooms whose sim is gone; a file that is open is closed first, by silence at the latest."""
+        idle = [name for name, room in self._rooms.items() if not room.is_writing]
+        for name in idle:
+            if name not in self._live_rooms:
+                del self._rooms[name]
 
     def _report_losses(self, batch: InboxBatch) -> None:
         if not batch.lost_frames and not batch.lost_messages:

@@ -16,14 +16,17 @@ from mart.recorder.record.announcer import Announcer
 from mart.recorder.record.arrival_decoder import ArrivedMessage, decode_arrival
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.finalize import describe_room, part_path
-from mart.recorder.record.finalize_worker import FinalizeWorker
+from mart.recorder.record.finalize_worker import FinalizeWorker, in_words
 from mart.recorder.record.inbox import BusArrival
 from mart.recorder.record.room_models import RoomModels
 from mart.recorder.record.room_tracker import CloseFile, FileAction, OpenFile, RoomTracker
+from mart.runtime.rate_limit import RateLimit
 
 _log = logging.getLogger(__name__)
 
 FLUSH_S = 0.5
+_REPORT_S = 0.2
+_TELL_AGAIN_S = 60.0
 _LOW_SPACE_BYTES = 1_000_000_000
 
 
@@ -47,7 +50,8 @@ class RoomRecording:
         self._tools = tools
         self._tracker = RoomTracker(room)
         self._boot = 0
-        self._flushed_s = 0.0
+        self._flushed_s = self._reported_s = 0.0
+        self._tellings = RateLimit(1, _TELL_AGAIN_S)
 
     @property
     def is_writing(self) -> bool:
@@ -64,15 +68,23 @@ class RoomRecording:
         self._apply(self._tracker.advance(now_s))
         if self._files and now_s - self._flushed_s >= FLUSH_S:
             self._flush(now_s)
+        episode = self._tracker.episode
+        if episode in self._files and now_s - self._reported_s >= _REPORT_S:
+            self._reported_s = now_s
+            self._tools.announcer.report(episode.room, episode.boot, episode.number, episode.last_tick)
+        if self._tracker.unknown_task and self._tellings.allows(now_s):
+            text = f"The recorder does not know the task {self._tracker.unknown_task[:64]!r}: nothing is recorded here."
+            self._tools.announcer.notice(self._room, "error", text)
 
     def _flush(self, now_s: float) -> None:
         """Bring the open files onto the disk, with what is known about the room by now."""
         self._flushed_s = now_s
         for episode, file in list(self._files.items()):
             try:
+                file.require_there()
                 describe_room(file, self._tracker.facts, self._tools.models.known(self._room, self._boot))
                 file.flush()
-            except OSError as error:
+            except Exception as error:  # noqa: BLE001 - as above
                 self._give_up(episode, error)
 
     def finish(self, reason: str) -> None:
@@ -110,7 +122,7 @@ class RoomRecording:
         for action in actions:
             try:
                 self._act(action)
-            except OSError as error:
+            except Exception as error:  # noqa: BLE001 - told, whatever it is; other episodes go on
                 self._give_up(action.episode, error)
 
     def _act(self, action: FileAction) -> None:
@@ -142,12 +154,15 @@ class RoomRecording:
         else:
             self._tools.finalizer.finalize(file, episode, copy.deepcopy(self._tracker.facts))
 
-    def _give_up(self, episode: EpisodeAccumulator, error: OSError) -> None:
+    def _give_up(self, episode: EpisodeAccumulator, error: Exception) -> None:
         """Leave this episode: the disk is full or broken. The room and its next episode go on."""
+        if not isinstance(error, OSError):
+            _log.error("Recording episode %d failed", episode.number, exc_info=error)
         self._tracker.abandon(episode)
         file = self._files.pop(episode, None)
         if file is not None:
             file.abandon()
-        where = f" What was written until now is in {file.path}." if file is not None else ""
-        text = f"Recording of episode {episode.number} stopped: {error.strerror}.{where} The next one is tried again."
+        kept = file is not None and file.path.exists()
+        where = f" What was written until now is in {file.path}." if file is not None and kept else ""
+        text = f"Recording of episode {episode.number} stopped: {in_words(error)}.{where} The next one is tried again."
         self._tools.announcer.notice(self._room, "error", text)

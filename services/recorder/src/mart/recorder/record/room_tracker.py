@@ -17,7 +17,9 @@ from dataclasses import dataclass
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
 from mart.episodes.mcap_entries import McapEntry, command_entry, event_entry, state_entries, video_entry
+from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Command, Event, RoomStatus, State
+from mart.protocol.tasks import task_names
 from mart.recorder.record.early_commands import PREROLL_NS, KeptCommand, NewestCommands
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.episode_closing import OpenEpisode
@@ -59,6 +61,7 @@ class RoomTracker:
 
     def __init__(self, room: str) -> None:
         self.facts = RoomFacts(room)
+        self.unknown_task = ""  # what the room says it is for, where that is no task
         self._open: list[OpenEpisode] = []  # the newest last
         self._over: deque[EpisodeAccumulator] = deque(maxlen=_MAX_OPEN)  # not to be entered again
         self._commands = NewestCommands()
@@ -95,7 +98,14 @@ class RoomTracker:
         return actions
 
     def event(self, event: Event, payload: bytes, arrived_ns: int, now_s: float) -> list[FileAction]:
-        """Take an event: it belongs to the episode that it names, else to the one in which it happened."""
+        """Take an event: it belongs to the episode that it names, else to the one in which it happened.
+
+        Raises InvalidInput for an episode of a task that does not exist.
+        """
+        if event.HasField("episode_started") and event.episode_started.task not in task_names():
+            raise InvalidInput(
+                f"Task {event.episode_started.task[:64]!r} was announced, which does not exist."
+            )
         self.facts.learn_event(event)
         entry = event_entry(event, payload, arrived_ns)
         if event.HasField("episode_started") or event.HasField("episode_ended"):
@@ -111,7 +121,9 @@ class RoomTracker:
         """Take a status, which is repeated: where an event was lost, it still says that an episode is over, and how."""
         self._hear(status.boot, now_s)
         self._remember(status)
-        self.facts.learn_status(status)
+        self.unknown_task = "" if status.task in task_names() else status.task
+        if not self.unknown_task:
+            self.facts.learn_status(status)
         for one in self._open:
             if status.boot != one.episode.boot:
                 one.leave("the sim restarted", now_s)
@@ -202,7 +214,7 @@ class RoomTracker:
     def _enter(
         self, state: State, arrived_ns: int, now_s: float
     ) -> tuple[list[FileAction], OpenEpisode | None]:
-        if not state.episode or any(over.belongs(state) for over in self._over):
+        if not state.episode or self.unknown_task or any(over.belongs(state) for over in self._over):
             return [], None
         actions: list[FileAction] = []
         while len(self._open) >= _MAX_OPEN:

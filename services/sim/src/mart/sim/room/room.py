@@ -18,6 +18,7 @@ from mart.protocol.messages import (
     OUTCOME_SUCCESS,
     EpisodeRequest,
     Event,
+    RecordingReport,
     RoomReply,
     RoomStatus,
     Seat,
@@ -39,6 +40,7 @@ from mart.sim.room.episode_state_machine import (
     ResetWorld,
     Terms,
 )
+from mart.sim.room.recording_watch import RecordingWatch
 from mart.sim.room.room_publisher import REPEAT_S, RoomPublisher
 from mart.sim.room.saved_room import SavedRoom, SavedStop
 from mart.sim.room.seats import SeatHolder, SeatTable
@@ -81,10 +83,10 @@ class Room:
         self._episode = EpisodeStateMachine(record.seed, horizon_ticks, record.episodes)
         self._ticker = Ticker(name, world, self._boot_ns, now_s)
         self._last_ended: Event.EpisodeEnded | None = None
+        self._recording_watch = RecordingWatch()
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
-        self._status_due_s = now_s
-        self._repeat_due_s = now_s
+        self._status_due_s = self._repeat_due_s = now_s
         self._stop = StopLatch(
             self._barrier, self._seats, record.stop, self._stop_changed, now_s, paced=not terms.lockstep
         )
@@ -95,6 +97,11 @@ class Room:
     def rejected(self) -> Counter[CommandRejection]:
         """Count the commands that were not used since the room opened, by reason."""
         return self._barrier.rejected
+
+    @property
+    def unsaved(self) -> tuple[int, ...]:
+        """Return the newest episodes that have ended and of whose file nobody has told."""
+        return self._record.uncounted()
 
     @property
     def in_practice(self) -> bool:
@@ -143,9 +150,15 @@ class Room:
         return RoomReply(status=self.status(now_s))
 
     def episode_saved(self, saved: Event.EpisodeSaved) -> None:
-        """Count an episode that the recorder has saved."""
+        """Count an episode that the recorder has saved, once, however often it is told."""
         good = saved.verified and saved.outcome == OUTCOME_SUCCESS
-        self._remember(self._record.with_changes(saved=self._record.saved + 1, good=self._record.good + good))
+        if (counted := self._record.with_saved(saved.number, good)) is not self._record:
+            self._remember(counted)
+
+    def recording_reported(self, report: RecordingReport) -> None:
+        """Take note of what a recorder has kept of the episode."""
+        if report.boot == self._boot_ns:
+            self._recording_watch.reported(report)
 
     def advance(self, now_s: float) -> float:
         """Do what is due; return the time at which to call again if nothing arrives before."""
@@ -185,6 +198,7 @@ class Room:
             plan=room_messages.plan(self._record),
             stop=self._stop.message(),
             last_ended=self._last_ended,
+            unrecorded=self._recording_watch.objection(now_s),
         )
 
     def _fire(self, inputs: TickInputs, now_s: float) -> None:
@@ -196,16 +210,15 @@ class Room:
             self._do(self._episode.abandon(OUTCOME_FAILURE, "the physics diverged", ender, now_s), now_s)
             return
         self._tell_state(state, now_s)
-        progress = state.progress
-        self._do(self._episode.ticked(progress.success, progress.failed or None, now_s), now_s)
+        done, failed = state.progress.success, state.progress.failed or None
+        self._do(self._episode.ticked(done, failed, now_s), now_s)
 
     def _do(self, effects: Sequence[Effect], now_s: float) -> None:
         for effect in effects:
             match effect:
                 case ResetWorld():
-                    self._tell_state(
-                        self._ticker.reset(effect.seed, self._seats, self._episode, now_s), now_s
-                    )
+                    fresh = self._ticker.reset(effect.seed, self._seats, self._episode, now_s)
+                    self._tell_state(fresh, now_s)
                     self._barrier.restart(now_s)
                     self._age.world_reset(self._ticker.tick)
                     self._tell(Event(world_reset=Event.WorldReset(seed=effect.seed)))
@@ -217,21 +230,9 @@ class Room:
 
     def _start(self, effect: BeginEpisode, now_s: float) -> None:
         self._remember(self._record.with_changes(episodes=effect.number))
-        self._tell(
-            Event(
-                episode_started=Event.EpisodeStarted(
-                    number=effect.number,
-                    seed=effect.seed,
-                    seats=[self._seat_message(seat) for seat in self._seats],
-                    task=self._world.task.name,
-                    control_hz=self._world.control_hz,
-                    model_sha256=self._world.model_sha256,
-                    lockstep=self._terms.lockstep,
-                    skill=self._terms.skill,
-                    time_limit_s=self._time_limit_s,
-                )
-            )
-        )
+        seats = [self._seat_message(seat) for seat in self._seats]
+        begun = room_messages.episode_started(effect, seats, self._world, self._terms, self._time_limit_s)
+        self._tell(begun)
         self._tell_state(self._ticker.standing(self._seats, self._episode, now_s), now_s)
         self._barrier.restart(now_s)
 
@@ -242,9 +243,8 @@ class Room:
     def _give_up(self, arm: str, now_s: float) -> None:
         name = self._seats[arm].driver.called
         self._seat_changed(self._seats.free(arm), now_s)
-        self._tell(
-            room_messages.notice("warning", f"{name} gave no command for {FREED_AFTER_S:g} s: {arm} is free.")
-        )
+        text = f"{name} gave no command for {FREED_AFTER_S:g} s: {arm} is free."
+        self._tell(room_messages.notice("warning", text))
 
     def _seat_changed(self, seat: SeatHolder, now_s: float) -> None:
         self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
@@ -269,6 +269,7 @@ class Room:
 
     def _tell_state(self, state: State, now_s: float) -> None:
         self._publisher.state(state)
+        self._recording_watch.told(0 if self._terms.lockstep else state.episode, state.tick, now_s)
         self._repeat_due_s = now_s + REPEAT_S
 
     def _tell(self, event: Event) -> None:
@@ -280,6 +281,8 @@ class Room:
             self._publisher.repeat_state()
             self._repeat_due_s = now_s + REPEAT_S
         if now_s >= self._status_due_s:
+            if (news := self._recording_watch.news(now_s)) is not None:
+                self._tell(room_messages.notice(*news))
             self._publisher.status(self.status(now_s))
             self._status_due_s = now_s + REPEAT_S
 
@@ -293,6 +296,5 @@ class Room:
         try:
             self._keep(record)
         except OSError as error:
-            self._tell(
-                room_messages.notice("error", f"A restart would forget this change of the room: {error}.")
-            )
+            text = f"A restart would forget this change of the room: {error}."
+            self._tell(room_messages.notice("error", text))

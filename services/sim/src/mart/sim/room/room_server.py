@@ -7,15 +7,18 @@ from collections.abc import Callable
 from functools import partial
 
 from mart.protocol import clock, codec, keys
-from mart.protocol.errors import MartError
-from mart.protocol.messages import EpisodeRequest, Event, RoomReply, SeatRequest
+from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.messages import EpisodeRequest, Event, RecordingReport, RoomReply, SeatRequest
 from mart.protocol.queryables import EPISODE, SEAT
+from mart.protocol.received import decode_received
 from mart.runtime.bus import Bus, Closable, Request, Sample
 from mart.runtime.serving import RequestAnswerer, send_reply
 from mart.sim.room.room import Room
 from mart.sim.room.save_follower import SaveFollower
 from mart.sim.world import World
 from mart.sim.world.model_message import model_message
+
+_MAX_REPORT_BYTES = 1024
 
 
 class RoomServer:
@@ -48,7 +51,8 @@ class RoomServer:
         self._seat = RequestAnswerer(SEAT, self._answer_seat, self._on_refused)
         self._episode = RequestAnswerer(EPISODE, self._answer_episode, self._on_refused)
         self._open: list[Closable] = [
-            SaveFollower(bus, name, self._on_saved, garbled),
+            SaveFollower(bus, name, self._on_saved, garbled, room.unsaved),
+            bus.subscribe(keys.recording(name).key, self._on_recording_report),
             bus.serve(keys.seat(name), self._on_seat_request),
             bus.serve(keys.episode(name), self._on_episode_request),
             bus.serve(keys.model(name), self._on_model_request),
@@ -68,6 +72,14 @@ class RoomServer:
             self._room.hear, sample.payload, keys.arm_of(sample.key), self._now_s(), clock.wall_ns()
         )
         self._submit(hear)
+
+    def _on_recording_report(self, sample: Sample) -> None:
+        try:
+            report = decode_received(RecordingReport, sample.payload, _MAX_REPORT_BYTES)
+        except InvalidInput:
+            self._garbled["recording report"] += 1
+        else:
+            self._leave(partial(self._room.recording_reported, report))
 
     def _on_saved(self, saved: Event.EpisodeSaved) -> None:
         self._leave(partial(self._room.episode_saved, saved))

@@ -6,11 +6,11 @@ import contextlib
 import logging
 import threading
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput, MartError
-from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RoomStatus
+from mart.protocol.messages import OUTCOME_SUCCESS, CatalogueReply, CatalogueRequest, Event, RoomStatus
 from mart.protocol.received import decode_received
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.ask import ask
@@ -29,15 +29,25 @@ OnSaved = Callable[[Event.EpisodeSaved], None]
 
 
 class SaveFollower:
-    """Call `on_saved` once for each episode of a room whose file is there. Asks on a thread of its own.
+    """Call `on_saved` for each episode of a room whose file is there, once, or again when it has become good.
 
-    garbled: counts what could not be decoded.
+    garbled: counts what could not be decoded. awaited: episodes that ended before, of whose file nobody has heard.
+    Asks on a thread of its own.
     """
 
-    def __init__(self, bus: Bus, room: str, on_saved: OnSaved, garbled: Counter[str]) -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        room: str,
+        on_saved: OnSaved,
+        garbled: Counter[str],
+        awaited: Iterable[int] = (),
+    ) -> None:
         self._bus, self._room, self._on_saved, self._garbled = bus, room, on_saved, garbled
         self._awaited = AwaitedSaves()
-        self._heard: dict[int, None] = {}
+        for number in awaited:
+            self._awaited.await_saved(room, number, clock.monotonic_s())
+        self._heard: dict[int, bool] = {}  # number → whether it is good
         self._lock = threading.Lock()
         self._closing = threading.Event()
         self._subscriptions = [
@@ -72,9 +82,10 @@ class SaveFollower:
     def _hear(self, saved: Event.EpisodeSaved) -> None:
         with self._lock:
             self._awaited.see_saved(self._room, saved.number)
-            if saved.number in self._heard:  # an episode in two files, or told of twice
-                return
-            self._heard[saved.number] = None
+            good = saved.verified and saved.outcome == OUTCOME_SUCCESS
+            if self._heard.get(saved.number, False) or self._heard.get(saved.number) is good:
+                return  # an episode in two files, or told of twice
+            self._heard[saved.number] = good
             while len(self._heard) > _REMEMBERED:
                 del self._heard[next(iter(self._heard))]
         self._on_saved(saved)

@@ -20,6 +20,9 @@ from mart.sim.room.seats import Driver, SeatHolder
 
 _log = logging.getLogger(__name__)
 
+_MAX_COUNTED = 256
+_MAX_AWAITED = 4  # after a restart
+
 
 class SavedDriver(BaseModel):
     """Store who drives, in words."""
@@ -70,8 +73,20 @@ class SavedStop(BaseModel):
     wall_ns: int = Field(ge=0)
 
 
+class CountedEpisode(BaseModel):
+    """Store that an episode was counted among the saved ones, and whether among the good ones."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    number: int = Field(ge=1)
+    good: bool
+
+
 class SavedRoom(BaseModel):
-    """Store one room: `episodes` is the newest number; `saved` and `good` count what the recorder reported."""
+    """Store one room: `episodes` is the newest number; `saved` and `good` count what the recorder reported.
+
+    counted: the newest of them, so that what is told again counts once.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -79,6 +94,7 @@ class SavedRoom(BaseModel):
     episodes: int = Field(0, ge=0, le=MAX_NUMBER)
     saved: int = Field(0, ge=0, le=MAX_NUMBER)
     good: int = Field(0, ge=0, le=MAX_NUMBER)
+    counted: tuple[CountedEpisode, ...] = ()
     seats: tuple[SavedSeat, ...] = ()
     plan: SavedPlan | None = None
     stop: SavedStop | None = None
@@ -90,6 +106,29 @@ class SavedRoom(BaseModel):
         if self.plan is not None and (self.plan.task, self.plan.episodes) == (task, episodes):
             return self
         return self.with_changes(plan=SavedPlan(task=task, episodes=episodes, good_before=self.good))
+
+    def with_saved(self, number: int, good: bool) -> SavedRoom:
+        """Return it with this episode counted; itself where that changes nothing.
+
+        A later word of the same episode may only make it good: an episode in two files, or one that was verified late.
+        A number that this room never gave, or that is older than all that are remembered, is not counted.
+        """
+        known = {one.number: one.good for one in self.counted}
+        forgotten = len(known) >= _MAX_COUNTED and number < min(known)
+        if not 1 <= number <= self.episodes or forgotten or known.get(number) or known.get(number) is good:
+            return self
+        known_now = sorted((known | {number: good}).items())[-_MAX_COUNTED:]
+        return self.with_changes(
+            saved=self.saved + (number not in known),
+            good=self.good + good,
+            counted=tuple(CountedEpisode(number=one, good=is_good) for one, is_good in known_now),
+        )
+
+    def uncounted(self) -> tuple[int, ...]:
+        """Return the newest episodes of whose file nobody has told yet."""
+        counted = {one.number for one in self.counted}
+        first = max(1, self.episodes - _MAX_AWAITED + 1)
+        return tuple(number for number in range(first, self.episodes + 1) if number not in counted)
 
     def holders(self) -> list[SeatHolder]:
         """Return the stored seats."""

@@ -8,9 +8,9 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
-from starlette.responses import Response, StreamingResponse
+from starlette.responses import JSONResponse, Response, StreamingResponse
 
-from mart.protocol.errors import Corrupt, MartError, NotFound
+from mart.protocol.errors import Corrupt, MartError, NotFound, Unavailable
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, RecordedEpisode
 from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import EpisodeOutcome
@@ -81,10 +81,10 @@ async def episode(path: Path, app: App, _user: JoinedUser) -> Json:
 
 
 @router.post("/episode")
-async def label(path: Path, body: LabelRequest, app: App, _user: JoinedUser) -> Json:
+async def label(path: Path, body: LabelRequest, app: App, user: JoinedUser) -> Json:
     """Write down what somebody says of an episode."""
     said = body.model_dump(exclude_none=True)
-    request = CatalogueRequest(label=CatalogueRequest.Label(path=path, **said))
+    request = CatalogueRequest(label=CatalogueRequest.Label(path=path, by=user.name, **said))
     labelled = (await app.catalogue.ask(request)).episode
     if body.outcome is not None:
         app.lobby.see_label(labelled.path, body.outcome)
@@ -106,7 +106,7 @@ async def file(path: Path, app: App, _user: JoinedUser) -> Response:
 
 @router.get("/episode/video")
 async def video(path: Path, camera: Camera, app: App, _user: JoinedUser) -> Response:
-    """Send what one camera saw, as it was recorded: MP4."""
+    """Send what one camera saw, as it was recorded, else as it is drawn: MP4; 202 while it is drawn: ask again."""
 
     def request(offset: int) -> CatalogueRequest:
         return CatalogueRequest(video=CatalogueRequest.Video(path=path, camera=camera, offset=offset))
@@ -116,10 +116,10 @@ async def video(path: Path, camera: Camera, app: App, _user: JoinedUser) -> Resp
 
 @router.get("/episode/picture")
 async def picture(path: Path, app: App, _user: JoinedUser) -> Response:
-    """Send the last recorded picture, small; an empty answer where there is none that can be shown."""
+    """Send the last picture, recorded or drawn, small; an empty answer where there is none that can be shown."""
     try:
         reply = await app.catalogue.ask(CatalogueRequest(picture=CatalogueRequest.Picture(path=path)))
-    except (NotFound, Corrupt):
+    except (NotFound, Corrupt, Unavailable):
         return Response(status_code=204)
     return Response(reply.piece.piece, media_type="image/jpeg")
 
@@ -136,6 +136,8 @@ async def _whole(
         return (await app.catalogue.ask(request(offset))).piece
 
     first = await piece(0)
+    if first.pending:
+        return JSONResponse({"ready": False}, 202)
     sized = {"Content-Length": str(first.size_bytes)} | (headers or {})
     return StreamingResponse(pieces_of(first, piece), media_type=media_type, headers=sized)
 

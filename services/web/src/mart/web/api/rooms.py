@@ -17,7 +17,7 @@ from mart.protocol.messages import (
     RoomsRequest,
     operator_from_word,
 )
-from mart.protocol.tasks import get_task, task_names
+from mart.protocol.tasks import MAX_ARMS, arm_counts, get_task, task_names
 from mart.protocol.vocabulary import OperatorKind
 from mart.web.api.dependencies import App, JoinedUser
 from mart.web.lobby.room_json import Json, seat_json
@@ -34,6 +34,7 @@ class NewRoom(BaseModel):
     room: str = Field("", max_length=64)  # empty: a free name
     control_hz: float = 0.0  # 0: the usual rate
     episodes: int = Field(0, ge=0, le=10_000)  # good ones that are wanted; 0: no plan
+    arms: int = Field(0, ge=0, le=MAX_ARMS)  # 0: as many as the task usually has
 
 
 class TakeSeatRequest(BaseModel):
@@ -141,4 +142,10 @@ async def let_go_of_stop(room: str, app: App, user: JoinedUser) -> Json:
 
 def _task_json(name: str) -> Json:
     task = get_task(name)
-    return {"name": name, "title": task.title, "instruction": task.instruction, "arms": len(task.arms)}
+    return {
+        "name": name,
+        "title": task.title,
+        "instruction": task.instruction,
+        "arms": len(task.arms),
+        "arm_counts": list(arm_counts(name)),
+    }

@@ -17,6 +17,7 @@ from mart.protocol.messages import (
     Outcome,
     RoomStatus,
     Seat,
+    ended_by_word,
     outcome_from_word,
     outcome_word,
 )
@@ -33,6 +34,7 @@ class _LastEpisode:
     ended_s: float
     epochs: dict[str, int] = field(default_factory=dict)
     saved: Event.EpisodeSaved | None = None
+    ended: Event.EpisodeEnded | None = None  # what the sim says of it besides
 
 
 class LastEpisodes:
@@ -59,7 +61,12 @@ class LastEpisodes:
         if episode.phase == EPISODE_PHASE_ENDED and episode.number:
             self._end(status, episode.number, episode.outcome, episode.reason, now_s)
         elif episode.phase == EPISODE_PHASE_PRACTICE and running is not None:
-            self._end(status, running, OUTCOME_UNSPECIFIED, "", now_s)
+            told = status.last_ended.number == running  # else it is gone without a word
+            outcome = status.last_ended.outcome if told else OUTCOME_UNSPECIFIED
+            self._end(status, running, outcome, status.last_ended.reason if told else "", now_s)
+        known = self._last.get(room)
+        if known is not None and known.ended is None and known.number == status.last_ended.number:
+            self._keep(room, replace(known, ended=status.last_ended, reason=status.last_ended.reason))
 
     def see_saved(self, room: str, saved: Event.EpisodeSaved, seats: Sequence[Seat], now_s: float) -> None:
         """Take in that the file of an episode is there; `seats`: the room's, as far as they are known."""
@@ -88,6 +95,7 @@ class LastEpisodes:
             "number": known.number,
             "outcome": outcome_word(known.outcome),
             "reason": known.reason,
+            **_ended_json(known.ended or Event.EpisodeEnded()),
             "since_s": max(0.0, now_s - known.ended_s),
             "epochs": known.epochs,
             "saved": _saved_json(known.saved),
@@ -113,6 +121,14 @@ def _bound(rooms: OrderedDict[str, Any]) -> None:
 
 def _epochs(seats: Sequence[Seat]) -> dict[str, int]:
     return {seat.arm: seat.epoch for seat in seats}
+
+
+def _ended_json(ended: Event.EpisodeEnded) -> Json:
+    return {
+        "ended_by": ended_by_word(ended.ended_by) or "",
+        "subtasks_done": ended.subtasks_done,
+        "subtasks": ended.subtasks,
+    }
 
 
 def _saved_json(saved: Event.EpisodeSaved | None) -> Json | None:

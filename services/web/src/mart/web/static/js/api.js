@@ -1,5 +1,7 @@
 // The HTTP API of docs/protocol.md. A failure is an ApiError whose message is meant for people.
 
+import { inPlainWords } from "./plain-words.js";
+
 /** A request that failed: its HTTP status (0 where no server answered), the error's code, and a sentence for people. */
 export class ApiError extends Error {
   /**
@@ -15,7 +17,7 @@ export class ApiError extends Error {
 }
 
 /** What to show of anything that was thrown. @type {(error: unknown) => string} */
-export const messageOf = (error) => (error instanceof Error ? error.message : String(error));
+export const messageOf = (error) => inPlainWords(error instanceof Error ? error.message : String(error));
 
 /** The HTTP status of a failure, 0 where it is none of the API's. @type {(error: unknown) => number} */
 export const statusOf = (error) => (error instanceof ApiError ? error.status : 0);
@@ -196,16 +198,8 @@ export const fileOf = (path) => `/api${episodePath(path, "/file")}`;
 /** The address of an episode's last recorded picture. @type {(path: string) => string} */
 export const pictureOf = (path) => `/api${episodePath(path, "/picture")}`;
 
-/**
- * A recorded video, whole.
- * @param {string} path
- * @param {string} camera
- */
-export async function video(path, camera) {
-  const response = await fetch(`/api${episodePath(path, "/video")}&camera=${encoded(camera)}`);
-  if (response.ok) return response.blob();
-  throw new ApiError(response.status, "", "The recorded video cannot be had; reload the page to try again.");
-}
+/** The address of what one camera saw, recorded or drawn. @type {(path: string, camera: string) => string} */
+export const episodeVideoOf = (path, camera) => `/api${episodePath(path, "/video")}&camera=${encoded(camera)}`;
 
 // Training
 

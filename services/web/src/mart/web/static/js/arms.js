@@ -9,10 +9,11 @@ import { ARM_SYMBOLS } from "./facts.js";
 const COLOR_WORDS = { arm0: "Blue", arm1: "Orange", arm2: "Green", arm3: "Pink" };
 
 /**
+ * Whether a name is an arm's.
  * @param {string} name
  * @returns {name is Arm}
  */
-const isArm = (name) => name in ARM_SYMBOLS;
+export const isArm = (name) => name in ARM_SYMBOLS;
 
 /** An arm as people call it: "Blue arm". @type {(arm: string) => string} */
 export const armName = (arm) => (isArm(arm) ? `${COLOR_WORDS[arm]} arm` : arm);

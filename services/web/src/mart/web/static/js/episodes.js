@@ -1,6 +1,6 @@
 // The episodes page: what was recorded, one of them in full, and what people say about it.
 
-import { messageOf } from "./api.js";
+import { messageOf, statusOf } from "./api.js";
 import { byId, setShown, setText } from "./dom.js";
 import { CurationForm } from "./episodes/curation-form.js";
 import { EpisodeList } from "./episodes/episode-list.js";
@@ -9,6 +9,7 @@ import { followRooms } from "./live.js";
 import { isMember, toLobby } from "./member.js";
 
 const RETRY_MS = 2000;
+const UNAVAILABLE = 503;
 
 const curation = new CurationForm(attempt, show);
 const list = new EpisodeList(curation, {
@@ -17,6 +18,7 @@ const list = new EpisodeList(curation, {
 });
 const view = new EpisodeView(attempt, () => go(list.query));
 let timer = 0;
+let asked = 0; // an older question's late answer is not shown
 
 if (await isMember()) start();
 
@@ -43,8 +45,8 @@ async function show() {
 
 /** @param {string} path */
 async function showOne(path) {
-  await view.open(path);
   setShown(byId("list"), false);
+  await view.open(path);
   setShown(byId("absent"), false);
   setShown(byId("one"), true);
   scrollTo({ top: 0 });
@@ -55,12 +57,25 @@ async function showList(parameters) {
   view.close();
   document.title = "Episodes · MART";
   list.adopt(parameters);
-  const listing = await list.load();
   setShown(byId("one"), false);
+  setShown(byId("list"), true);
+  const mine = ++asked;
+  const listing = await list.load().catch(stillReading);
+  if (mine !== asked || view.isOpen) return;
+  if (listing === undefined) {
+    timer = setTimeout(show, RETRY_MS);
+    return;
+  }
   setShown(byId("absent"), listing === null);
   setShown(byId("list"), listing !== null);
   if (listing === null) timer = setTimeout(show, RETRY_MS);
   else list.show(listing);
+}
+
+/** A folder of thousands of files is read when it is first asked for. @param {unknown} error */
+function stillReading(error) {
+  if (statusOf(error) !== UNAVAILABLE) throw error;
+  setText(byId("count"), "Reading the episodes… Of many files this takes minutes, the first time.");
 }
 
 /** @param {Api.RoomEvent} event */

@@ -15,6 +15,7 @@ const NAME_KEY = "mart.name";
 const POLICIES_MS = 5000;
 const PATIENCE_MS = 4000;
 const ASK_AGAIN_MS = 300;
+const ENDED = "Your visit has ended. Join again to go on.";
 const LOST = "The connection to the server is lost; it comes back by itself.";
 
 const form = byId("join", HTMLFormElement);
@@ -29,6 +30,8 @@ let rooms = [];
 /** @type {Messages.Policy[]} */
 let policies = [];
 let offered = false; // the form that opens a room
+/** Rooms that were closed here and are still told of. @type {Set<string>} */
+const closed = new Set();
 
 start();
 
@@ -45,12 +48,16 @@ async function start() {
   else askToJoin();
 }
 
-function askToJoin() {
+/** @param {string} [why] where somebody had joined before */
+function askToJoin(why = "") {
+  say("");
+  setText(byId("join-error"), why);
   setShown(form, true);
+  setShown(byId("front-picture"), true);
+  setShown(byId("me"), false);
   setShown(byId("go"), false);
   setShown(byId("rooms-section"), false);
   setShown(byId("pages"), false);
-  setText(byId("me"), "");
   (nameInput.value && !codeInput.value ? codeInput : nameInput).focus();
 }
 
@@ -81,7 +88,9 @@ function enter(person) {
   setShown(byId("rooms-section"), true);
   setShown(byId("pages"), true);
   setText(byId("me"), person.name);
-  followRooms({ onRooms: show, onEnded: askToJoin, onConnection: showConnection });
+  setShown(byId("me"), true);
+  setShown(byId("front-picture"), false);
+  followRooms({ onRooms: show, onEnded: () => askToJoin(ENDED), onConnection: showConnection });
   followPolicies();
   offerRooms();
 }
@@ -89,7 +98,7 @@ function enter(person) {
 /** Rooms can be opened and closed where a platform runs them; elsewhere the page says why not, and how. */
 async function offerRooms() {
   const { tasks, opens_rooms: opens } = await api.tasks();
-  if (opens && !offered) newRoom(tasks, attempt);
+  if (opens && !offered) newRoom(tasks);
   offered ||= opens;
   setShown(byId("new-room"), true);
   setShown(byId("rooms-elsewhere"), !opens);
@@ -105,14 +114,21 @@ async function followPolicies() {
 
 /** @param {Api.Room[]} latest */
 function show(latest) {
-  rooms = latest;
-  const names = rooms.map((room) => room.room);
-  keepChildren(byId("rooms"), names, cards, () => roomCard(attempt));
+  const names = new Set(latest.map((room) => room.room));
+  for (const room of closed) if (!names.has(room)) closed.delete(room);
+  rooms = latest.filter((room) => !closed.has(room.room));
+  keepChildren(byId("rooms"), rooms.map((room) => room.room), cards, () => roomCard(attempt, onClosed));
   for (const room of rooms) {
     cards.get(room.room)?.update(room, policies.filter((policy) => policy.task === room.task));
   }
   setShown(byId("empty"), rooms.length === 0);
   showNextAction();
+}
+
+/** A room that was closed is gone at once, though its sim takes a moment to end. @param {string} room */
+function onClosed(room) {
+  closed.add(room);
+  show(rooms);
 }
 
 function showNextAction() {
@@ -130,7 +146,9 @@ function showNextAction() {
 function nextActionText(mine, free) {
   if (mine) return `${armName(mine.seat.arm)}, ${mine.room.title}`;
   if (free) return `${armName(free.seat.arm)}, with the keyboard. Nothing is recorded until you say so.`;
-  return rooms.length ? "Every seat is taken. You can watch until one is free." : "";
+  if (rooms.length === 0) return "No room is open. Open one below, and sit down.";
+  if (rooms.every((room) => room.stale)) return "The simulation does not answer; this goes on by itself when it does.";
+  return "Every seat is taken. You can watch until one is free.";
 }
 
 /** @type {(list: Api.Room[]) => Place[]} */

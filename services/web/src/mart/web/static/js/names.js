@@ -2,8 +2,8 @@
 
 import { MAX_NAME_LENGTH } from "./facts.js";
 
-/** For the `pattern` of an input. */
-export const NAME_PATTERN = "[a-z0-9][a-z0-9_\\-]*";
+/** A name that is typed to its end: "My Set!" → "my-set" @type {(typed: string) => string} */
+export const finalName = (typed) => nameFrom(typed).replace(/[-_]+$/, "");
 
 /** A text as a name, also while it is being typed: "Cubes, good" → "cubes-good" @type {(text: string) => string} */
 export const nameFrom = (text) =>

@@ -18,6 +18,7 @@ import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
 import { toLobby } from "./member.js";
+import { inPlainWords } from "./plain-words.js";
 
 /** @import { Command } from "./drive/keys.js" */
 /** @import { ActionCommand } from "./hud/status-bar-view.js" */
@@ -129,7 +130,7 @@ function follow(seat) {
 function onEvent(event) {
   if (event.room !== roomName) return;
   if (event.kind === "cue_given") cues.onGiven(event, room);
-  if (event.kind === "notice") notice(event.text);
+  if (event.kind === "notice") notice(inPlainWords(event.text));
   render();
 }
 

@@ -18,12 +18,13 @@ import { machineSelect } from "./machine-select.js";
 /**
  * A card that shows a room, and the promoted policies of its task.
  * @param {Attempt} attempt
+ * @param {(room: string) => void} onClosed called when the room was closed here
  * @returns {Part<[Api.Room, Messages.Policy[]]>}
  */
-export function roomCard(attempt) {
+export function roomCard(attempt, onClosed) {
   const title = element("h2");
   const scene = scenePicture();
-  const close = closeButton(attempt);
+  const close = closeButton(attempt, onClosed);
   const phase = element("span", { class: "soft" });
   const instruction = element("p");
   const seats = element("ul", { class: "seats" });
@@ -101,13 +102,18 @@ const sceneOf = (task) => `/static/tasks/${task}.jpg`;
 /**
  * For a room that nobody needs: pressed twice, and only while it is empty.
  * @param {Attempt} attempt
+ * @param {(room: string) => void} onClosed
  * @returns {Part<[Api.Room]>}
  */
-function closeButton(attempt) {
+function closeButton(attempt, onClosed) {
   let room = "";
   let sure = false;
+  const close = async () => {
+    await api.closeRoom(room);
+    onClosed(room);
+  };
   const press = () => {
-    if (sure) attempt(() => api.closeRoom(room));
+    if (sure) attempt(close);
     sure = !sure;
     setText(node, sure ? "Press again to close" : "Close room");
   };

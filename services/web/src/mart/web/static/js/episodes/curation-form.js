@@ -3,7 +3,7 @@
 import * as api from "../api.js";
 import { byId, element, setShown, setText } from "../dom.js";
 import { plural } from "../formatting.js";
-import { nameFrom } from "../names.js";
+import { finalName, nameFrom } from "../names.js";
 import { allText, curatedText } from "./formatting.js";
 
 /** Knows which episodes are ticked, and what can be done with them. */
@@ -16,7 +16,8 @@ export class CurationForm {
   /** @type {Api.EpisodeFilter} */
   #filter = {};
   #matching = 0;
-  #unsuccessful = 0;
+  #successes = 0;
+  #tasks = 0;
 
   /**
    * @param {(action: () => Promise<void>) => Promise<void>} attempt runs a change and shows its failure
@@ -25,10 +26,10 @@ export class CurationForm {
   constructor(attempt, onChanged) {
     this.#attempt = attempt;
     this.#onChanged = onChanged;
-    this.#name.addEventListener("input", () => (this.#name.value = nameFrom(this.#name.value)));
+    this.#name.addEventListener("input", () => this.#spell());
     byId("curation").addEventListener("submit", (event) => {
       event.preventDefault();
-      this.#act("add", this.#name.value);
+      this.#act("add", finalName(this.#name.value));
     });
     byId("take-out").addEventListener("click", () => this.#act("remove", this.#filter.dataset ?? ""));
     byId("choose-none").addEventListener("click", () => this.#chooseNone());
@@ -39,11 +40,12 @@ export class CurationForm {
    * @param {Api.EpisodeListing} listing
    * @param {Api.EpisodeFilter} filter
    */
-  show({ matching, successes, datasets }, filter) {
+  show({ matching, successes, datasets, tasks }, filter) {
     if (JSON.stringify(filter) !== JSON.stringify(this.#filter)) this.#chosen.clear();
     this.#filter = filter;
     this.#matching = matching;
-    this.#unsuccessful = matching - successes;
+    this.#successes = successes;
+    this.#tasks = Object.keys(tasks).length;
     const names = datasets.map(({ name, episodes }) => element("option", { value: name }, plural(episodes, "episode")));
     byId("dataset-names").replaceChildren(...names);
     setShown(byId("curation"), matching > 0);
@@ -68,12 +70,23 @@ export class CurationForm {
 
   #update() {
     const count = this.#chosen.size;
-    const { dataset } = this.#filter;
-    setText(byId("chosen"), count ? `${plural(count, "episode")} chosen` : allText(this.#unsuccessful));
-    setText(byId("use"), `Use ${count || this.#matching} for training`);
+    const { dataset, task, outcome } = this.#filter;
+    const all = outcome ? this.#matching : this.#successes;
+    setText(byId("chosen"), count ? `${plural(count, "episode")} chosen` : allText(this.#filter, this.#tasks));
+    setText(byId("use"), `Use ${count || all} for training`);
+    const isOneTask = Boolean(task || dataset) || this.#tasks < 2;
+    byId("use", HTMLButtonElement).disabled = count === 0 && (all === 0 || !isOneTask);
     setShown(byId("choose-none"), count > 0);
     setShown(byId("take-out"), Boolean(dataset));
     setText(byId("take-out"), `Take ${count || this.#matching} out of “${dataset}”`);
+  }
+
+  /** Says so where the name is another one than was typed. */
+  #spell() {
+    const typed = this.#name.value;
+    this.#name.value = nameFrom(typed);
+    const differs = this.#name.value !== typed;
+    setText(byId("spelling"), differs ? "Names have lower-case letters, digits, - and _." : "");
   }
 
   #chooseNone() {
@@ -90,7 +103,8 @@ export class CurationForm {
    */
   #act(action, dataset) {
     return this.#attempt(async () => {
-      const which = this.#chosen.size ? { paths: [...this.#chosen] } : { all: this.#filter };
+      const filter = action === "add" ? { ...this.#filter, outcome: this.#filter.outcome || "success" } : this.#filter;
+      const which = this.#chosen.size ? { paths: [...this.#chosen] } : { all: filter };
       const { curated } = await api.curate(dataset, { action, ...which });
       this.#chooseNone();
       await this.#onChanged();

@@ -2,7 +2,7 @@
 
 import { armName, badge, theArm } from "../arms.js";
 import { element } from "../dom.js";
-import { drivers, lengthText, outcomeText, rateText, verdictText } from "./formatting.js";
+import { drivers, lengthText, outcomeText, rateText, saidText, verdictText } from "./formatting.js";
 
 const SHORTEST_WAIT_S = 0.05;
 
@@ -32,7 +32,7 @@ const operator = ([arm, text]) => element("li", {}, badge(arm), `${armName(arm)}
 function facts({ episode, cadence, versions, verification }) {
   const arms = Object.keys(episode.operators).sort();
   return [
-    ["How it was said to end", [outcomeText(episode.outcome), episode.reason].filter(Boolean).join(": ")],
+    ["How it ended", [outcomeText(episode.outcome), saidText(episode) || episode.reason].filter(Boolean).join(": ")],
     [
       "Length",
       `${lengthText(episode.simulated_s)} simulated, ${episode.ticks} ticks at ${episode.control_hz} Hz`,

@@ -43,12 +43,12 @@ function link({ path, title }, onOpen) {
 }
 
 /**
- * The last recorded picture; a calm empty place where there is none.
+ * The last picture, recorded or drawn; a calm empty place where there is none.
  * @param {Api.Episode} episode
  */
-function picture({ path, mode, error }) {
+function picture({ path, error }) {
   const place = element("span", { class: "thumb", "aria-hidden": "true" });
-  if (mode === "lockstep" || error) return place;
+  if (error) return place;
   const image = element("img", { src: api.pictureOf(path), alt: "", loading: "lazy", width: 320, height: 240 });
   image.addEventListener("error", () => image.remove());
   place.append(image);

@@ -3,6 +3,7 @@
 import * as api from "../api.js";
 import { byId, element, setText } from "../dom.js";
 import { fileSize } from "../formatting.js";
+import { drawing } from "./drawing.js";
 import { factsCard } from "./episode-facts.js";
 import { dateText, remarks } from "./formatting.js";
 import { LabelForm } from "./label-form.js";
@@ -24,6 +25,9 @@ export class EpisodeView {
   #said = Promise.resolve();
   #labels = new LabelForm((labels) => this.#say(labels));
   #subtitle = element("p", { class: "soft" });
+  #facts = element("section");
+  /** @type {Api.EpisodeDetails | null} */
+  #details = null;
 
   /**
    * @param {AttemptChange} attempt
@@ -67,9 +71,11 @@ export class EpisodeView {
       element("header", { class: "one-head" }, element("div", {}, title, this.#subtitle), download(episode)),
       this.#labels.node,
       this.#seen(details),
-      factsCard(details),
+      this.#facts,
     );
+    this.#details = details;
     this.#known = episode;
+    this.#labels.tell();
     this.#update(episode);
     document.title = `${episode.title}, episode ${episode.number} · MART`;
   }
@@ -79,6 +85,10 @@ export class EpisodeView {
     const facts = [`${episode.room}, episode ${episode.number}`, dateText(episode.started_ms), ...remarks(episode)];
     setText(this.#subtitle, facts.filter(Boolean).join(" · "));
     this.#labels.update(episode);
+    if (!this.#details) return;
+    const card = factsCard({ ...this.#details, episode });
+    this.#facts.replaceWith(card);
+    this.#facts = card;
   }
 
   #backLink() {
@@ -92,7 +102,7 @@ export class EpisodeView {
 
   /** @param {Api.EpisodeDetails} details */
   #seen(details) {
-    const { episode, views, wall_s: wallS } = details;
+    const { episode, views, viewpoints, wall_s: wallS } = details;
     const card = element("section", { class: "card seen", "aria-label": "What happened" });
     if (wallS === 0) {
       card.append(element("p", { class: "soft" }, "This file holds no states."));
@@ -104,7 +114,8 @@ export class EpisodeView {
     player.ready.catch((error) => this.#attempt(() => Promise.reject(error)));
     this.#player = player;
     const lanes = element("div", { class: "lanes" }, ...laneRows(details), ...traceRows(details), cursor);
-    card.append(views.length ? player.videos : noPicture(episode), player.controls, lanes);
+    if (views.length === 0) card.append(drawing(viewpoints, player));
+    card.append(player.videos, player.controls, lanes);
     return card;
   }
 
@@ -116,8 +127,11 @@ export class EpisodeView {
     const path = this.#path;
     const mine = ++this.#asked;
     const label = async () => {
+      const before = this.#known;
       const { episode } = await api.labelEpisode(path, labels);
-      if (path === this.#path) this.#known = episode;
+      if (path !== this.#path) return;
+      this.#known = episode;
+      if (before) this.#labels.tell(before, episode);
     };
     this.#said = this.#said
       .then(() => this.#attempt(label))
@@ -168,10 +182,4 @@ const STEP_KEYS = new Map([
 function download({ path, size_bytes: size }) {
   const text = `Download MCAP, ${fileSize(Number(size))}`;
   return element("a", { class: "button", href: api.fileOf(path), download: "" }, text);
-}
-
-/** @param {Api.Episode} episode */
-function noPicture({ path }) {
-  const command = element("code", {}, `mart episodes render data/episodes/${path}`);
-  return element("p", { class: "soft" }, "No picture was recorded. Draw one with ", command);
 }

@@ -1,10 +1,11 @@
 // What the episodes page says. Pure.
 
+import { armName } from "../arms.js";
 import { plural } from "../formatting.js";
 
 /** @type {Record<Messages.Outcome, string>} */
 const OUTCOMES = { success: "Success", failure: "Failed", discarded: "Discarded" };
-const NOT_SAID = "Not said";
+const NOT_SAID = "No outcome";
 
 /** @type {Record<Verdict, string>} */
 const VERDICTS = { verified: "Verified", diverged: "Diverged", unverified: "Not verified" };
@@ -32,6 +33,37 @@ export const outcomeText = (outcome) => wordOf(OUTCOMES, outcome) ?? NOT_SAID;
 
 /** What re-simulation said. @type {(verdict: string) => string} */
 export const verdictText = (verdict) => wordOf(VERDICTS, verdict) ?? verdict;
+
+/** From where one looks: an arm's side, or the front. @type {(camera: string) => string} */
+export const cameraText = (camera) => (camera === "front" ? "Front" : armName(camera));
+
+/** Whether it is learned from, where that does not speak for itself. @type {(outcome: string) => string} */
+export function fitText(outcome) {
+  if (outcome === "discarded") return "Nothing learns from what was discarded.";
+  return outcome === "success" ? "" : "Only a data set that it was put into learns from it.";
+}
+
+/**
+ * What people have just said of it, in words.
+ * @type {(before: Api.Episode, now: Api.Episode) => string}
+ */
+export function labelledText(before, now) {
+  const outcomes = [outcomeText(now.outcome), outcomeText(before.outcome)];
+  if (before.outcome !== now.outcome) return `Saved: ${outcomes.join(". It was: ")}.`;
+  if (before.dropped !== now.dropped) return `Saved: ${now.dropped ? "left out of data sets" : "fit for training"}.`;
+  return before.note === now.note ? "" : "Saved: the note.";
+}
+
+/**
+ * What takes that back; null where nothing does.
+ * @type {(before: Api.Episode, now: Api.Episode) => Api.EpisodeLabels | null}
+ */
+export function undoing(before, now) {
+  const outcome = OUTCOME_OPTIONS.find(([value]) => value === before.outcome)?.[0];
+  if (before.outcome !== now.outcome) return outcome ? { outcome } : null;
+  if (before.dropped !== now.dropped) return { dropped: before.dropped };
+  return before.note === now.note ? null : { note: before.note };
+}
 
 /** What kind of operator drives. @type {(operator: string) => string} */
 export const driverText = (operator) => wordOf(DRIVERS, operator) ?? operator;
@@ -69,13 +101,28 @@ export const dateText = (unixMs) => (unixMs ? DAY.format(unixMs) : "");
 /** 0.97 → "0.97×" @type {(factor: number | null) => string} */
 export const rateText = (factor) => (factor === null ? "–" : `${factor.toFixed(2)}×`);
 
+/**
+ * Whose word the outcome is, and how far the task had come by then: "said by Ana, 0 of 3 steps done". Nothing where the
+ * task itself ended it.
+ * @type {(episode: Api.Episode) => string}
+ */
+export function saidText(episode) {
+  const { ended_by: by, ended_by_name: name, subtasks_done: done, subtasks: all, outcome_by: labelledBy } = episode;
+  if (labelledBy) return `labelled by ${labelledBy}`;
+  if (by !== "operator") return "";
+  const steps = all ? `, ${done ?? 0} of ${all} steps done` : "";
+  return `said by ${name || "an operator"}${steps}`;
+}
+
 /** What is unusual about an episode, in a few words each. @type {(episode: Api.Episode) => string[]} */
-export function remarks({ complete, repaired, interrupted, missing_ticks: missing, dropped, datasets, error }) {
+export function remarks(episode) {
+  const { complete, repaired, interrupted, missing_ticks: missing, dropped, datasets, error } = episode;
   if (error) return ["cannot be read"];
   return [
+    saidText(episode),
     datasets.length > 0 ? `in ${datasets.join(", ")}` : "",
     dropped ? "left out of data sets" : "",
-    interrupted ? "paused meanwhile" : "",
+    interrupted ? "was paused" : "",
     complete ? "" : "incomplete",
     repaired ? "repaired" : "",
     missing > 0 ? `${plural(missing, "tick")} missing` : "",
@@ -83,12 +130,12 @@ export function remarks({ complete, repaired, interrupted, missing_ticks: missin
 }
 
 /**
- * What is taken where nothing is ticked: also what did not succeed, because a data set is learned from whole.
- * @type {(unsuccessful: number) => string}
+ * What is taken where nothing is ticked: of one task, and what succeeded unless another outcome was chosen.
+ * @type {(filter: Api.EpisodeFilter, tasks: number) => string}
  */
-export function allText(unsuccessful) {
-  const failed = unsuccessful ? `, also ${unsuccessful} without success` : "";
-  return `All that are shown${failed}; tick some to choose fewer`;
+export function allText({ task, outcome, dataset }, tasks) {
+  if (!task && !dataset && tasks > 1) return "Choose one task above, or tick episodes.";
+  return `${outcome ? "All that are shown" : "All that succeeded"}; tick some to choose others.`;
 }
 
 /**

@@ -1,14 +1,16 @@
-// What people say about an episode: how it ended, whether it is fit for training, and a note.
+// What people say about an episode: how it ended, whether it is fit for training, and a note. What was said is undone.
 
-import { element } from "../dom.js";
+import { element, setText } from "../dom.js";
 import { MAX_NOTE_LENGTH } from "../facts.js";
-import { OUTCOME_OPTIONS } from "./formatting.js";
+import { fitText, labelledText, OUTCOME_OPTIONS, undoing } from "./formatting.js";
 
 /** Shows an episode's labels, and tells when one is given. */
 export class LabelForm {
   #onLabel;
   #outcomes;
   #use = element("input", { type: "checkbox", id: "use" });
+  #fit = element("span", { class: "soft" });
+  #told = element("p", { class: "told", role: "status" });
   #note = element("input", { id: "note", maxlength: MAX_NOTE_LENGTH, placeholder: "Anything worth remembering" });
 
   /** @param {(labels: Api.EpisodeLabels) => void} onLabel */
@@ -22,8 +24,9 @@ export class LabelForm {
       "section",
       { class: "card label", "aria-label": "What people say about it" },
       element("div", { class: "segments", role: "radiogroup", "aria-label": "How it ended" }, ...labels),
-      element("label", { class: "use" }, this.#use, "Fit for training"),
+      element("div", { class: "fit" }, element("label", { class: "use" }, this.#use, "Fit for training"), this.#fit),
       element("label", { class: "note" }, "Note", this.#note),
+      this.#told,
     );
   }
 
@@ -33,8 +36,23 @@ export class LabelForm {
    */
   update({ outcome, dropped, note }) {
     for (const { input } of this.#outcomes) input.checked = input.value === outcome;
-    this.#use.checked = !dropped;
+    this.#use.checked = !dropped && outcome !== "discarded";
+    this.#use.disabled = outcome === "discarded";
+    setText(this.#fit, fitText(outcome));
     if (document.activeElement !== this.#note) this.#note.value = note;
+  }
+
+  /**
+   * Says what was changed, with a button that takes it back; nothing for another episode.
+   * @param {Api.Episode} [before]
+   * @param {Api.Episode} [now]
+   */
+  tell(before, now) {
+    const text = before && now ? labelledText(before, now) : "";
+    const labels = before && now ? undoing(before, now) : null;
+    const on = { click: () => labels && this.#onLabel(labels) };
+    const undo = labels ? [element("button", { type: "button", class: "quiet", on }, "Undo")] : [];
+    this.#told.replaceChildren(text, ...undo);
   }
 
   /**

@@ -1,9 +1,10 @@
 // The recorded videos of one episode, played together, and where in its time they are.
 
 import * as api from "../api.js";
-import { armName, badge } from "../arms.js";
+import { badge, isArm } from "../arms.js";
+import { drawnVideo } from "../drawn-video.js";
 import { element, setText } from "../dom.js";
-import { lengthText } from "./formatting.js";
+import { cameraText, lengthText } from "./formatting.js";
 
 /** @typedef {Messages.RecordedView & { video: HTMLVideoElement }} View */
 
@@ -21,7 +22,9 @@ export class Player {
   /** @type {string[]} */
   #urls = [];
   #wallS;
-  #views;
+  #path;
+  /** @type {View[]} */
+  #views = [];
   #button;
   #figure;
   #slider;
@@ -33,14 +36,11 @@ export class Player {
    */
   constructor(path, views, wallS) {
     this.#wallS = wallS;
-    this.#views = views.map((view) => ({
-      ...view,
-      video: element("video", { muted: true, playsinline: true, preload: "auto" }),
-    }));
+    this.#path = path;
     this.#button = element("button", { type: "button", class: "primary", on: { click: () => this.toggle() } }, "Play");
     this.#figure = element("span", { class: "figures" });
     this.#slider = slider(wallS, (seconds) => this.seek(seconds));
-    this.videos = element("div", { class: "videos" }, ...this.#views.map(figure));
+    this.videos = element("div", { class: "videos" });
     this.controls = element(
       "div",
       { class: "controls" },
@@ -48,7 +48,7 @@ export class Player {
       this.#slider,
     );
     this.#show();
-    this.ready = Promise.all(this.#views.map((view) => this.#load(path, view)));
+    this.ready = Promise.all(views.map((view) => this.add(view)));
   }
 
   /** Plays, or pauses. */
@@ -100,13 +100,22 @@ export class Player {
   }
 
   /**
-   * Whole, so that any moment can be shown at once.
-   * @param {string} path
-   * @param {View} view
+   * Shows one camera more, as soon as its video is here: whole, so that any moment can be shown at once.
+   * @param {Messages.RecordedView} recorded
    */
-  async #load(path, view) {
-    const url = URL.createObjectURL(await api.video(path, view.camera));
+  async add(recorded) {
+    const view = { ...recorded, video: element("video", { muted: true, playsinline: true, preload: "auto" }) };
+    const shown = figure(view);
+    this.videos.append(shown);
+    let url;
+    try {
+      url = URL.createObjectURL(await drawnVideo(api.episodeVideoOf(this.#path, view.camera)));
+    } catch (error) {
+      shown.remove();
+      throw error;
+    }
     this.#urls.push(url);
+    this.#views.push(view);
     view.video.src = url;
     view.video.currentTime = this.#atS - view.start_s;
   }
@@ -151,6 +160,6 @@ function slider(wallS, onInput) {
 
 /** @param {View} view */
 function figure({ camera, video }) {
-  const caption = element("figcaption", {}, badge(camera), armName(camera));
+  const caption = element("figcaption", {}, ...(isArm(camera) ? [badge(camera)] : []), cameraText(camera));
   return element("figure", {}, element("div", { class: "picture" }, video), caption);
 }

@@ -39,6 +39,7 @@ const HOW_TO_MOVE = {
 
 const PHONE_GONE_MS = 1000; // it speaks 60 times a second
 const COPY = "Copy the address";
+const MARK = "The mark on the table in your colour says whose side it is. Nothing has to go there.";
 
 /** Shows the input of one's own arm, pairs phones, and lists the keys. */
 export class InputPanel {
@@ -61,7 +62,7 @@ export class InputPanel {
     byId("pairing-close").addEventListener("click", () => this.#closePairing());
     byId("help").addEventListener("click", () => this.toggleHelp());
     const rows = KEYS.flatMap(([keys, text]) => [element("dt", {}, ...caps(keys)), element("dd", {}, text)]);
-    byId("keys").append(element("dl", {}, ...rows));
+    byId("keys").append(element("dl", {}, ...rows), element("p", { class: "soft" }, MARK));
   }
 
   /**

@@ -19,7 +19,12 @@ export const lastLabel = ({ outcome }) => outcomeText(outcome) || "Interrupted";
 /** Why it ended, and whether its file is there. @param {Api.LastEpisode} last */
 export function lastText(last) {
   const file = last.saved ? savedText(last.saved, last.outcome) : savingText(last);
-  return [asSentence(last.reason), file].filter(Boolean).join(" ");
+  return [asSentence(last.reason), stepsText(last), file].filter(Boolean).join(" ");
+}
+
+/** How far it had come, where a person ended it. @param {Api.LastEpisode} last */
+function stepsText({ ended_by: by, subtasks_done: done, subtasks: all }) {
+  return by === "operator" && all > 0 ? `${done} of ${all} steps were done.` : "";
 }
 
 /** Whether it was discarded, and its file is there to be kept after all. @param {Api.LastEpisode} last */

@@ -116,6 +116,7 @@ const PHASES = {
     return { ...view("Starts in", room.instruction), figure };
   },
   recording(room, _seat, { pending }) {
+    if (room.unrecorded) return view("Not recorded", asSentence(room.unrecorded), RECORDING);
     const limit = room.time_limit_s ? `of ${clockTime(room.time_limit_s)}` : "";
     const figure = clockTime(room.episode.elapsed_s);
     const detail = pending === "success" ? askedText(room) : "Success is seen by itself.";

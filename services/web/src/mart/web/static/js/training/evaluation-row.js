@@ -2,7 +2,7 @@
 
 import { element } from "../dom.js";
 import { MAX_NAME_LENGTH } from "../facts.js";
-import { NAME_PATTERN } from "../names.js";
+import { finalName, nameFrom } from "../names.js";
 import { failuresText, policyName, short, successText } from "./formatting.js";
 import { rolloutButton } from "./rollout-video.js";
 
@@ -64,14 +64,13 @@ function namingForm(job, { onPromote, onCancel }) {
     value: policyName(job.order),
     maxlength: MAX_NAME_LENGTH,
     required: true,
-    pattern: NAME_PATTERN,
-    title: "Lower-case letters, digits, - and _",
     autocomplete: "off",
   });
+  name.addEventListener("input", () => (name.value = nameFrom(name.value)));
   /** @param {SubmitEvent} event */
   const submit = (event) => {
     event.preventDefault();
-    onPromote(name.value);
+    onPromote(finalName(name.value));
   };
   return element(
     "form",

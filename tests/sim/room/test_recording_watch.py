@@ -1,0 +1,47 @@
+"""Whether somebody keeps an episode: any reports and ticks, and the objection is right."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mart.protocol.messages import RecordingReport
+from mart.sim.room.recording_watch import UNKEPT_AFTER_S, RecordingWatch
+
+PERIOD_S = 0.05
+
+
+def report(tick: int, number: int = 1) -> RecordingReport:
+    return RecordingReport(recorder="recorder-1", episode=number, last_tick=tick)
+
+
+@given(st.lists(st.integers(0, 40), min_size=40, max_size=40))
+def test_it_objects_when_the_oldest_state_that_is_not_kept_is_too_old(behind: list[int]) -> None:
+    watch, kept = RecordingWatch(), -1
+    for tick, lag in enumerate(behind):
+        now_s = tick * PERIOD_S
+        watch.told(1, tick, now_s)
+        if tick >= lag:
+            kept = max(kept, tick - lag)
+            watch.reported(report(tick - lag))
+        unkept_s = now_s - (kept + 1) * PERIOD_S
+        assert bool(watch.objection(now_s)) == (kept < tick and unkept_s >= UNKEPT_AFTER_S)
+
+
+def test_a_room_that_stands_still_or_practises_has_nothing_to_keep() -> None:
+    watch = RecordingWatch()
+    watch.told(1, 7, 0.0)
+    watch.reported(report(7))
+    assert watch.objection(100.0) == ""
+    watch.told(1, 8, 100.0)
+    assert watch.objection(102.0)
+    watch.told(0, 9, 102.0)
+    assert watch.objection(200.0) == ""
+    assert watch.news(200.0) is None
+
+
+def test_reports_of_another_episode_mean_nothing() -> None:
+    watch = RecordingWatch()
+    watch.told(2, 7, 0.0)
+    watch.reported(report(99, number=1))
+    assert "nobody" in watch.objection(1.0)
