@@ -23,7 +23,7 @@ def within_reach(page: Page) -> None:
     assert page.evaluate(_ON_TOP)
 
 
-@pytest.mark.parametrize("size", ["narrow", "tablet", "wide"])
+@pytest.mark.parametrize("size", ["narrow", "sideways", "small", "wide"])
 def test_it_is_within_reach_with_any_panel_open(browser: Browser, platform: Platform, size: str) -> None:
     with visit(browser, platform, size) as ana, driving(ana) as page:
         within_reach(page)
