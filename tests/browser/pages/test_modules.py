@@ -208,7 +208,7 @@ def test_the_coach_leaves_out_what_the_phone_cannot_do(run: Run) -> None:
       return [tips, tutorial.finished];
     }"""
     tips, finished = run("phone/tutorial.js", script)
-    assert [tip[:6] for tip in tips] == ["2 of 4", "2 of 3", "3 of 3", ""]
+    assert [tip[:6] for tip in tips] == ["2 of 4", "3 of 3", "3 of 3", ""]
     assert "gripper" in tips[2]
     assert finished
 

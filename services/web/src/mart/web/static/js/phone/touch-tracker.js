@@ -49,10 +49,10 @@ export class TouchTracker {
    */
   problem(nowMs) {
     if (!this.#orientation.permitted) {
-      return "Turning is off: this page may not know how the phone is tilted. Reload it, press Start and allow motion.";
+      return "Turning is off: reload the page and allow motion.";
     }
     const silent = this.#orientation.sample(nowMs) === null && nowMs - this.#startedMs > SENSOR_MS;
-    return silent ? "Turning is off: this phone does not tell how it is tilted. Moving works all the same." : "";
+    return silent ? "Turning is off: no tilt sensor." : "";
   }
 
   /**
