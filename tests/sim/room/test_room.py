@@ -13,7 +13,6 @@ from mart.protocol.messages import (
     BARRIER_PHASE_PAUSED,
     BARRIER_PHASE_RUNNING,
     BARRIER_PHASE_STALLED,
-    BARRIER_PHASE_STOPPED,
     EPISODE_PHASE_COUNTDOWN,
     EPISODE_PHASE_ENDED,
     EPISODE_PHASE_PRACTICE,
@@ -170,19 +169,6 @@ def test_a_seat_that_is_taken_stays_taken(harness: RoomHarness) -> None:
     reply = harness.room.answer_seat(SeatRequest(claim=claim), harness.now_s)
     assert reply.error.code == "Conflict"
     assert is_held_by(harness.status().seats[0], "ana")
-
-
-def test_an_emergency_stop_stops_the_world_and_marks_the_episode(harness: RoomHarness) -> None:
-    harness.record()
-    harness.command("arm0", stop=True)
-    harness.command("arm1")
-    before = len(harness.publisher.states)
-    harness.pass_time(0.2)
-    assert len(harness.publisher.states) == before
-    assert harness.status().barrier == BARRIER_PHASE_STOPPED
-    assert harness.status().episode.interrupted
-    harness.drive(3)
-    assert harness.status().barrier == BARRIER_PHASE_RUNNING
 
 
 def test_an_episode_from_ready_to_practice(harness: RoomHarness) -> None:

@@ -99,7 +99,7 @@ async def phone_token(room: str, arm: str, app: App, authorization: Authorizatio
 
     It stays with the user who paired it: its token is renewed while, and whenever, they hold the seat.
     """
-    paired = _claims(app, room, arm, authorization)
+    paired = claims_of(app, room, arm, authorization)
     if paired.role is not Role.PHONE:
         raise Forbidden(f"The token of a {paired.role} was given; only a phone's is renewed here.")
     seat = _seat(app, room, arm)
@@ -117,7 +117,7 @@ async def offer(
     room: str, arm: str, body: SdpOffer, *, app: App, address: Address, authorization: Authorization = ""
 ) -> Json:
     """Have the seat's gateway answer an offer and send the answer."""
-    seat_token = _claims(app, room, arm, authorization)
+    seat_token = claims_of(app, room, arm, authorization)
     if seat_token.epoch != _seat(app, room, arm).epoch:
         raise Forbidden(
             "This seat has changed hands since you got your token; take a seat in the lobby again."
@@ -136,8 +136,8 @@ def _bearer(authorization: str) -> str:
     return authorization.removeprefix("Bearer ")
 
 
-def _claims(app: AppState, room: str, arm: str, authorization: str) -> SeatToken:
-    """What the sent token says; raises Forbidden where it is not good for this seat."""
+def claims_of(app: AppState, room: str, arm: str, authorization: str) -> SeatToken:
+    """Return what the sent token says; raises Forbidden where it is not good for this seat."""
     claims = verify(_bearer(authorization), app.secret)
     if (claims.room, claims.arm) != (room, arm):
         raise Forbidden(f"This seat token is for {claims.arm} in {claims.room}, not for {arm} in {room}.")

@@ -69,6 +69,16 @@ class RoomRequester:
         request = EpisodeRequest.Reset(holder_id=self._speaker(room, user))
         await self._ask_episode(room, EpisodeRequest(reset=request))
 
+    async def stop(self, room: str, holder_id: str, name: str) -> None:
+        """Stop everything in the room, as `name`; once is enough."""
+        await self._ask_episode(
+            room, EpisodeRequest(stop=EpisodeRequest.Stop(holder_id=holder_id, name=name))
+        )
+
+    async def let_go_of_stop(self, room: str, name: str) -> None:
+        """Let everything go on in the room, as `name`."""
+        await self._ask_episode(room, EpisodeRequest(go_on=EpisodeRequest.GoOn(name=name)))
+
     def _speaker(self, room: str, user: User) -> str:
         """Whoever holds no seat speaks as anybody: the sim hears them where no human drives."""
         seats = self._lobby.rooms.status(room, clock.monotonic_s()).seats

@@ -87,6 +87,7 @@ def status_json(status: RoomStatus, holder_id: str) -> Json:
         "episodes_saved": status.episodes_saved,
         "episodes_good": status.episodes_good,
         "plan": _plan_json(status),
+        "stop": _stop_json(status),
         "unrecorded": status.unrecorded,
     }
 
@@ -94,6 +95,11 @@ def status_json(status: RoomStatus, holder_id: str) -> Json:
 def _plan_json(status: RoomStatus) -> Json | None:
     plan = status.plan
     return {"episodes": plan.episodes, "good": plan.good} if status.HasField("plan") else None
+
+
+def _stop_json(status: RoomStatus) -> Json | None:
+    stop = status.stop
+    return {"arm": stop.arm, "name": stop.name} if status.HasField("stop") else None
 
 
 def _task_json(status: RoomStatus) -> Json:
