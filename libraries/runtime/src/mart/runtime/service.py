@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import os
 import signal
 import sys
 import threading
@@ -52,6 +53,7 @@ def running(settings: Settings, kind: ServiceKind, id: str) -> Iterator[Service]
 @contextlib.contextmanager
 def connected(settings: Settings, kind: ServiceKind, id: str) -> Iterator[Service]:
     """A service that has something to set up before it is `announced`: the token says that it answers."""
+    keep_private()
     configure_logging(settings.log_level, kind)
     with stop_requested() as stop, ZenohBus.connect(settings.router) as bus:
         yield Service(kind, id, bus, stop)
@@ -99,8 +101,14 @@ def run_async(
             with contextlib.suppress(asyncio.CancelledError):
                 await task
 
+    keep_private()
     configure_logging(settings.log_level, kind)
     asyncio.run(supervise())
+
+
+def keep_private() -> None:
+    """Let its owner alone read what this process and its children make from now on: recordings and logs name people."""
+    os.umask(0o077)
 
 
 def configure_logging(level: str, name: str) -> None:
