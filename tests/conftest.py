@@ -14,7 +14,7 @@ from hypothesis import settings
 from mart.runtime import steady_libm
 from mart.runtime.ports import free_port
 from mart.runtime.router import admitting_router
-from tests.support import processes
+from tests.support import fuzzing, processes
 
 # Tests in these folders are of the kind of that name; others are unit tests, unless they say `system` themselves.
 _FOLDERS = ("contract", "system", "browser", "compose")
@@ -24,8 +24,9 @@ _KINDS = ("unit", *_FOLDERS)  # a broken unit explains a broken session, so unit
 def pytest_configure(config: pytest.Config) -> None:
     _begin_anew(config)
     # How long one example takes says more about the machine than about the code.
-    settings.register_profile("mart", deadline=None)
-    settings.load_profile("mart")
+    for profile in ("mart", fuzzing.PROFILE):
+        settings.register_profile(profile, deadline=None)
+    settings.load_profile(config.getoption("--hypothesis-profile") or "mart")
     for name in [name for name in os.environ if name.startswith("MART_")]:
         del os.environ[name]
     # Where routers are noted for this user's programs: tests have a place of their own.

@@ -164,7 +164,7 @@ def _take_in(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, wa
 
     chosen = _chosen(folder, paths, wanted)
     _say(
-        dataset_editing.take_in(folder, name, chosen, list_folder(folder), clock.wall_ns()),
+        dataset_editing.take_in(folder, name, chosen, list_folder(folder), now_ns=clock.wall_ns()),
         "put into it",
         as_json,
     )

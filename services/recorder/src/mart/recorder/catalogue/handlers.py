@@ -127,11 +127,13 @@ class CatalogueHandlers:
             raise InvalidInput("Name the episodes, or give a filter that lets them through: one of the two.")
         chosen = filter_of(asked.all).apply(known) if by_filter else map(self._row, asked.paths)
         if asked.take_out:
-            return dataset_editing.take_out(self._root, asked.dataset, [row.path for row in chosen], now_ns)
-        return dataset_editing.take_in(self._root, asked.dataset, chosen, known, now_ns)
+            return dataset_editing.take_out(
+                self._root, asked.dataset, [row.path for row in chosen], now_ns, asked.by
+            )
+        return dataset_editing.take_in(self._root, asked.dataset, chosen, known, now_ns=now_ns, by=asked.by)
 
     def _undo(self, asked: CatalogueRequest.Undo) -> DataSetEdit:
-        return dataset_editing.undo(self._root, asked.dataset, asked.act_ns, clock.wall_ns())
+        return dataset_editing.undo(self._root, asked.dataset, asked.act_ns, clock.wall_ns(), asked.by)
 
     def _edited(self, done: DataSetEdit) -> CatalogueReply:
         self._read_s = float("-inf")  # the rows say what they are part of

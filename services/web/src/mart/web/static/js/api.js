@@ -67,6 +67,9 @@ export const join = (code, name) => request("POST", "/join", { code, name });
 /** Who one is here; fails with 401 where one has not joined. @type {() => Promise<Api.Person>} */
 export const me = () => request("GET", "/me");
 
+/** Ends one's visit, and leaves one's seats. @type {() => Promise<Api.Person>} */
+export const leave = () => request("DELETE", "/me");
+
 /** How every part does. @type {() => Promise<{ findings: Api.Finding[] }>} */
 export const findings = () => request("GET", "/health/findings");
 
