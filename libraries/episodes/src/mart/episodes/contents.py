@@ -47,7 +47,7 @@ def read_metadata(file: BoundedFile, finished: bool) -> Mapping[str, Mapping[str
     """Return the metadata records by name; the last one where another tool has written several of a name.
 
     Records above `MAX_METADATA_BYTES`, which are none of ours, are left out. Raises one of `SYMPTOMS`, also where two
-    of our own records of a name differ, or one does not have its checksum.
+    of our own records of a name contradict each other (a later one may know more), or one does not have its checksum.
     """
     found: dict[str, Mapping[str, str]] = {}
     left_bytes = _MAX_METADATA_RECORDS * MAX_METADATA_BYTES
@@ -61,7 +61,8 @@ def read_metadata(file: BoundedFile, finished: bool) -> Mapping[str, Mapping[str
             )
         record = parse(file, place)
         assert isinstance(record, Metadata)
-        if record.name.startswith(_OURS) and found.get(record.name, record.metadata) != record.metadata:
+        before = found.get(record.name, {})
+        if record.name.startswith(_OURS) and not before.items() <= record.metadata.items():
             raise ValueError(f"it holds two records {record.name} that differ, as if of two episodes")
         found[record.name] = record.metadata
     checksums = found.pop(CHECKSUMS, {})

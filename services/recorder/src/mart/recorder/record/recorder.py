@@ -22,6 +22,9 @@ from mart.runtime.rate_limit import KeyedRateLimit
 _STEP_S = 0.05
 _MAX_ROOMS = 64
 _TELL_AGAIN_S = 60.0
+_TIDY_FIRST_S = (
+    5.0  # what a crash has left gets its name before what was missed is heard again; that waits in the inbox
+)
 
 _log = logging.getLogger(__name__)
 
@@ -58,7 +61,7 @@ class Recorder:
     def run(self, stop: threading.Event) -> None:
         """Record until `stop` is set, then save what is open."""
         self._tools.root.mkdir(parents=True, exist_ok=True)
-        self._tools.finalizer.tidy()
+        self._tools.finalizer.tidy(wait_s=_TIDY_FIRST_S)
         try:
             while not stop.is_set():
                 self.step(_STEP_S)
