@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import IO
 
 import av
 import mujoco
@@ -16,7 +19,9 @@ from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput, MartError, NotFound
 from mart.protocol.messages import State
 from mart.protocol.recording import MODEL_ATTACHMENT, PROFILE, STATE, RoomRecord
+from mart.runtime.child_process import start_child
 from mart.runtime.cli import cli
+from mart.sim import render_process
 from mart.sim.render_episode import render_episode
 from mart.sim.world import World
 
@@ -101,3 +106,30 @@ def test_what_cannot_be_drawn_is_refused(
     with pytest.raises(error):
         render_episode(file, tmp_path / "one.mp4", **chosen)  # type: ignore[arg-type]
     assert not (tmp_path / "one.mp4").exists()
+
+
+def test_a_process_that_is_lost_over_an_episode_is_one_sentence(
+    world: World, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def crashing(_command: Sequence[str], log: IO[bytes], _env: Mapping[str, str], *, piped: bool) -> object:
+        lost = [sys.executable, "-c", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"]
+        return start_child(lost, log, {}, piped=piped)
+
+    monkeypatch.setattr(render_process, "start_child", crashing)
+    file = recorded(tmp_path / "one.mcap", world)
+    with pytest.raises(Corrupt, match=r"one\.mcap cannot be drawn.*SIGSEGV"):
+        render_process.render_in_process(file, tmp_path / "one.mp4", "front", 64, 48)
+
+
+def test_its_pictures_are_counted_here(world: World, tmp_path: Path) -> None:
+    file, counted = recorded(tmp_path / "one.mcap", world), list[int]()
+    frames = render_process.render_in_process(
+        file, tmp_path / "one.mp4", "front", 64, 48, on_picture=lambda: counted.append(1)
+    )
+    assert frames == len(counted) == TICKS
+
+
+def test_what_is_refused_in_the_process_is_refused_here(world: World, tmp_path: Path) -> None:
+    file = recorded(tmp_path / "one.mcap", world)
+    with pytest.raises(NotFound):
+        render_process.render_in_process(file, tmp_path / "one.mp4", "arm9", 64, 48)

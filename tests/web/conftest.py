@@ -14,6 +14,7 @@ import pytest
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
 from mart.web.access.certificate import ensure_certificate
+from mart.web.access.site_names import SiteNames
 from mart.web.access.user_sessions import UserSessions
 from mart.web.api.app_state import AppState
 from mart.web.app.application import create_app
@@ -26,6 +27,13 @@ ORIGIN = "https://localhost"
 
 Client = httpx.AsyncClient
 Enter = Callable[..., Awaitable[Client]]
+
+
+def site_called(*names: str, lan_host: str) -> SiteNames:
+    """A site that is called so, on whatever machine."""
+    site = SiteNames(names, "127.0.0.1")
+    site.names, site.lan_host = names, lan_host
+    return site
 
 
 @pytest.fixture
@@ -52,8 +60,7 @@ async def app_state(bus: MemoryBus, tmp_path: Path) -> AsyncIterator[AppState]:
             user_sessions=user_sessions,
             join_code=JOIN_CODE,
             secret=b"0123456789abcdef0123456789abcdef",
-            names=("localhost", "lab.example"),
-            lan_host="192.168.1.5",
+            site=site_called("localhost", "lab.example", lan_host="192.168.1.5"),
             data_dir=tmp_path,
             certificate=ensure_certificate(tmp_path, ["localhost"], dt.datetime.now(dt.UTC)).path,
         )

@@ -46,17 +46,14 @@ class Row:
 
 
 def standstill(
-    states: Sequence[tuple[float, int, int]],
-    events: Sequence[tuple[float, Event]],
-    fault_s: float,
-    until_s: float,
+    states: Sequence[tuple[float, int, int]], events: Sequence[tuple[float, Event]], fault_s: float
 ) -> tuple[float, float]:
     """Return the longest time without a state after the fault, and when the last such longer than a hesitation ended.
 
     The pause at an episode's usual end is none.
     """
     ends = [at_s for at_s, event in events if event.HasField("episode_ended")]
-    times = [at_s for at_s, _, _ in states if at_s <= until_s]
+    times = [at_s for at_s, _, _ in states]
     longest, back_s = 0.0, 0.0
     for before_s, after_s in pairwise(times):
         if after_s < fault_s or any(abs(end_s - before_s) < _USUAL_END_S for end_s in ends):

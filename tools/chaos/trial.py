@@ -59,9 +59,7 @@ def try_fault(fault: Fault, scene: Scene, people: Sequence[EmulatedUser]) -> Tri
             row.left_over = _left(scene.running.mark)
         else:
             _await_end(witness, number)
-        row.standstill_s, row.back_s = standstill(
-            witness.states, witness.events, fault_s, clock.monotonic_s()
-        )
+        row.standstill_s, row.back_s = standstill(witness.states, witness.events, fault_s)
         row.told_s, row.told = _told(witness, fault, fault_s)
         expected = expected_ticks(witness, number)
         if not fault.ends_platform:

@@ -125,6 +125,8 @@ def _in_words(room: dict[str, Any]) -> str:
     words = [_waiting(one) for one in room.get("waiting_for", ())]
     if room.get("barrier") == "paused":
         words.append("paused")
+    if room.get("unrecorded"):
+        words.append(f"not recorded: {room['unrecorded']}")
     return "; ".join(words)
 
 

@@ -174,6 +174,7 @@ declare namespace Messages {
     subtasks_done?: number;
     subtasks?: number;
     outcome_by: string;
+    verification_pending: boolean;
   }
 
   interface RecordedView {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import tarfile
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -21,6 +22,8 @@ from tests.recorder.files import write_episode
 from tests.support.processes import running_router, running_service
 
 EPISODES = 6
+ARCHIVE = Path("tests/fixtures/episodes_0_1_0/episodes.tar.xz")
+LOCKSTEP = "2026-11-29/lockstep.mcap"
 
 
 @dataclass
@@ -91,6 +94,33 @@ def test_from_a_filter_to_a_data_set_to_a_training(browser: Browser, site: Runni
         page.get_by_role("button", name="Cancel").click()
         expect(page.locator(".run")).to_contain_text("Cancelled")
         labels.say(site.paths[-1], LabelKind.USE, "keep", 4)
+
+
+def test_an_episode_without_video_is_drawn_when_somebody_asks(browser: Browser, site: RunningSite) -> None:
+    """Of version 0.1.0, in lockstep; meanwhile the list is there before its episodes are."""
+    folder = site.paths[0].parents[1]
+    with tarfile.open(ARCHIVE) as archive:
+        archive.extract(next(one for one in archive if one.name.endswith(LOCKSTEP)), folder, filter="data")
+    try:
+        with episodes_page(browser, site) as page:
+            row = page.locator(".episode").last
+            page.route("**/api/episodes?*", lambda _: None)  # the answer does not come
+            page.reload()
+            expect(page.get_by_role("heading", name="Episodes")).to_be_visible()
+            expect(page.locator("#count")).to_have_text("Reading the episodes…")
+            page.unroute_all()
+            page.reload()
+            page.get_by_label("Driven by").select_option("Any script")
+            expect(row.locator(".thumb img")).to_be_visible()
+            row.get_by_role("link").click()
+            expect(page.locator(".controls .figures")).to_have_text("0.0 s / 3.3 s")
+            page.get_by_role("button", name="Front").click()
+            page.wait_for_function("() => document.querySelector('video')?.readyState >= 2")
+            expect(page.locator(".videos figcaption")).to_have_text("Front")
+            page.screenshot(path=SCREENSHOTS / "episode-drawn.png", full_page=True)
+            assert page.evaluate(INSPECT) == []
+    finally:
+        (folder / LOCKSTEP).unlink()
 
 
 @pytest.mark.parametrize(("size", "scheme"), LOOKS[:4])

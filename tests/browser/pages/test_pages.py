@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mart.platform.run.running import Platform
-from tests.browser.pages.visits import LOOKS, driving, visit
+from tests.browser.pages.visits import INSPECT, LOOKS, SIZES, driving, visit
 
 FOCUSED = """() => {
   const at = document.activeElement;
@@ -64,6 +64,28 @@ def test_the_operators_page(browser: Browser, platform: Platform, size: str, sch
         page.get_by_role("button", name="Pair a phone").click()
         expect(page.locator("#qr")).to_be_visible()
         ana.is_fine(f"operator-pairing-{size}-{scheme}")
+
+
+COVERED = """() => {
+  const picture = document.querySelector("#picture").getBoundingClientRect();
+  return [".strip", ".edge", ".partners"].filter((name) => {
+    const box = document.querySelector(name).getBoundingClientRect();
+    return box.left < picture.right - 1 && box.right > picture.left + 1
+      && box.top < picture.bottom - 1 && box.bottom > picture.top + 1;
+  });
+}"""
+
+
+def test_on_small_screens_nothing_stands_over_the_picture_and_the_stop_is_in_reach(
+    browser: Browser, platform: Platform
+) -> None:
+    with visit(browser, platform, "small") as ana, driving(ana) as page:
+        for size in ("small", "sideways", "narrow"):
+            width, height = SIZES[size]
+            page.set_viewport_size({"width": width, "height": height})
+            assert page.evaluate(COVERED) == [], size
+            expect(page.locator("#stop")).to_be_in_viewport(ratio=1)
+            ana.is_fine(f"operator-{size}")
 
 
 def test_everything_is_reached_by_keyboard(browser: Browser, platform: Platform) -> None:
@@ -201,3 +223,9 @@ def test_a_page_that_does_not_exist_leads_home(browser: Browser, platform: Platf
         ana.page.goto(f"{platform.url}rooms/room-9/arms/arm0")
         expect(ana.page.get_by_role("button", name="Go to the lobby")).to_be_visible()
         ana.is_fine("operator-unknown")
+        answer = ana.page.goto(f"{platform.url}nowhere")
+        assert answer is not None
+        assert answer.status == 404
+        expect(ana.page.get_by_role("link", name="Go to the lobby")).to_be_visible()
+        assert ana.page.evaluate(INSPECT) == []
+        assert ana.page.evaluate("() => getComputedStyle(document.querySelector('main')).display") == "grid"

@@ -14,7 +14,13 @@ from mart.platform.run.running import Platform
 HERE = Path(__file__).parent
 INSPECT = (HERE / "inspect_page.js").read_text()
 SCREENSHOTS = Path("test-output/browser/pages")
-SIZES = {"narrow": (360, 740), "wide": (1440, 900), "wall": (3840, 2160)}
+SIZES = {
+    "narrow": (360, 740),
+    "sideways": (740, 360),
+    "small": (1024, 768),
+    "wide": (1440, 900),
+    "wall": (3840, 2160),
+}
 LOOKS = [("narrow", "dark"), ("narrow", "light"), ("wide", "dark"), ("wide", "light"), ("wall", "light")]
 
 

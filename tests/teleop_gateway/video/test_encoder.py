@@ -11,7 +11,8 @@ from av.video.frame import PictureType
 from mart.render import Image
 from mart.teleop_gateway.video import tick_code
 from mart.teleop_gateway.video.encoder import CLOCK_HZ, Codec, EncodedPicture, Encoder, to_i420
-from mart.teleop_gateway.video.quality import FULL
+from mart.teleop_gateway.video.h264_level import h264_level
+from mart.teleop_gateway.video.quality import FAST, FULL, Quality
 
 DECODERS = {Codec.H264: "h264", Codec.VP8: "vp8"}
 FRAMES_PER_S = 20.0
@@ -117,3 +118,21 @@ def test_a_larger_picture_says_its_tick_too(codec: Codec) -> None:
     encoded = Encoder(codec, FRAMES_PER_S, FULL).encode(to_i420(rgb), 0, keyframe=True)
     (frame,) = decoder(codec).decode(av.Packet(encoded.data))
     assert tick_code.read(np.asarray(frame.to_ndarray(format="gray"), np.uint8)) == 4711
+
+
+@pytest.mark.parametrize(
+    ("quality", "frames_per_s", "level"),
+    [(FAST, 20.0, 31), (FAST, 60.0, 31), (FULL, 20.0, 31), (FULL, 60.0, 32), (FULL, 100.0, 42)],
+)
+def test_the_stream_says_the_level_that_its_size_and_rate_need(
+    quality: Quality, frames_per_s: float, level: int
+) -> None:
+    """At 60 pictures of 960 x 744 a second there are 169,200 macroblocks; level 3.1 allows 108,000."""
+    encoder = Encoder(Codec.H264, frames_per_s, quality)
+    data = encoder.encode(to_i420(quality.blank_picture()), 0, keyframe=True).data
+    sps = data.index(b"\0\0\1\x67") + 4
+    assert data[sps + 2] == level
+
+
+def test_what_no_level_allows_gets_the_largest() -> None:
+    assert h264_level(8192, 4096, 1000.0) == 52

@@ -43,9 +43,10 @@ def test_it_is_kept_while_it_serves(tmp_path: Path) -> None:
 
 def test_it_is_renewed_before_it_ends(tmp_path: Path) -> None:
     first = ensure_certificate(tmp_path, NAMES, NOW)
-    second = ensure_certificate(tmp_path, NAMES, first.renew_at)
+    due = first.expires - RENEWED_BEFORE
+    second = ensure_certificate(tmp_path, NAMES, due)
     assert second.expires > first.expires
-    assert loaded(tmp_path).not_valid_before_utc <= first.renew_at
+    assert loaded(tmp_path).not_valid_before_utc <= due
 
 
 def test_a_new_name_makes_a_new_one(tmp_path: Path) -> None:
@@ -53,6 +54,12 @@ def test_a_new_name_makes_a_new_one(tmp_path: Path) -> None:
     serial = loaded(tmp_path).serial_number
     ensure_certificate(tmp_path, (*NAMES, "192.168.1.5"), NOW)
     assert loaded(tmp_path).serial_number != serial
+
+
+def test_a_name_of_before_is_kept_so_that_coming_back_needs_no_other(tmp_path: Path) -> None:
+    ensure_certificate(tmp_path, ("localhost", "192.168.1.5"), NOW)
+    elsewhere = ensure_certificate(tmp_path, ("localhost", "10.0.0.9"), NOW)
+    assert ensure_certificate(tmp_path, ("localhost", "192.168.1.5"), NOW) == elsewhere
 
 
 def test_a_damaged_one_is_made_anew(tmp_path: Path) -> None:

@@ -1,10 +1,12 @@
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mart.web.access.request_limits import AtOnceLimit, FailureDelay, RequestLimit
+from mart.web.access.request_limits import AtOnceLimit, FailureDelay, RequestLimit, TurnLimit
 from mart.web.errors import TooMany
 
 
@@ -73,3 +75,22 @@ def test_so_many_at_one_time_and_again_when_they_have_ended() -> None:
     with limit.hold("ana"):
         pass
     assert not limit._held
+
+
+def test_of_one_person_so_many_go_on_at_once_and_the_next_wait() -> None:
+    async def body() -> None:
+        limit, going, most = TurnLimit(2), [0], [0]
+
+        async def work() -> None:
+            async with limit.turn("ana"):
+                going[0] += 1
+                most[0] = max(most[0], going[0])
+                await asyncio.sleep(0)
+                going[0] -= 1
+
+        async with limit.turn("ben"):
+            await asyncio.gather(*(work() for _ in range(20)))
+        assert most == [2]
+        assert not limit._turns
+
+    asyncio.run(body())

@@ -4,7 +4,8 @@ import ipaddress
 
 import pytest
 
-from mart.web.access.site_names import host_name, in_url, lan_addresses, site_names
+from mart.web.access import site_names as module
+from mart.web.access.site_names import SiteNames, host_name, in_url, lan_addresses, site_names
 
 
 @pytest.mark.parametrize(
@@ -42,3 +43,29 @@ def test_lan_addresses_are_addresses_that_others_can_use() -> None:
 
 def test_addresses_of_six_words_are_bracketed_in_urls() -> None:
     assert (in_url("::1"), in_url("localhost")) == ("[::1]", "localhost")
+
+
+def test_a_laptop_that_moves_to_another_network_is_called_by_its_new_address(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(module, "lan_addresses", lambda: ("192.168.1.5",))
+    site = SiteNames((), "0.0.0.0")
+    assert "192.168.1.5" in site.names
+    assert site.lan_host == "192.168.1.5"
+    monkeypatch.setattr(module, "lan_addresses", lambda: ("10.0.0.9",))
+    site.look()
+    assert "10.0.0.9" in site.names
+    assert site.lan_host == "10.0.0.9"
+
+
+@pytest.mark.parametrize(
+    ("public", "listening_at", "host"),
+    [
+        (("localhost", "lab.example"), "0.0.0.0", "lab.example"),
+        (("localhost",), "0.0.0.0", ""),
+        ((), "127.0.0.1", ""),
+        ((), "192.0.2.7", "192.0.2.7"),
+    ],
+)
+def test_what_a_phone_may_call_it(public: tuple[str, ...], listening_at: str, host: str) -> None:
+    assert SiteNames(public, listening_at).lan_host == host

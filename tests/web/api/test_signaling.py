@@ -227,7 +227,7 @@ async def test_guessing_pairing_codes_keeps_no_phone_out(enter: Enter, room: Roo
 async def test_a_phone_that_cannot_reach_this_computer_is_told(
     enter: Enter, room: Room, app_state: AppState
 ) -> None:
-    object.__setattr__(app_state, "lan_host", "")
+    app_state.site.lan_host = ""
     pairing = (await (await seated(enter)).post(f"{SEAT}/pair")).json()
     assert "--host 0.0.0.0" in pairing["hint"]
 

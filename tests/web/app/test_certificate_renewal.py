@@ -1,55 +1,50 @@
 from __future__ import annotations
 
 import asyncio
-import datetime as dt
-import ssl
-from pathlib import Path
 
 import pytest
 
-from mart.web.access.certificate import Certificate, ensure_certificate
 from mart.web.app import certificate_renewal
-from mart.web.app.certificate_renewal import RETRY_S, keep_renewed
+from mart.web.app.certificate_renewal import keep_renewed
 
 pytestmark = pytest.mark.anyio
 
 
-async def test_a_renewal_that_fails_is_tried_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    monkeypatch.setattr(certificate_renewal, "RETRY_S", 0.0)
-    renewed = asyncio.Event()
-    tries = 0
+async def look(monkeypatch: pytest.MonkeyPatch, answers: list[int | Exception]) -> list[int]:
+    """Which of the certificates that `answers` name, one a look, were loaded."""
+    monkeypatch.setattr(certificate_renewal, "LOOK_EVERY_S", 0.0)
+    looked, waiting = asyncio.Event(), iter(answers)
+    there, loaded = [0], []
 
-    def ensure() -> Certificate:
-        nonlocal tries
-        tries += 1
-        if tries == 1:
-            raise OSError(28, "No space left on device")
-        renewed.set()
-        return ensure_certificate(tmp_path, ["localhost"], dt.datetime.now(dt.UTC))
+    def ensure() -> int:
+        answer = next(waiting, None)
+        if answer is None:
+            looked.set()
+        elif isinstance(answer, Exception):
+            raise answer
+        else:
+            there[0] = answer
+        return there[0]
 
-    renewing = asyncio.ensure_future(keep_renewed(ensure, ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)))
-    await asyncio.wait_for(renewed.wait(), 30)
+    renewing = asyncio.ensure_future(keep_renewed(ensure, lambda: loaded.append(there[0])))
+    await asyncio.wait_for(looked.wait(), 30)
     renewing.cancel()
-    assert "could not be renewed" in caplog.text
+    return loaded
 
 
-@pytest.mark.parametrize(("due_s", "wait_s"), [(30 * 86400.0, 30 * 86400.0), (-5.0, RETRY_S)])
-async def test_it_is_looked_at_again_when_it_is_due_and_never_at_once(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, due_s: float, wait_s: float
+async def test_a_certificate_is_loaded_once_and_another_when_it_is_there(
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    made = ensure_certificate(tmp_path, ["localhost"], dt.datetime.now(dt.UTC))
-    now = made.renew_at - dt.timedelta(seconds=due_s)
-    slept: asyncio.Future[float] = asyncio.get_running_loop().create_future()
+    assert await look(monkeypatch, [1, 1, 1, 2, 2]) == [1, 2]
 
-    async def sleep(delay_s: float) -> None:
-        slept.set_result(delay_s)
-        await asyncio.Event().wait()
 
-    monkeypatch.setattr(certificate_renewal, "now", lambda: now)
-    with monkeypatch.context() as patched:
-        patched.setattr(asyncio, "sleep", sleep)
-        renewing = asyncio.ensure_future(keep_renewed(lambda: made, ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)))
-        assert await slept == wait_s
-        renewing.cancel()
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), ValueError("no name")])
+async def test_whatever_fails_is_told_once_and_tried_again(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, error: Exception
+) -> None:
+    assert await look(monkeypatch, [1, error, error, error, 2]) == [1, 2]
+    assert caplog.text.count("could not be renewed") == 1
+
+
+def test_it_looks_often_enough_for_a_laptop_that_sleeps() -> None:
+    assert certificate_renewal.LOOK_EVERY_S <= 60.0

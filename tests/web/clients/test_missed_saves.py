@@ -61,6 +61,7 @@ async def catalogue(app_state: AppState, bus: MemoryBus) -> Catalogue:
 @pytest.fixture
 def missed(app_state: AppState) -> MissedSaves:
     """Looks for episode 3 of room-1, which has ended a minute ago and of which no event came."""
+    app_state.lobby.see_alive(keys.alive(ServiceKind.SIM, "room-1"), True)
     for phase in (EPISODE_PHASE_RECORDING, EPISODE_PHASE_ENDED, EPISODE_PHASE_PRACTICE):
         app_state.lobby.see_status(status(phase), 0.0)
     return MissedSaves(app_state.lobby, app_state.catalogue)

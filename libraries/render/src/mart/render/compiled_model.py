@@ -7,6 +7,7 @@ import hashlib
 import mujoco
 
 from mart.protocol.errors import Corrupt, NotFound
+from mart.render.model_probe import objection_to
 
 _FILE = "model.mjb"  # MuJoCo wants a name, also for what is in memory
 
@@ -15,11 +16,17 @@ def load_model(mjb: bytes, *, sha256: str, mujoco_version: str, source: str) -> 
     """Return the compiled model in `mjb`, once its digest is found right.
 
     `sha256` is its digest in hexadecimal, `mujoco_version` the version that compiled it, `source` where it came from,
-    in words for the errors. Raises Corrupt where the digest is another, or this version of MuJoCo cannot load it.
+    in words for the errors. Raises Corrupt where the digest is another, or this version of MuJoCo cannot load it; what
+    would crash it is tried elsewhere first (`model_probe`).
     """
     if hashlib.sha256(mjb).hexdigest() != sha256:
         raise Corrupt(
             f"The model of {source} ({len(mjb)} bytes) does not match its SHA-256: it was changed on its way."
+        )
+    objection = objection_to(mjb, sha256)
+    if objection:
+        raise Corrupt(
+            f"The model of {source} is of MuJoCo {mujoco_version}; {mujoco.__version__} {objection}. It is not used."
         )
     try:
         return mujoco.MjModel.from_binary_path(_FILE, {_FILE: mjb})

@@ -7,6 +7,8 @@ import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
+from mart.runtime.atomic_file import sync_folder
+
 _HALF = ".half"
 
 
@@ -25,17 +27,9 @@ def write_directory_atomically(path: Path, files: Mapping[str, bytes]) -> None:
             opened.flush()
             os.fsync(opened.fileno())
     for folder in {half, *((half / name).parent for name in files)}:
-        _sync(folder)
+        sync_folder(folder)
     if path.exists():
         shutil.rmtree(half)
         return
     half.rename(path)
-    _sync(path.parent)
-
-
-def _sync(folder: Path) -> None:
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+    sync_folder(path.parent)

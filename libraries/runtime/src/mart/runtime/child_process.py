@@ -8,6 +8,7 @@ should.
 from __future__ import annotations
 
 import ctypes
+import io
 import os
 import signal
 import subprocess
@@ -20,6 +21,9 @@ _PR_SET_PDEATHSIG = 1
 _STOP_TIMEOUT_S = 10.0
 
 MART = Path(sys.executable).with_name("mart")
+STANDARD_ERROR = io.FileIO(
+    2, "w", closefd=False
+)  # as a log: this process's own, whatever `sys.stderr` is now
 
 
 def start_child(

@@ -4,22 +4,28 @@ from __future__ import annotations
 
 import logging
 import sqlite3
-from collections.abc import Iterator
-from contextlib import closing
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
 
+from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.reader import EpisodeFile
-from mart.protocol.errors import MartError
+from mart.protocol import keys
+from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.catalogue.episode_catalogue import list_folder
+from mart.recorder.record.announcer import Announcer
 from mart.recorder.record.finalize import SavedEpisode, VerifyFile
 from mart.recorder.record.folder_claim import only_recorder_of
 from mart.recorder.record.inbox import Inbox, RoomSubscriptions
 from mart.recorder.record.recorder import Recorder
 from mart.recorder.repair.repair import log_repairs, repair_all
 from mart.recorder.settings import RecorderSettings
-from mart.recorder.verify.resimulation import replica, verify
+from mart.recorder.verify.pending_verifications import PendingVerifications
+from mart.recorder.verify.replica import replica
+from mart.recorder.verify.resimulation import verify
+from mart.runtime.bus import Bus
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.live_services import LiveIds
 from mart.runtime.service import announced, connected
@@ -47,30 +53,64 @@ def serve_recorder(settings: RecorderSettings, name: str) -> None:
             return verify(file, room, ask)
 
         told: dict[Path, str] = {}
+        with verifying_again(service.bus, settings, name, verify_file) as pending:
 
-        def tidy_folder() -> Iterator[SavedEpisode]:
-            return tidy(root, verify_file, told)
+            def tidy_folder() -> Iterator[SavedEpisode]:
+                return tidy(root, verify_file, told, pending.see)
 
-        recorder = Recorder(
-            settings.data_dir,
-            service.bus,
-            inbox,
-            live_rooms=live_rooms,
-            verify=verify_file,
-            tidy=tidy_folder,
-            name=name,
-        )
-        with closing(RoomSubscriptions(service.bus, video_bus, inbox)), announced(service):
-            recorder.run(service.stop)
+            recorder = Recorder(
+                settings.data_dir,
+                service.bus,
+                inbox,
+                live_rooms=live_rooms,
+                verify=verify_file,
+                tidy=tidy_folder,
+                name=name,
+            )
+            with closing(RoomSubscriptions(service.bus, video_bus, inbox)), announced(service):
+                recorder.run(service.stop)
 
 
-def tidy(root: Path, verify_file: VerifyFile, told: dict[Path, str]) -> Iterator[SavedEpisode]:
+@contextmanager
+def verifying_again(
+    bus: Bus, settings: RecorderSettings, name: str, verify_file: VerifyFile
+) -> Iterator[PendingVerifications]:
+    """Try pending verifications while the block runs, at once when the replica appears. name: of the recorder."""
+    root = settings.episodes_dir.resolve()
+    token = keys.alive(ServiceKind.REPLICA, settings.replica)
+    announcer = Announcer(bus, settings.data_dir.resolve(), name)
+
+    def is_up() -> bool:
+        try:
+            return bool(bus.alive(token))
+        except Unavailable:  # the router is away
+            return False
+
+    def on_token(_key: str, alive: bool) -> None:
+        if alive:
+            pending.wake()
+
+    pending = PendingVerifications(verify_file, is_up, announcer.saved, lambda: list_folder(root))
+    pending.start()
+    with closing(pending), closing(bus.watch(token, on_token)):
+        yield pending
+
+
+def tidy(
+    root: Path,
+    verify_file: VerifyFile,
+    told: dict[Path, str],
+    on_listed: Callable[[Iterable[LabelledEpisode]], None] | None = None,
+) -> Iterator[SavedEpisode]:
     """Repair what crashes have left under `root`, yielding what became an episode; then refresh the catalogue.
 
     told: what was said of files that cannot be repaired, so that it is said once.
+    on_listed: is told of every episode that is there then.
     """
     yield from log_repairs(repair_all(root, verify_file), told)
     try:
-        list_folder(root)
+        listed = list_folder(root)
+        if on_listed is not None:
+            on_listed(listed)
     except (OSError, sqlite3.Error, MartError) as error:  # it is derived: the next one makes up for it
         _log.warning("The catalogue could not be brought up to date: %s", error)

@@ -7,7 +7,6 @@ from typing import Any
 
 import click
 
-from mart.protocol.errors import Unavailable
 from mart.protocol.tasks import SHARED_VIEWPOINT
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import progress
@@ -74,14 +73,9 @@ def render(
     *, file: Path, viewpoint: str, out: Path | None, width_px: int, height_px: int, as_json: bool
 ) -> None:
     """Draw an episode anew from its states, from any viewpoint, as a video."""
-    try:
-        from mart.sim.render_episode import picture_count, render_episode
-    except ImportError as error:  # of PyOpenGL, PyAV or the system's EGL
-        raise Unavailable(
-            f"Drawing needs what this installation lacks ({error}): pip install 'mart-sim[render]', and libegl1."
-        ) from error
+    from mart.sim.render_process import picture_count, render_in_process
 
     video = out or Path(f"{file.stem}-{viewpoint}.mp4")
     with progress("Pictures", picture_count(file), as_json=as_json) as shown:
-        frames = render_episode(file, video, viewpoint, width_px, height_px, on_picture=shown.advance)
+        frames = render_in_process(file, video, viewpoint, width_px, height_px, on_picture=shown.advance)
     print_result({"video": str(video), "frames": frames}, f"{video}: {frames} pictures.", as_json)

@@ -16,17 +16,11 @@ from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.messages import State
-from mart.protocol.recording import STATE, EpisodeRecord
+from mart.protocol.recording import STATE
 from mart.render import Renderer, load_model
 from mart.runtime.atomic_file import PUBLIC, write_atomically
 
 _QUALITY = {"crf": "20", "preset": "veryfast"}  # of x264: no difference to see, about 1 MB a minute
-
-
-def picture_count(path: Path) -> int:
-    """Return how many pictures a video of the whole episode has, as its file says; 0 where it does not say."""
-    file = EpisodeFile.open(path)
-    return file.episode.ticks + 1 if EpisodeRecord.NAME in file.metadata else 0
 
 
 def render_episode(

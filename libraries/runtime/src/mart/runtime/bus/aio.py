@@ -6,6 +6,7 @@ import asyncio
 import logging
 from collections import deque
 from collections.abc import Awaitable, Callable, Coroutine
+from concurrent.futures import Executor
 from typing import Any
 
 from mart.protocol import clock
@@ -22,9 +23,13 @@ _MAX_WAITING = 4096  # samples of one subscription
 class AsyncBus:
     """Wraps a Bus for one running event loop. Handlers are plain functions called on the loop."""
 
-    def __init__(self, bus: Bus, loop: asyncio.AbstractEventLoop) -> None:
+    def __init__(
+        self, bus: Bus, loop: asyncio.AbstractEventLoop, query_threads: Executor | None = None
+    ) -> None:
+        """Wrap `bus`. Queries wait on `query_threads`; by default on those that the loop has for everything."""
         self.bus = bus
         self._loop = loop
+        self._query_threads = query_threads
         self._tasks: set[asyncio.Task[Any]] = set()
 
     def publisher(self, topic: Topic) -> Publisher:
@@ -55,7 +60,13 @@ class AsyncBus:
         return self.bus.serve(topic, lambda request: self._soon(lambda: self.spawn(respond(request))))
 
     async def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
-        return await asyncio.to_thread(self.bus.query, topic, payload, timeout_s)
+        return await self._loop.run_in_executor(
+            self._query_threads, self.bus.query, topic, payload, timeout_s
+        )
+
+    def with_query_threads(self, query_threads: Executor) -> AsyncBus:
+        """The same bus, whose queries wait on threads that others' queries do not use up."""
+        return AsyncBus(self.bus, self._loop, query_threads)
 
     def announce(self, alive_key: str) -> Closable:
         return self.bus.announce(alive_key)

@@ -18,7 +18,7 @@ from typing import IO
 from mart.protocol import codec
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import RolloutReply, RolloutRequest, raise_error
-from mart.runtime.child_process import start_child
+from mart.runtime.child_process import STANDARD_ERROR, start_child
 from mart.runtime.steady_libm import native_environment
 
 _IDLE_S = 60.0
@@ -66,7 +66,7 @@ class NativeRollouts:
     def _exchange(self, payload: bytes) -> RolloutReply:
         if self._process is None:
             command = [sys.executable, "-m", __name__]
-            self._process = start_child(command, sys.stderr.buffer, self._environment or {}, piped=True)
+            self._process = start_child(command, STANDARD_ERROR, self._environment or {}, piped=True)
         process = self._process
         assert process.stdin is not None
         assert process.stdout is not None

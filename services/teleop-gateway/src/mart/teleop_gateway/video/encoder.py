@@ -17,6 +17,7 @@ from av.video.codeccontext import VideoCodecContext
 from av.video.frame import PictureType
 
 from mart.render import Image
+from mart.teleop_gateway.video.h264_level import h264_level
 from mart.teleop_gateway.video.quality import FAST, Quality
 
 CLOCK_HZ = 90_000  # RTP's video clock
@@ -71,7 +72,6 @@ _RECIPES = MappingProxyType(
             options={
                 "preset": "ultrafast",
                 "tune": "zerolatency",
-                "level": "31",
                 "x264-params": ":".join(f"{name}={value}" for name, value in _X264.items()),
             },
         ),
@@ -106,6 +106,9 @@ class Encoder:
         context.bit_rate = recipe.bitrate_bps
         context.profile = recipe.profile
         context.options = dict(recipe.options)
+        if codec is Codec.H264:
+            level = h264_level(quality.width_px, quality.height_px, frames_per_s)
+            context.options = {**recipe.options, "level": str(level)}
         context.thread_count = 1
         self._codec = codec
         self._context = context

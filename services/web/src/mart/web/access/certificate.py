@@ -23,6 +23,7 @@ _log = logging.getLogger(__name__)
 
 LIFETIME = dt.timedelta(days=397)  # browsers refuse longer ones
 RENEWED_BEFORE = dt.timedelta(days=30)
+_MAX_NAMES = 64
 _CLOCK_SKEW = dt.timedelta(hours=1)
 
 
@@ -32,23 +33,24 @@ class Certificate:
 
     path: Path
     expires: dt.datetime
-
-    @property
-    def renew_at(self) -> dt.datetime:
-        """The time from which a new one is to be made."""
-        return self.expires - RENEWED_BEFORE
+    serial_number: int
 
 
 def ensure_certificate(folder: Path, names: Iterable[str], now: dt.datetime) -> Certificate:
-    """Return the certificate in `folder`; made anew where there is none, it ends soon, or it lacks one of `names`."""
+    """Return the certificate in `folder`; made anew where there is none, it ends soon, or it lacks one of `names`.
+
+    A new one has the old one's names too: who comes back to a network where they were need not trust another.
+    """
     path = folder / "site.pem"
     wanted = {_general_name(name) for name in names}
     kept = _load(path)
     if kept is not None and wanted <= _names_of(kept) and now < kept.not_valid_after_utc - RENEWED_BEFORE:
-        return Certificate(path, kept.not_valid_after_utc)
+        return Certificate(path, kept.not_valid_after_utc, kept.serial_number)
+    if kept is not None and len(_names_of(kept) | wanted) <= _MAX_NAMES:
+        wanted |= _names_of(kept)
     made = _make(path, wanted, now)
     write_atomically(folder / "site.crt", made.public_bytes(serialization.Encoding.PEM))
-    return Certificate(path, made.not_valid_after_utc)
+    return Certificate(path, made.not_valid_after_utc, made.serial_number)
 
 
 def days_left(path: Path, now_s: float) -> float | None:

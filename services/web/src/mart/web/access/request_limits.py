@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import math
 from collections import Counter, OrderedDict, deque
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
 
 from mart.runtime.rate_limit import KeyedRateLimit
 from mart.web.errors import TooMany
@@ -56,6 +57,28 @@ class AtOnceLimit:
             self._held[key] -= 1
             if not self._held[key]:
                 del self._held[key]
+
+
+class TurnLimit:
+    """Let `count` things of one key (a user) go on at one time; the next waits for its turn. On an event loop."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._turns: dict[str, asyncio.Semaphore] = {}
+        self._using: Counter[str] = Counter()  # those whose turn it is, and those that wait
+
+    @contextlib.asynccontextmanager
+    async def turn(self, key: str) -> AsyncIterator[None]:
+        """Wait for the turn of one of `key`, which lasts as long as the block runs."""
+        turns = self._turns.setdefault(key, asyncio.Semaphore(self._count))
+        self._using[key] += 1
+        try:
+            async with turns:
+                yield
+        finally:
+            self._using[key] -= 1
+            if not self._using[key]:
+                del self._using[key], self._turns[key]
 
 
 class FailureDelay:

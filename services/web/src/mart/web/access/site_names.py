@@ -9,7 +9,26 @@ from collections.abc import Sequence
 import ifaddr
 
 _VIRTUAL = ("docker", "br-", "veth", "virbr", "cni")  # networks inside this machine, which come and go
+_EVERY_ADDRESS = ("0.0.0.0", "::")  # noqa: S104  (only when asked for)
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
+
+
+class SiteNames:
+    """What this site is called now, and what a phone may call it: a laptop moves from network to network.
+
+    names: of the Host header. lan_host: empty where no phone can reach the site.
+    """
+
+    def __init__(self, public_names: Sequence[str], listening_at: str) -> None:
+        self._public_names, self._listening_at = public_names, listening_at
+        self.names: tuple[str, ...] = ()
+        self.lan_host = ""
+        self.look()
+
+    def look(self) -> None:
+        """Find out anew."""
+        self.names = site_names(self._public_names, self._listening_at)
+        self.lan_host = _lan_host(self._public_names, self._listening_at)
 
 
 def site_names(public_names: Sequence[str], listening_at: str) -> tuple[str, ...]:
@@ -19,6 +38,14 @@ def site_names(public_names: Sequence[str], listening_at: str) -> tuple[str, ...
     """
     told = public_names or (listening_at, *_host_names(), *lan_addresses())
     return tuple(dict.fromkeys((*(name.lower() for name in told), *LOOPBACK)))
+
+
+def _lan_host(public_names: Sequence[str], listening_at: str) -> str:
+    if public_names:
+        return next((name for name in public_names if not is_loopback(name)), "")
+    if listening_at in _EVERY_ADDRESS:
+        return next(iter(lan_addresses()), "")
+    return "" if is_loopback(listening_at) else listening_at
 
 
 def _host_names() -> tuple[str, ...]:

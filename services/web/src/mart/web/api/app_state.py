@@ -6,14 +6,17 @@ import functools
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.ice_servers import IceSettings
 from mart.web.access.pairing_codes import PairingCodes
-from mart.web.access.request_limits import AtOnceLimit, FailureDelay, RequestLimit
+from mart.web.access.request_limits import AtOnceLimit, FailureDelay, RequestLimit, TurnLimit
+from mart.web.access.site_names import SiteNames
 from mart.web.access.user_sessions import UserSessions
 from mart.web.clients.catalogue_client import CatalogueClient
 from mart.web.clients.gateway_client import GatewayClient
 from mart.web.clients.platform_client import PlatformClient
+from mart.web.clients.query_pools import QueryPools
 from mart.web.clients.room_client import RoomRequester
 from mart.web.clients.trainer_client import TrainerClient
 from mart.web.lobby.health_findings import RelayCheck
@@ -37,6 +40,14 @@ def _offers_from_address() -> RequestLimit:
     return RequestLimit("connection attempts", count=300, window_s=60.0)
 
 
+def _writes() -> RequestLimit:
+    return RequestLimit("changes", count=120, window_s=60.0)
+
+
+def _browsing() -> TurnLimit:
+    return TurnLimit(count=6)
+
+
 def _live_sockets() -> AtOnceLimit:
     return AtOnceLimit("open pages", count=16)
 
@@ -45,7 +56,7 @@ def _live_sockets() -> AtOnceLimit:
 class AppState:
     """What all routes share; its maker closes what can be closed.
 
-    `names`: what this site is called. `lan_host`: what a phone may call it; empty where it cannot reach it.
+    `site`: what this site is called now.
     `ice`: the STUN and TURN servers that pages may use. `relays`: what became of asking them last, by URL.
     """
 
@@ -54,8 +65,7 @@ class AppState:
     user_sessions: UserSessions
     join_code: str
     secret: bytes
-    names: tuple[str, ...]
-    lan_host: str
+    site: SiteNames
     data_dir: Path
     certificate: Path
     pairing_codes: PairingCodes = field(default_factory=PairingCodes)
@@ -63,9 +73,16 @@ class AppState:
     joins: RequestLimit = field(default_factory=_joins)
     offers: RequestLimit = field(default_factory=_offers)
     offers_from_address: RequestLimit = field(default_factory=_offers_from_address)
+    writes: RequestLimit = field(default_factory=_writes)
+    browsing: TurnLimit = field(default_factory=_browsing)
     live_sockets: AtOnceLimit = field(default_factory=_live_sockets)
     ice: IceSettings = field(default_factory=IceSettings)
     relays: dict[str, RelayCheck] = field(default_factory=dict)
+
+    @functools.cached_property
+    def pools(self) -> QueryPools:
+        """The bus for each kind of query."""
+        return QueryPools(self.bus)
 
     @functools.cached_property
     def rooms_text(self) -> RoomsText:
@@ -75,24 +92,24 @@ class AppState:
     @property
     def rooms(self) -> RoomRequester:
         """The client through which seats are taken and episodes begun and ended."""
-        return RoomRequester(self.bus, self.lobby)
+        return RoomRequester(self.pools.bus(ServiceKind.SIM), self.lobby)
 
     @property
     def platform(self) -> PlatformClient:
         """The client through which rooms are opened and closed."""
-        return PlatformClient(self.bus, self.lobby.services)
+        return PlatformClient(self.pools.bus(ServiceKind.PLATFORM), self.lobby.services)
 
     @property
     def gateways(self) -> GatewayClient:
         """The client that has peers' offers answered."""
-        return GatewayClient(self.bus, self.lobby.services)
+        return GatewayClient(self.pools.bus(ServiceKind.GATEWAY), self.lobby.services)
 
     @property
     def catalogue(self) -> CatalogueClient:
         """The client that tells of recorded episodes."""
-        return CatalogueClient(self.bus, self.lobby.services)
+        return CatalogueClient(self.pools.bus(ServiceKind.CATALOGUE), self.lobby.services)
 
     @property
     def trainer(self) -> TrainerClient:
         """The client through which policies are trained and promoted."""
-        return TrainerClient(self.bus, self.lobby.services)
+        return TrainerClient(self.pools.bus(ServiceKind.TRAINER), self.lobby.services)

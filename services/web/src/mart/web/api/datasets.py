@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from mart.protocol.messages import CatalogueRequest
-from mart.web.api.dependencies import App, JoinedUser
+from mart.web.api.dependencies import App, WritingUser
 from mart.web.api.episodes import CatalogueFilter
+from mart.web.api.texts import FilePath
 from mart.web.clients.message_json import as_json
 from mart.web.lobby.room_json import Json
 
@@ -20,7 +21,7 @@ class DatasetEditRequest(BaseModel):
     """Which episodes join or leave a data set: those of `paths`, or `all` that a filter lets through."""
 
     action: Literal["add", "remove"]
-    paths: list[Annotated[str, Field(max_length=1024)]] = Field(default_factory=list, max_length=200)
+    paths: list[FilePath] = Field(default_factory=list, max_length=200)
     all: CatalogueFilter | None = None
 
     def request(self, dataset: str) -> CatalogueRequest:
@@ -38,13 +39,13 @@ class UndoRequest(BaseModel):
 
 
 @router.post("/{dataset}")
-async def curate(dataset: str, body: DatasetEditRequest, app: App, _user: JoinedUser) -> Json:
+async def curate(dataset: str, body: DatasetEditRequest, app: App, _user: WritingUser) -> Json:
     """Put episodes into a data set, or take them out."""
     return {"curated": as_json((await app.catalogue.ask(body.request(dataset))).curated)}
 
 
 @router.post("/{dataset}/undo")
-async def undo(dataset: str, body: UndoRequest, app: App, _user: JoinedUser) -> Json:
+async def undo(dataset: str, body: UndoRequest, app: App, _user: WritingUser) -> Json:
     """Undo an act of `curate`."""
     request = CatalogueRequest(undo=CatalogueRequest.Undo(dataset=dataset, act_ns=body.act_ns))
     return {"curated": as_json((await app.catalogue.ask(request)).curated)}

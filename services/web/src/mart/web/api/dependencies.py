@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
 from typing import Annotated
 
 from fastapi import Depends
@@ -51,10 +52,24 @@ async def joined_user(user: MaybeUser) -> User:
     return user
 
 
+async def browsing_user(user: Annotated[User, Depends(joined_user)], app: App) -> AsyncIterator[User]:
+    """Yield who asks for what may take long; a few such requests of one person go on at a time, others wait."""
+    async with app.browsing.turn(user.holder_id):
+        yield user
+
+
+async def writing_user(user: Annotated[User, Depends(browsing_user)], app: App) -> User:
+    """Return who asks for something to be kept or changed; raises TooMany where they do so too often."""
+    app.writes.spend(user.holder_id, clock.monotonic_s())
+    return user
+
+
 async def address_of(connection: HTTPConnection) -> str:
     """Return the network address that a request comes from."""
     return connection.client.host if connection.client else "unknown"
 
 
 JoinedUser = Annotated[User, Depends(joined_user)]
+BrowsingUser = Annotated[User, Depends(browsing_user)]
+WritingUser = Annotated[User, Depends(writing_user)]
 Address = Annotated[str, Depends(address_of)]

@@ -15,27 +15,28 @@ from mart.protocol.messages import CatalogueReply, CatalogueRequest, RecordedEpi
 from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import EpisodeOutcome
 from mart.web.api.app_state import AppState
-from mart.web.api.dependencies import App, JoinedUser
+from mart.web.api.dependencies import App, BrowsingUser, WritingUser
+from mart.web.api.texts import FilePath, Word
 from mart.web.clients.message_json import as_json
 from mart.web.clients.pieces import pieces_of
 from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api")
 
-Path = Annotated[str, Query(max_length=1024)]
-Camera = Annotated[str, Query(max_length=128)]
+Path = Annotated[FilePath, Query()]
+Camera = Annotated[Word, Query()]
 
 
 class CatalogueFilter(BaseModel):
     """Which episodes are wanted; each field is empty where all will do."""
 
-    task: str = Field("", max_length=128)
-    outcome: str = Field("", max_length=128)
-    verdict: str = Field("", max_length=128)
-    operator: str = Field("", max_length=128)
-    room: str = Field("", max_length=128)
-    skill: str = Field("", max_length=128)
-    dataset: str = Field("", max_length=128)
+    task: Word = ""
+    outcome: Word = ""
+    verdict: Word = ""
+    operator: Word = ""
+    room: Word = ""
+    skill: Word = ""
+    dataset: Word = ""
 
 
 class EpisodeListQuery(CatalogueFilter):
@@ -54,7 +55,7 @@ class LabelRequest(BaseModel):
 
 
 @router.get("/episodes")
-async def episodes(asked: Annotated[EpisodeListQuery, Query()], app: App, _user: JoinedUser) -> Json:
+async def episodes(asked: Annotated[EpisodeListQuery, Query()], app: App, _user: BrowsingUser) -> Json:
     """Send a page of the list of episodes.
 
     It is null where no catalogue runs: that is no fault of a page that waits for one.
@@ -69,7 +70,7 @@ async def episodes(asked: Annotated[EpisodeListQuery, Query()], app: App, _user:
 
 
 @router.get("/episode")
-async def episode(path: Path, app: App, _user: JoinedUser) -> Json:
+async def episode(path: Path, app: App, _user: BrowsingUser) -> Json:
     """Send one episode in detail."""
     request = CatalogueRequest(show=CatalogueRequest.Show(path=path))
     details = (await app.catalogue.ask(request)).details
@@ -81,7 +82,7 @@ async def episode(path: Path, app: App, _user: JoinedUser) -> Json:
 
 
 @router.post("/episode")
-async def label(path: Path, body: LabelRequest, app: App, user: JoinedUser) -> Json:
+async def label(path: Path, body: LabelRequest, app: App, user: WritingUser) -> Json:
     """Write down what somebody says of an episode."""
     said = body.model_dump(exclude_none=True)
     request = CatalogueRequest(label=CatalogueRequest.Label(path=path, by=user.name, **said))
@@ -92,7 +93,7 @@ async def label(path: Path, body: LabelRequest, app: App, user: JoinedUser) -> J
 
 
 @router.get("/episode/file")
-async def file(path: Path, app: App, _user: JoinedUser) -> Response:
+async def file(path: Path, app: App, _user: BrowsingUser) -> Response:
     """Send the episode file itself."""
     name = PurePosixPath(path).name.replace('"', "")
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}
@@ -105,7 +106,7 @@ async def file(path: Path, app: App, _user: JoinedUser) -> Response:
 
 
 @router.get("/episode/video")
-async def video(path: Path, camera: Camera, app: App, _user: JoinedUser) -> Response:
+async def video(path: Path, camera: Camera, app: App, _user: BrowsingUser) -> Response:
     """Send what one camera saw, as it was recorded, else as it is drawn: MP4; 202 while it is drawn: ask again."""
 
     def request(offset: int) -> CatalogueRequest:
@@ -115,7 +116,7 @@ async def video(path: Path, camera: Camera, app: App, _user: JoinedUser) -> Resp
 
 
 @router.get("/episode/picture")
-async def picture(path: Path, app: App, _user: JoinedUser) -> Response:
+async def picture(path: Path, app: App, _user: BrowsingUser) -> Response:
     """Send the last picture, recorded or drawn, small; an empty answer where there is none that can be shown."""
     try:
         reply = await app.catalogue.ask(CatalogueRequest(picture=CatalogueRequest.Picture(path=path)))

@@ -19,7 +19,8 @@ from mart.protocol.messages import (
 )
 from mart.protocol.tasks import MAX_ARMS, arm_counts, get_task, task_names
 from mart.protocol.vocabulary import OperatorKind
-from mart.web.api.dependencies import App, JoinedUser
+from mart.web.api.dependencies import App, JoinedUser, WritingUser
+from mart.web.api.texts import Name, Word
 from mart.web.lobby.room_json import Json, seat_json
 
 router = APIRouter(prefix="/api")
@@ -30,8 +31,8 @@ _OUTCOMES = {"success": OUTCOME_SUCCESS, "failure": OUTCOME_FAILURE, "discard": 
 class NewRoom(BaseModel):
     """What room is wanted."""
 
-    task: str = Field(max_length=64)
-    room: str = Field("", max_length=64)  # empty: a free name
+    task: Name
+    room: Name = ""  # empty: a free name
     control_hz: float = 0.0  # 0: the usual rate
     episodes: int = Field(0, ge=0, le=10_000)  # good ones that are wanted; 0: no plan
     arms: int = Field(0, ge=0, le=MAX_ARMS)  # 0: as many as the task usually has
@@ -41,14 +42,14 @@ class TakeSeatRequest(BaseModel):
     """Who shall drive an arm."""
 
     operator: OperatorKind
-    policy: str = ""  # a promoted one, where the operator is policy
+    policy: Word = ""  # a promoted one, where the operator is policy
 
 
 class EpisodeActionRequest(BaseModel):
     """What shall happen with the episode of a room."""
 
     action: Literal["ready", "unready", "success", "failure", "discard", "reset"]
-    arm: str = ""
+    arm: Word = ""
 
 
 @router.get("/rooms")
@@ -64,7 +65,7 @@ async def tasks(app: App, _user: JoinedUser) -> Json:
 
 
 @router.post("/rooms")
-async def open_room(body: NewRoom, app: App, _user: JoinedUser) -> Json:
+async def open_room(body: NewRoom, app: App, _user: WritingUser) -> Json:
     """Open a room and send its name."""
     if body.control_hz:
         require_control_hz(body.control_hz)
@@ -82,7 +83,7 @@ async def still(room: str, app: App, _user: JoinedUser) -> Response:
 
 
 @router.delete("/rooms/{room}")
-async def close_room(room: str, app: App, _user: JoinedUser) -> Json:
+async def close_room(room: str, app: App, _user: WritingUser) -> Json:
     """Close a room and send its name."""
     return {"room": await app.platform.close_room(room)}
 

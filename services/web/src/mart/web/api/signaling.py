@@ -7,17 +7,19 @@ from typing import Annotated
 
 import segno
 from fastapi import APIRouter, Header, Request
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, Forbidden
 from mart.protocol.messages import OPERATOR_HOLD, Seat
+from mart.protocol.queryables import MAX_SDP_CHARACTERS
 from mart.protocol.tokens import Role, SeatToken, sign, verify
 from mart.web.access.pairing_codes import LIFETIME_S, PairingGrant
 from mart.web.access.site_names import host_name, in_url, is_loopback
 from mart.web.access.user_sessions import User
 from mart.web.api.app_state import AppState
 from mart.web.api.dependencies import Address, App, JoinedUser, now_unix_s
+from mart.web.api.texts import Word
 from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api")
@@ -35,13 +37,13 @@ _UNREACHABLE = (
 class PairingRequest(BaseModel):
     """The code that a phone has scanned."""
 
-    code: str
+    code: Word
 
 
 class SdpOffer(BaseModel):
     """A WebRTC offer."""
 
-    sdp: str
+    sdp: str = Field(max_length=MAX_SDP_CHARACTERS)
 
 
 @router.get("/rooms/{room}/seats/{arm}/token")
@@ -61,7 +63,7 @@ async def pair(room: str, arm: str, request: Request, app: App, user: JoinedUser
     seat = _own_seat(app, room, arm, user)
     pairing = PairingGrant(room, arm, seat.epoch, user.holder_id, user.name)
     code = app.pairing_codes.issue(pairing, clock.monotonic_s())
-    host = _host_for_phone(request.headers["host"], app.lan_host)
+    host = _host_for_phone(request.headers["host"], app.site.lan_host)
     url = f"https://{host}/phone#{code}"
     return {
         "code": code,

@@ -9,7 +9,8 @@ from pydantic import BaseModel, Field
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from mart.protocol.messages import Order, TrainerReply, TrainerRequest
-from mart.web.api.dependencies import App, JoinedUser
+from mart.web.api.dependencies import App, BrowsingUser, WritingUser
+from mart.web.api.texts import FilePath, Word
 from mart.web.clients.message_json import as_json
 from mart.web.clients.pieces import pieces_of
 from mart.web.lobby.room_json import Json
@@ -20,15 +21,15 @@ router = APIRouter(prefix="/api/training")
 class Submission(BaseModel):
     """What shall be trained: one job for each model and task."""
 
-    models: list[str] = Field(min_length=1, max_length=16)
-    tasks: list[str] = Field(min_length=1, max_length=16)
-    data: str = ""
-    dataset: str = ""
-    preset: str = ""
+    models: list[Word] = Field(min_length=1, max_length=16)
+    tasks: list[Word] = Field(min_length=1, max_length=16)
+    data: FilePath = ""
+    dataset: Word = ""
+    preset: Word = ""
     seeds: list[Annotated[int, Field(ge=0, lt=2**31)]] = Field(default_factory=list, max_length=64)
     evaluation_episodes: int = Field(0, ge=0, le=1000)
     score_episodes: int | None = Field(None, ge=0, le=1000)
-    executor: str = ""
+    executor: Word = ""
 
     def request(self) -> TrainerRequest:
         """Return the trainer's request."""
@@ -55,13 +56,13 @@ class JobActionRequest(BaseModel):
 class Promotion(BaseModel):
     """Which checkpoint becomes a policy, and its name."""
 
-    job: str
-    name: str
-    checkpoint: str = ""
+    job: Word
+    name: Word
+    checkpoint: FilePath = ""
 
 
 @router.get("/choices")
-async def choices(app: App, _user: JoinedUser) -> Json:
+async def choices(app: App, _user: BrowsingUser) -> Json:
     """Send what can be ordered.
 
     It is null where no trainer runs: that is no fault of a page that waits for one.
@@ -73,35 +74,35 @@ async def choices(app: App, _user: JoinedUser) -> Json:
 
 
 @router.get("/jobs")
-async def jobs(app: App, _user: JoinedUser) -> Json:
+async def jobs(app: App, _user: BrowsingUser) -> Json:
     """Send all jobs."""
     reply = await app.trainer.ask(TrainerRequest(list=TrainerRequest.List()))
     return {"jobs": [as_json(job) for job in reply.jobs]}
 
 
 @router.post("/jobs")
-async def submit(body: Submission, app: App, _user: JoinedUser) -> Json:
+async def submit(body: Submission, app: App, _user: WritingUser) -> Json:
     """Submit jobs and send them."""
     reply = await app.trainer.ask(body.request())
     return {"jobs": [as_json(job) for job in reply.jobs]}
 
 
 @router.get("/jobs/{job}")
-async def show(job: str, app: App, _user: JoinedUser) -> Json:
+async def show(job: str, app: App, _user: BrowsingUser) -> Json:
     """Send one job with its curves, evaluations and rollouts."""
     reply = await app.trainer.ask(TrainerRequest(show=TrainerRequest.Show(job=job)))
     return {"details": as_json(reply.details)}
 
 
 @router.get("/jobs/{job}/log")
-async def log(job: str, app: App, _user: JoinedUser) -> Json:
+async def log(job: str, app: App, _user: BrowsingUser) -> Json:
     """Send what a job has printed."""
     reply = await app.trainer.ask(TrainerRequest(logs=TrainerRequest.Logs(job=job)))
     return {"log": reply.log.decode(errors="replace")}
 
 
 @router.post("/jobs/{job}")
-async def act(job: str, body: JobActionRequest, app: App, _user: JoinedUser) -> Json:
+async def act(job: str, body: JobActionRequest, app: App, _user: WritingUser) -> Json:
     """Cancel a job or try it again, and send it."""
     request = TrainerRequest()
     getattr(request, body.action).job = job
@@ -109,7 +110,7 @@ async def act(job: str, body: JobActionRequest, app: App, _user: JoinedUser) -> 
 
 
 @router.get("/jobs/{job}/videos/{rollout}")
-async def video(job: str, rollout: str, app: App, _user: JoinedUser) -> Response:
+async def video(job: str, rollout: str, app: App, _user: BrowsingUser) -> Response:
     """Send a rollout as MP4; 202 while it is being rendered: ask again."""
 
     async def piece(offset: int) -> TrainerReply.Video:
@@ -127,7 +128,7 @@ async def video(job: str, rollout: str, app: App, _user: JoinedUser) -> Response
 
 
 @router.get("/policies")
-async def policies(app: App, _user: JoinedUser, task: str = Query("")) -> Json:
+async def policies(app: App, _user: BrowsingUser, task: str = Query("")) -> Json:
     """Send the policies that can take a seat; there are none where no trainer runs."""
     if not app.trainer.is_running:
         return {"policies": []}
@@ -136,7 +137,7 @@ async def policies(app: App, _user: JoinedUser, task: str = Query("")) -> Json:
 
 
 @router.post("/policies")
-async def promote(body: Promotion, app: App, _user: JoinedUser) -> Json:
+async def promote(body: Promotion, app: App, _user: WritingUser) -> Json:
     """Make a checkpoint a policy and send it."""
     request = TrainerRequest.Promote(job=body.job, checkpoint=body.checkpoint, name=body.name)
     reply = await app.trainer.ask(TrainerRequest(promote=request))
@@ -144,7 +145,7 @@ async def promote(body: Promotion, app: App, _user: JoinedUser) -> Json:
 
 
 @router.delete("/policies/{policy}")
-async def withdraw(policy: str, app: App, _user: JoinedUser) -> Json:
+async def withdraw(policy: str, app: App, _user: WritingUser) -> Json:
     """Withdraw a policy and send it."""
     request = TrainerRequest.Withdraw(policy=policy)
     reply = await app.trainer.ask(TrainerRequest(withdraw=request))

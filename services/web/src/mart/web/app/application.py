@@ -23,7 +23,7 @@ def create_app(state: AppState) -> FastAPI:
     """Return the ASGI application; `state` stays the caller's to close."""
     app = FastAPI(title="MART", openapi_url=None, docs_url=None, redoc_url=None)
     app.state.app_state = state
-    app.add_middleware(SecurityMiddleware, names=state.names)
+    app.add_middleware(SecurityMiddleware, site=state.site)
     for module in (auth, rooms, signaling, live, health, episodes, datasets, training, pages):
         app.include_router(module.router)
     app.mount("/static", StaticFiles(directory=pages.STATIC))

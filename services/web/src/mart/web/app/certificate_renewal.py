@@ -1,37 +1,39 @@
-"""The certificate is renewed before it ends, while the server runs."""
+"""The certificate is renewed before it ends, and where the site is called by a new name, while the server runs."""
 
 from __future__ import annotations
 
 import asyncio
 import datetime as dt
 import logging
-import ssl
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 
 from mart.protocol import clock
-from mart.web.access.certificate import Certificate
+from mart.runtime.rate_limit import RateLimit
 
 _log = logging.getLogger(__name__)
 
-RETRY_S = 3600.0
+LOOK_EVERY_S = 60.0  # short, because a laptop that sleeps stops its clock
+_TOLD_EVERY_S = 3600.0
 
 
-async def keep_renewed(ensure: Callable[[], Certificate], context: ssl.SSLContext) -> None:
-    """Load what `ensure` gives into `context` whenever it is due, until cancelled.
+async def keep_renewed(ensure: Callable[[], Hashable], load: Callable[[], None]) -> None:
+    """Look every minute, by the time of day, and `load` the certificate where `ensure` says that it is another.
 
-    New connections get the new certificate; those that are open keep theirs. What fails, as on a full disk, is told in
-    the log and tried again after an hour: the old one is good for weeks.
+    Runs until cancelled. New connections get the new certificate; those that are open keep theirs. What fails, as on a
+    full disk, is told in the log once an hour and tried again: the old one is good for weeks.
     """
+    loaded: Hashable = None
+    told = RateLimit(1, _TOLD_EVERY_S)
     while True:
-        wait_s = RETRY_S
         try:
             certificate = ensure()
-            context.load_cert_chain(certificate.path)
-        except OSError:
-            _log.exception("The certificate could not be renewed; it is tried again in an hour")
-        else:
-            wait_s = max(wait_s, (certificate.renew_at - now()).total_seconds())
-        await asyncio.sleep(wait_s)
+            if certificate != loaded:
+                load()
+                loaded = certificate
+        except Exception:  # noqa: BLE001 - whatever it is, the next look must come
+            if told.allows(clock.monotonic_s()):
+                _log.exception("The certificate could not be renewed; it is tried again every minute")
+        await asyncio.sleep(LOOK_EVERY_S)
 
 
 def now() -> dt.datetime:

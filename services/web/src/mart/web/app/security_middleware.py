@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
+from urllib.parse import unquote_plus
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from mart.protocol.errors import MartError
-from mart.web.access.site_names import host_name
+from mart.protocol.plain_text import require_plain
+from mart.web.access.site_names import SiteNames, host_name
 from mart.web.errors import TooLarge, TooSlow, WrongHost, WrongOrigin, error_json, http_status
 
 MAX_BODY_BYTES = 64 * 1024
@@ -34,9 +36,9 @@ _HEADERS = {
 class SecurityMiddleware:
     """ASGI middleware that refuses what must not reach the application, and sets the headers of every answer."""
 
-    def __init__(self, app: ASGIApp, names: tuple[str, ...]) -> None:
+    def __init__(self, app: ASGIApp, site: SiteNames) -> None:
         self._app = app
-        self._names = names
+        self._site = site
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "lifespan":
@@ -52,11 +54,13 @@ class SecurityMiddleware:
             await self._app(scope, receive, _with_headers(scope, send))
 
     def _check(self, scope: Scope) -> None:
+        require_plain("path", scope["path"])
+        require_plain("query", unquote_plus(scope["query_string"].decode("latin-1"), errors="replace"))
         headers = Headers(scope=scope)
         host = headers.get("host", "")
-        if host_name(host) not in self._names:
+        if host_name(host) not in self._site.names:
             # A name that is not ours points here where a foreign page had its own name rebound to this address.
-            raise WrongHost(host, self._names)
+            raise WrongHost(host, self._site.names)
         changes = scope["type"] == "websocket" or scope["method"] not in _READING
         if changes and headers.get("origin") != f"https://{host}":
             raise WrongOrigin(headers.get("origin"))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import functools
 import socket
-from collections.abc import Coroutine
+from collections.abc import Coroutine, Hashable
 from typing import Any
 
 import uvicorn
@@ -14,10 +15,10 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 from mart.protocol.errors import Unavailable
 from mart.runtime.secret_file import load_or_create_secret
 from mart.runtime.service import AsyncService, announced
-from mart.web.access.certificate import Certificate, ensure_certificate
+from mart.web.access.certificate import ensure_certificate
 from mart.web.access.connection_table import ConnectionTable
 from mart.web.access.join_code import digest_of
-from mart.web.access.site_names import is_loopback, lan_addresses, site_names
+from mart.web.access.site_names import SiteNames
 from mart.web.access.user_sessions import UserSessions
 from mart.web.api.app_state import AppState
 from mart.web.app.application import create_app
@@ -37,7 +38,6 @@ from mart.web.lobby.lobby import Lobby
 
 MAX_CONNECTIONS = 2048
 _STOP_S = 2
-_EVERY_ADDRESS = ("0.0.0.0", "::")  # noqa: S104  (only when asked for)
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -70,8 +70,7 @@ async def serve(
             user_sessions=user_sessions,
             join_code=join_code,
             secret=secret,
-            names=site_names(settings.public_names, settings.web_host),
-            lan_host=_lan_host(settings),
+            site=SiteNames(settings.public_names, settings.web_host),
             data_dir=settings.data_dir,
             certificate=settings.certificate or settings.certificates_dir / "site.pem",
             ice=settings,
@@ -102,17 +101,21 @@ async def serve(
 def _configured(
     settings: WebSettings, state: AppState, table: ConnectionTable
 ) -> tuple[uvicorn.Config, list[Coroutine[Any, Any, None]]]:
-    """Return how to serve, and what renews the certificate meanwhile where it is one of this site's own."""
+    """Return how to serve, and what takes up another certificate meanwhile."""
 
-    def ensure() -> Certificate:
-        return ensure_certificate(settings.certificates_dir, state.names, now())
+    def ensure() -> Hashable:
+        state.site.look()
+        if settings.certificate is not None:
+            return settings.certificate.stat().st_mtime_ns
+        return ensure_certificate(settings.certificates_dir, state.site.names, now())
 
+    ensure()
     app: Any = create_app(state)
     if settings.proxies:
         app = ProxyHeadersMiddleware(app, list(settings.proxies))
     config = uvicorn.Config(
         ConnectionMiddleware(app, table),
-        ssl_certfile=settings.certificate or ensure().path,
+        ssl_certfile=state.certificate,
         ssl_keyfile=settings.certificate_key,
         lifespan="off",
         log_config=None,
@@ -126,7 +129,8 @@ def _configured(
     )
     config.load()
     assert config.ssl is not None
-    return config, [] if settings.certificate else [keep_renewed(ensure, config.ssl)]
+    load = functools.partial(config.ssl.load_cert_chain, state.certificate, settings.certificate_key)
+    return config, [keep_renewed(ensure, load)]
 
 
 def _missed(state: AppState) -> Coroutine[Any, Any, None]:
@@ -142,12 +146,3 @@ async def _run(server: uvicorn.Server, listener: socket.socket) -> None:
         server.should_exit = True
         await serving
         raise
-
-
-def _lan_host(settings: WebSettings) -> str:
-    """What a phone should call this site; empty where it cannot reach it."""
-    if settings.public_names:
-        return next((name for name in settings.public_names if not is_loopback(name)), "")
-    if settings.web_host in _EVERY_ADDRESS:
-        return next(iter(lan_addresses()), "")
-    return "" if is_loopback(settings.web_host) else settings.web_host

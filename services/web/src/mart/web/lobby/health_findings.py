@@ -110,7 +110,7 @@ def machine(free_bytes: int, certificate_days: float | None) -> Iterator[HealthF
         yield HealthFinding("machine", "Certificate", "cannot be read", "Look at MART_CERTIFICATE.")
     else:
         soon = certificate_days < CERTIFICATE_DAYS
-        mend = "Put a new one at MART_CERTIFICATE and restart `mart web`." if soon else ""
+        mend = "Put a new one at MART_CERTIFICATE; it is taken up within a minute." if soon else ""
         yield HealthFinding("machine", "Certificate", f"good for {certificate_days:.0f} days", mend)
 
 

@@ -59,7 +59,8 @@ function picture({ path, error }) {
 const driver = ([arm, text]) => element("span", { class: "driver" }, badge(arm), drivers(text).join(", "));
 
 /** @param {Api.Episode} episode */
-function measures({ simulated_s: length, real_time_factor: rate, verdict }) {
-  const check = ["verified", "diverged"].includes(verdict) ? verdict : "not verified";
+function measures({ simulated_s: length, real_time_factor: rate, verdict, verification_pending: pending }) {
+  const open = pending ? "verification pending" : "not verified";
+  const check = ["verified", "diverged"].includes(verdict) ? verdict : open;
   return `${lengthText(length)}, ${rateText(rate)}, ${check}`;
 }
