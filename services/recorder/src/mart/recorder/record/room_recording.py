@@ -19,6 +19,7 @@ from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.finalize import describe_room, is_saved, part_path
 from mart.recorder.record.finalize_worker import FinalizeWorker, in_words
 from mart.recorder.record.inbox import BusArrival
+from mart.recorder.record.room_claim import RoomClaim
 from mart.recorder.record.room_models import RoomModels
 from mart.recorder.record.room_tracker import CloseFile, FileAction, OpenFile, RoomTracker
 from mart.runtime.rate_limit import RateLimit
@@ -44,7 +45,9 @@ class RecordingTools:
 class RoomRecording:
     """Write the episodes of one room, one file after another. A full disk ends the file at hand, never the room."""
 
-    def __init__(self, room: str, tools: RecordingTools) -> None:
+    def __init__(self, room: str, tools: RecordingTools, claim: RoomClaim) -> None:
+        """Record a room that is claimed; whoever leaves the room releases `claim`."""
+        self.claim = claim
         self._files: dict[EpisodeAccumulator, EpisodeWriter] = {}
         self.heard_s = 0.0
         self._room = room
