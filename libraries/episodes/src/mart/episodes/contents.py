@@ -45,8 +45,8 @@ def read_messages(file: BoundedFile, finished: bool) -> Iterator[tuple[Channel, 
 def read_metadata(file: BoundedFile, finished: bool) -> Mapping[str, Mapping[str, str]]:
     """Return the metadata records by name; the last one where several of a name are written.
 
-    Records above `MAX_METADATA_BYTES`, which are none of ours, are left out. Raises one of `SYMPTOMS`, also where it
-    speaks of two episodes, or a record does not have its checksum.
+    Records above `MAX_METADATA_BYTES`, which are none of ours, are left out. Raises one of `SYMPTOMS`, also where two
+    of our own records of a name contradict each other (a later one may know more), or one does not have its checksum.
     """
     found: dict[str, Mapping[str, str]] = {}
     checksums: dict[str, str] = {}
@@ -64,7 +64,8 @@ def read_metadata(file: BoundedFile, finished: bool) -> Mapping[str, Mapping[str
         if record.name == CHECKSUMS:  # those of what is known when a file begins, and all when it ends
             checksums |= record.metadata
             continue
-        if record.name == EpisodeRecord.NAME and found.get(record.name, record.metadata) != record.metadata:
+        before = found.get(record.name, {})
+        if record.name.startswith(_OURS) and not before.items() <= record.metadata.items():
             raise ValueError(f"it holds two records {record.name} that differ, as if of two episodes")
         found[record.name] = record.metadata
     for name, checksum in checksums.items():

@@ -30,6 +30,7 @@ from mart.runtime.bus_secret import admitted_with
 _log = logging.getLogger(__name__)
 
 _HEARTBEAT_S = 0.5  # how soon a subscriber learns that it missed the newest, where nothing follows it
+_ASKED_BACK_S = 120.0  # by a subscriber that is new
 _FIRST_REST_S = 0.05  # before a query that was dropped is asked again; doubled each time
 
 _PRIORITY = {
@@ -98,9 +99,10 @@ class ZenohBus(Bus):
 
         if recover:
             recovery = zenoh.ext.RecoveryConfig(periodic_queries=None, heartbeat=True)
+            history = zenoh.ext.HistoryConfig(max_age=_ASKED_BACK_S)
             return self._keep(
                 zenoh.ext.declare_advanced_subscriber(
-                    self._session, key_expression, _logged(deliver), recovery=recovery
+                    self._session, key_expression, _logged(deliver), recovery=recovery, history=history
                 )
             )
         return self._keep(self._session.declare_subscriber(key_expression, _logged(deliver)))

@@ -12,6 +12,7 @@ from importlib.metadata import distributions
 from pathlib import Path
 from types import MappingProxyType
 
+from mart.episodes import find_episodes
 from mart.episodes.reader import EpisodeFile
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol import clock
@@ -26,12 +27,14 @@ from mart.protocol.recording import (
     RoomRecord,
     VerificationRecord,
 )
+from mart.protocol.vocabulary import EpisodeOutcome
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.room_facts import RoomFacts
 
 VerifyFile = Callable[[EpisodeFile, RoomRecord], VerificationRecord]
 NameFile = Callable[[EpisodeWriter, EpisodeRecord], None]  # raises FileExistsError, and never overwrites
 
+_SLACK_NS = 1_000_000_000
 _LAST_DAY_S = 253402300799  # of the year 9999: a file's stamps are only what its bytes say
 _SAFE = re.compile(r"[a-z0-9][a-z0-9_-]*")
 _FOUND = ("arms", "started_ns", "ended_ns", "ticks", "first_tick", "last_tick", "repaired")
@@ -95,6 +98,20 @@ def complete(
     EpisodeFile(file.path, {}).check(file.messages)
     name(file, record)
     return SavedEpisode(file.path, record, cadence, verification, file.path.stat().st_size)
+
+
+def is_saved(root: Path, room: str, number: int, at_ns: int) -> bool:
+    """Tell whether a finished file with an outcome holds this moment (Unix time) of an episode.
+
+    A recorder that was started anew hears again what a room said before.
+    """
+    for found in find_episodes(root, room, number):
+        if found.error is None:
+            record = EpisodeFile.open(found.file_path).episode
+            is_of_it = record.started_ns - _SLACK_NS <= at_ns <= record.ended_ns + _SLACK_NS
+            if is_of_it and record.outcome != EpisodeOutcome.UNSPECIFIED:
+                return True
+    return False
 
 
 def below(root: Path) -> NameFile:
