@@ -110,12 +110,14 @@ def seated(running: RunningMart, seed: int) -> Iterator[list[EmulatedUser]]:
     users = EmulatedUsers(running.platform, skill="average", seed=seed)
     deadline_s = clock.monotonic_s() + _SEAT_TIMEOUT_S
     with contextlib.ExitStack() as stack:
-        while True:
-            try:
-                people = stack.enter_context(users.seated(("arm0", "arm1")))
-                break
-            except Conflict:
-                if clock.monotonic_s() > deadline_s:
-                    raise
-            clock.sleep_s(_SEAT_AGAIN_S)
-        yield people
+        yield _entered(stack, users, deadline_s)
+
+
+def _entered(stack: contextlib.ExitStack, users: EmulatedUsers, deadline_s: float) -> list[EmulatedUser]:
+    while True:
+        try:
+            return stack.enter_context(users.seated(("arm0", "arm1")))
+        except Conflict:
+            if clock.monotonic_s() > deadline_s:
+                raise
+        clock.sleep_s(_SEAT_AGAIN_S)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from mart.protocol.tokens import Role
 from mart.teleop_gateway.input.driving import Driving, InputDevice
 from mart.teleop_gateway.input.retarget import Retarget
+from mart.teleop_gateway.input.tool_motion import ToolMotion
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peer_messages import PeerMessages
@@ -62,6 +63,8 @@ def test_no_message_is_more_than_a_seat_can_take(said: list[dict[str, Any]], now
     peer = cast("Peer", mock.MagicMock(role=Role.BROWSER, clock_offset_ns=None))
     for message in said:
         messages.on_status(peer, json.dumps(message))
-    command = seat.driving.receive(InputDevice.KEYBOARD, phone_frame(1).encode(), HOME, 1.0, now_ns)
+    command = seat.driving.receive(
+        InputDevice.KEYBOARD, phone_frame(1).encode(), ToolMotion(HOME), 1.0, now_ns
+    )
     if command is not None:
         command.SerializeToString()

@@ -15,9 +15,10 @@ from mcap.records import Attachment, Channel, Chunk, DataEnd, Message, Metadata,
 from mart.episodes.chunks import UnpackingBudget, unpack
 from mart.episodes.scan import BoundedFile, FoundRecord, crc_of, parse, walk
 from mart.episodes.summary import FileSummary, read_summary
-from mart.protocol.recording import CHECKSUMS, MAX_METADATA_BYTES, EpisodeRecord, metadata_checksum
+from mart.protocol.recording import CHECKSUMS, MAX_METADATA_BYTES, metadata_checksum
 
 _MAX_METADATA_RECORDS = 8  # of the largest size; more of smaller ones
+_OURS = "mart."  # how the names of our own records begin
 _OF_MESSAGES = (Opcode.CHANNEL, Opcode.CHUNK, Opcode.MESSAGE)
 
 
