@@ -104,6 +104,7 @@ def test_an_episode_without_video_is_drawn_when_somebody_asks(browser: Browser, 
     try:
         with episodes_page(browser, site) as page:
             row = page.locator(".episode").last
+            expect(page.locator(".episode")).to_have_count(EPISODES + 1)
             held: list[Route] = []
 
             def hold(route: Route) -> None:
