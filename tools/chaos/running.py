@@ -108,14 +108,16 @@ def running_mart(
 def seated(running: RunningMart, seed: int) -> Iterator[list[EmulatedUser]]:
     """Two emulated people drive the room; after a restart as soon as the seats of those before are free."""
     users = EmulatedUsers(running.platform, skill="average", seed=seed)
-    deadline_s = clock.monotonic_s() + _SEAT_TIMEOUT_S
     with contextlib.ExitStack() as stack:
-        while True:
-            try:
-                people = stack.enter_context(users.seated(("arm0", "arm1")))
-                break
-            except Conflict:
-                if clock.monotonic_s() > deadline_s:
-                    raise
-            clock.sleep_s(_SEAT_AGAIN_S)
-        yield people
+        yield _seat(users, stack)
+
+
+def _seat(users: EmulatedUsers, stack: contextlib.ExitStack) -> list[EmulatedUser]:
+    deadline_s = clock.monotonic_s() + _SEAT_TIMEOUT_S
+    while True:
+        try:
+            return stack.enter_context(users.seated(("arm0", "arm1")))
+        except Conflict:
+            if clock.monotonic_s() > deadline_s:
+                raise
+        clock.sleep_s(_SEAT_AGAIN_S)
