@@ -46,6 +46,9 @@ class DrivenSeat:
         self.set_clock = self.driving.set_clock
         self.select = self.driving.select
 
+    def on_displayed(self, tick: int) -> None:
+        self.driving.picture.on_displayed(tick, 1.0)
+
 
 @fuzzing(examples=200)
 @given(said=st.lists(MESSAGES, max_size=6), now_ns=st.integers(0, 2**62))
