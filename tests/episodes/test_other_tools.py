@@ -67,7 +67,8 @@ def test_what_another_tool_has_added_is_shown_and_in_nobodys_way(source: Path, t
 def test_the_last_word_about_a_room_holds(tmp_path: Path) -> None:
     file = EpisodeWriter(tmp_path / "room.mcap")
     for task in (None, "two_arm_multi_cube_lifting"):
-        file.describe(RoomRecord(room="room-1", task=task))
+        record = RoomRecord(room="room-1", task=task)
+        file.add_record(record.NAME, record.to_strings())
     file.finish()
     file.move_to(file.path)
     assert EpisodeFile.open(file.path).room.task == "two_arm_multi_cube_lifting"

@@ -2,7 +2,7 @@
 
 A few dozen in every run; as many as wanted by hand, with the seed that is printed where one fails:
 
-    MART_DAMAGED_FILES=5000 .venv/bin/pytest tests/recorder/test_damage.py
+    DAMAGED_FILES=5000 .venv/bin/pytest tests/recorder/test_damage.py
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from mart.recorder.repair.repair import RepairResult, repair_paths
 from tests.recorder import synthetic
 from tests.recorder.files import by_toy_replica, write_episode, write_part
 
-_COUNT = int(os.environ.get("MART_DAMAGED_FILES", "60"))
+_COUNT = int(os.environ.get("DAMAGED_FILES", "60"))
 _WARM_UP = 50
 _MAX_GROWTH_KB = 30_000
 _TICKS = 30
