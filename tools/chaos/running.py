@@ -55,7 +55,8 @@ class RunningMart:
         return Counter(" ".join(_words(pid)[1:4]) for pid in processes_of(self.mark))
 
     def _seat(self, arm: str) -> int:
-        log = (self.platform.logs_dir / "gateway-1.log").read_text(errors="replace")
+        (path,) = self.platform.logs_dir.glob("gateway-*.log")
+        log = path.read_text(errors="replace")
         return int(re.findall(rf"{ROOM} {arm} is served by process (\d+)", log)[-1])
 
 
