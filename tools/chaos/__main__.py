@@ -21,6 +21,7 @@ from typing import NoReturn
 import click
 
 from mart.protocol import clock
+from mart.protocol.errors import MartError
 from mart.runtime.ports import free_port
 from tools.chaos.faults import Fault, NotHere, Scene, every_fault
 from tools.chaos.injected_clock import InjectedClock
@@ -67,8 +68,8 @@ class Rig:
                     trial = try_fault(fault, scene, people)
                 except NotHere as reason:
                     yield Row(fault.name, not_here=str(reason))
-                except TimeoutError as reason:
-                    yield Row(fault.name, short=[str(reason)])
+                except (OSError, ValueError, IndexError, MartError) as reason:  # TimeoutError is an OSError
+                    yield Row(fault.name, short=[f"could not be tried: {reason}"])
                 else:
                     if fault.ends_platform:
                         ended = fault, trial

@@ -55,7 +55,8 @@ class RunningMart:
         return Counter(" ".join(_words(pid)[1:4]) for pid in processes_of(self.mark))
 
     def _seat(self, arm: str) -> int:
-        log = (self.platform.logs_dir / "gateway-1.log").read_text(errors="replace")
+        (path,) = self.platform.logs_dir.glob("gateway-*.log")
+        log = path.read_text(errors="replace")
         return int(re.findall(rf"{ROOM} {arm} is served by process (\d+)", log)[-1])
 
 
@@ -108,12 +109,12 @@ def running_mart(
 def seated(running: RunningMart, seed: int) -> Iterator[list[EmulatedUser]]:
     """Two emulated people drive the room; after a restart as soon as the seats of those before are free."""
     users = EmulatedUsers(running.platform, skill="average", seed=seed)
-    deadline_s = clock.monotonic_s() + _SEAT_TIMEOUT_S
     with contextlib.ExitStack() as stack:
-        yield _entered(stack, users, deadline_s)
+        yield _seat(users, stack)
 
 
-def _entered(stack: contextlib.ExitStack, users: EmulatedUsers, deadline_s: float) -> list[EmulatedUser]:
+def _seat(users: EmulatedUsers, stack: contextlib.ExitStack) -> list[EmulatedUser]:
+    deadline_s = clock.monotonic_s() + _SEAT_TIMEOUT_S
     while True:
         try:
             return stack.enter_context(users.seated(("arm0", "arm1")))

@@ -61,6 +61,7 @@ def try_fault(fault: Fault, scene: Scene, people: Sequence[EmulatedUser]) -> Tri
             _await_end(witness, number)
         row.standstill_s, row.back_s = standstill(witness.states, witness.events, fault_s)
         row.told_s, row.told = _told(witness, fault, fault_s)
+        row.told = row.told.replace(str(scene.data_dir), "data")
         expected = expected_ticks(witness, number)
         if not fault.ends_platform:
             look_at_files(row, scene.data_dir, number, expected)

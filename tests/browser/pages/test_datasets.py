@@ -104,8 +104,13 @@ def test_an_episode_without_video_is_drawn_when_somebody_asks(browser: Browser, 
     try:
         with episodes_page(browser, site) as page:
             row = page.locator(".episode").last
+            expect(page.locator(".episode")).to_have_count(EPISODES + 1)
             held: list[Route] = []
-            page.route("**/api/episodes?*", held.append)
+
+            def hold(route: Route) -> None:
+                held.append(route)
+
+            page.route("**/api/episodes?*", hold)
             with page.expect_request("**/api/episodes?*"):
                 page.reload()
             expect(page.get_by_role("heading", name="Episodes")).to_be_visible()

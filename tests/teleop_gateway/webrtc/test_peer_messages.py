@@ -46,11 +46,15 @@ class DrivenSeat:
         self.set_clock = self.driving.set_clock
         self.select = self.driving.select
 
+    def on_displayed(self, tick: int) -> None:
+        self.driving.picture.on_displayed(tick, 1.0)
+
 
 @fuzzing(examples=200)
 @given(said=st.lists(MESSAGES, max_size=6), now_ns=st.integers(0, 2**62))
 @example(said=[{"type": "clock", "offset_ns": 1}, {"type": "seen", "tick": 1, "t_us": 1e306}], now_ns=1)
 @example(said=[{"type": "clock", "offset_ns": -(2**63)}], now_ns=2**62)
+@example(said=[{"type": "clock", "offset_ns": -16_667_001}], now_ns=0)
 def test_no_message_is_more_than_a_seat_can_take(said: list[dict[str, Any]], now_ns: int) -> None:
     seat, nobody = DrivenSeat(), mock.MagicMock()
     messages = PeerMessages(

@@ -33,7 +33,7 @@ class EpisodeWriter:
         path.parent.mkdir(parents=True, exist_ok=True)
         self.path = path
         self.messages = 0
-        self.described = False
+        self._description: Mapping[str, str] = {}
         self.has_model = False
         opening = path.with_name(f".{path.name}.opening")  # a repair must not find it before it is locked
         self._file = opening.open("wb")
@@ -57,13 +57,15 @@ class EpisodeWriter:
         self.messages += 1
 
     def describe(self, record: RoomRecord) -> None:
-        """Say of what room this file is, once that is known. What comes later says nothing: a record stands once.
+        """Say of what room this file is, once that is known, and again when more is known: the last word holds.
 
-        Its checksum follows at once, since the file may be cut short.
+        A record that knows no more than the one before says nothing. The checksum of one that stands follows at once,
+        since the file may be cut short.
         """
-        if not self.described:
-            self.described = True
-            self.add_record(record.NAME, record.to_strings())
+        strings = record.to_strings()
+        if not self._description or not strings.items() <= self._description.items():
+            self._description = strings
+            self.add_record(record.NAME, strings)
             self._mcap.add_metadata(CHECKSUMS, self._checksums)
 
     def attach_model(self, model: Model, now_ns: int) -> None:

@@ -253,4 +253,4 @@ def _input_sent_ns(sent_us: int, clock_offset_ns: int | None, now_ns: int) -> in
     if clock_offset_ns is None:
         return 0
     sent_ns = sent_us * 1000 + clock_offset_ns
-    return sent_ns if now_ns - _OLDEST_INPUT_NS < sent_ns <= now_ns + _OLDEST_INPUT_NS else 0
+    return sent_ns if max(now_ns - _OLDEST_INPUT_NS, 0) < sent_ns <= now_ns + _OLDEST_INPUT_NS else 0

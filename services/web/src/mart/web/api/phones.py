@@ -8,6 +8,7 @@ from fastapi import APIRouter, Header
 from pydantic import BaseModel
 
 from mart.protocol import clock
+from mart.protocol.holders import is_held_by
 from mart.protocol.messages import OUTCOME_DISCARDED
 from mart.web.access.user_sessions import User
 from mart.web.api.app_state import AppState
@@ -58,5 +59,5 @@ def _person(app: AppState, room: str, arm: str, authorization: str) -> User:
     """Return who paired the phone, by the name that the room knows them by. Raises what `claims_of` raises."""
     paired = claims_of(app, room, arm, authorization)
     seat = app.lobby.rooms.seat(room, arm, clock.monotonic_s())
-    named = seat.holder_id == paired.holder_id and seat.name
+    named = is_held_by(seat, paired.holder_id) and seat.name
     return User(paired.holder_id, seat.name if named else "A phone")
