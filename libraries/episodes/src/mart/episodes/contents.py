@@ -119,7 +119,10 @@ def _of_messages(file: BoundedFile, finished: bool) -> Iterator[Channel | Messag
 
 
 def _metadata_places(file: BoundedFile, finished: bool) -> Iterator[tuple[FoundRecord, str | None]]:
-    """Find the metadata records, with their names where an index says them: by the index of a finished file where it names all of them, else one after another."""
+    """Find the metadata records, with their names where an index says them.
+
+    By the index of a finished file where it names all of them, else one after another.
+    """
     summary = read_summary(file) if finished else FileSummary()
     statistics = summary.statistics
     if statistics is not None and statistics.metadata_count == len(summary.metadata):
