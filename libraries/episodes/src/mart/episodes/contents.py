@@ -52,7 +52,7 @@ def read_metadata(file: BoundedFile, finished: bool) -> Mapping[str, Mapping[str
     found: dict[str, Mapping[str, str]] = {}
     checksums: dict[str, str] = {}
     left_bytes = _MAX_METADATA_RECORDS * MAX_METADATA_BYTES
-    for place in _metadata_places(file, finished):
+    for place, name in _metadata_places(file, finished):
         if place.size_bytes > MAX_METADATA_BYTES:
             continue
         left_bytes -= place.size_bytes
@@ -62,6 +62,8 @@ def read_metadata(file: BoundedFile, finished: bool) -> Mapping[str, Mapping[str
             )
         record = parse(file, place)
         assert isinstance(record, Metadata)
+        if name not in (None, record.name):
+            raise ValueError(f"its record {record.name[:64]!r} has another name in the index")
         if record.name == CHECKSUMS:  # those of what is known when a file begins, and all when it ends
             checksums |= record.metadata
             continue
@@ -116,14 +118,19 @@ def _of_messages(file: BoundedFile, finished: bool) -> Iterator[Channel | Messag
             yield record
 
 
-def _metadata_places(file: BoundedFile, finished: bool) -> Iterator[FoundRecord]:
-    """Find the metadata records: by the index of a finished file where it names all of them, else one after another."""
+def _metadata_places(file: BoundedFile, finished: bool) -> Iterator[tuple[FoundRecord, str | None]]:
+    """Find the metadata records, with their names where an index says them.
+
+    By the index of a finished file where it names all of them, else one after another.
+    """
     summary = read_summary(file) if finished else FileSummary()
     statistics = summary.statistics
     if statistics is not None and statistics.metadata_count == len(summary.metadata):
-        yield from (_indexed(file, index) for index in summary.metadata)
+        yield from ((_indexed(file, index), index.name) for index in summary.metadata)
         return
-    yield from (place for place in _until_cut(walk(file), finished) if place.opcode == Opcode.METADATA)
+    yield from (
+        (place, None) for place in _until_cut(walk(file), finished) if place.opcode == Opcode.METADATA
+    )
 
 
 def _indexed(file: BoundedFile, index: MetadataIndex) -> FoundRecord:
