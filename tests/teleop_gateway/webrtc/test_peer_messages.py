@@ -12,7 +12,9 @@ from hypothesis import strategies as st
 from mart.protocol.tokens import Role
 from mart.teleop_gateway.input.driving import Driving, InputDevice
 from mart.teleop_gateway.input.retarget import Retarget
+from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.input.tool_motion import ToolMotion
+from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peer_messages import PeerMessages
@@ -37,14 +39,14 @@ MESSAGES = st.fixed_dictionaries(
 )
 
 
-class DrivenSeat:
-    """The driving of a seat's input, without a room behind it."""
-
-    def __init__(self) -> None:
-        self.driving = Driving("arm0", 7, 1, Retarget(0.0))
-        self.driving.connect(InputDevice.KEYBOARD)
-        self.set_clock = self.driving.set_clock
-        self.select = self.driving.select
+def driven(nobody: mock.MagicMock) -> tuple[SeatInput, Driving]:
+    """The input of a seat that a keyboard drives, without a room behind it."""
+    seat_input = SeatInput(
+        nobody, SeatAddress("room-1", "arm0"), hand_scale=1.0, on_command=nobody, on_new_holder=nobody
+    )
+    driving = seat_input.driving = Driving("arm0", 7, 1, Retarget(0.0))
+    driving.connect(InputDevice.KEYBOARD)
+    return seat_input, driving
 
     def on_displayed(self, tick: int) -> None:
         self.driving.picture.on_displayed(tick, 1.0)
@@ -56,9 +58,10 @@ class DrivenSeat:
 @example(said=[{"type": "clock", "offset_ns": -(2**63)}], now_ns=2**62)
 @example(said=[{"type": "clock", "offset_ns": -16_667_001}], now_ns=0)
 def test_no_message_is_more_than_a_seat_can_take(said: list[dict[str, Any]], now_ns: int) -> None:
-    seat, nobody = DrivenSeat(), mock.MagicMock()
+    nobody = mock.MagicMock()
+    seat_input, driving = driven(nobody)
     messages = PeerMessages(
-        seat_input=cast("Any", seat),
+        seat_input=seat_input,
         views=nobody,
         latency=MotionToPhoton("arm0"),
         events=nobody,
@@ -67,8 +70,6 @@ def test_no_message_is_more_than_a_seat_can_take(said: list[dict[str, Any]], now
     peer = cast("Peer", mock.MagicMock(role=Role.BROWSER, clock_offset_ns=None))
     for message in said:
         messages.on_status(peer, json.dumps(message))
-    command = seat.driving.receive(
-        InputDevice.KEYBOARD, phone_frame(1).encode(), ToolMotion(HOME), 1.0, now_ns
-    )
+    command = driving.receive(InputDevice.KEYBOARD, phone_frame(1).encode(), ToolMotion(HOME), 1.0, now_ns)
     if command is not None:
         command.SerializeToString()
