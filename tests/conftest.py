@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
+import tempfile
 from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
 
 from mart.runtime import steady_libm
-from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.ports import free_port
-from tests.support import processes
+from mart.runtime.router import admitting_router
+from tests.support import fuzzing, processes
 
 # Tests in these folders are of the kind of that name; others are unit tests, unless they say `system` themselves.
 _FOLDERS = ("contract", "system", "browser", "compose")
@@ -22,10 +24,17 @@ _KINDS = ("unit", *_FOLDERS)  # a broken unit explains a broken session, so unit
 def pytest_configure(config: pytest.Config) -> None:
     _begin_anew(config)
     # How long one example takes says more about the machine than about the code.
-    settings.register_profile("mart", deadline=None)
-    settings.load_profile("mart")
+    for profile in ("mart", fuzzing.PROFILE):
+        settings.register_profile(profile, deadline=None)
+    settings.load_profile(config.getoption("--hypothesis-profile") or "mart")
     for name in [name for name in os.environ if name.startswith("MART_")]:
         del os.environ[name]
+    # Where routers are noted for this user's programs: tests have a place of their own.
+    os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="mart-tests-")
+
+
+def pytest_unconfigure() -> None:
+    shutil.rmtree(os.environ.pop("XDG_STATE_HOME", ""), ignore_errors=True)
 
 
 def _begin_anew(config: pytest.Config) -> None:
@@ -59,8 +68,8 @@ def _rank(item: pytest.Item) -> int:
 
 
 @pytest.fixture
-def endpoint() -> Iterator[str]:
-    """A real router of the test's own."""
+def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A real router of the test's own, with a secret."""
     address = f"tcp/127.0.0.1:{free_port()}"
-    with ZenohBus.route(address):
+    with admitting_router(address, tmp_path_factory.mktemp("router") / "bus"):
         yield address

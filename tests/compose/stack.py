@@ -34,7 +34,14 @@ class Stack:
             copy = self.folder / name
             copy.parent.mkdir(parents=True, exist_ok=True)
             copy.write_text(self.inside("web", "cat", f"/data/{name}"))
+        self.bus_secret.write_text(self.inside("router", "cat", "/bus/secret"))
+        self.bus_secret.chmod(0o600)
         return printed
+
+    @property
+    def bus_secret(self) -> Path:
+        """A copy of what lets this process speak to the router."""
+        return self.folder / "bus-secret"
 
     def down(self) -> None:
         self._run(["make", "down"])

@@ -5,8 +5,10 @@ from __future__ import annotations
 import contextlib
 import functools
 import json
+import os
 from collections.abc import Iterator
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
@@ -43,7 +45,11 @@ def visited(stack: Stack) -> Iterator[Platform]:
     options = PlatformOptions(
         data_dir=stack.folder, router=f"tcp/{stack.address('router')}:7447", port=stack.port, seed=1
     )
-    with ZenohBus.connect(options.router, wait_for_router=False) as bus:
+    secret = {"MART_BUS_SECRET_FILE": str(stack.bus_secret)}
+    with (
+        mock.patch.dict(os.environ, secret),
+        ZenohBus.connect(options.router, wait_for_router=False) as bus,
+    ):
         platform = Platform(options, bus)
         platform.logs_dir.mkdir(exist_ok=True)
         yield platform

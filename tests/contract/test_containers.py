@@ -40,6 +40,13 @@ def test_every_container_is_confined_and_restarted(name: str) -> None:
     assert name == "router" or service["depends_on"] == {"router": {"condition": "service_healthy"}}
 
 
+@pytest.mark.parametrize("name", _SERVICES)
+def test_every_container_has_the_bus_secret_and_only_the_router_can_change_it(name: str) -> None:
+    service = _SERVICES[name]
+    assert service["environment"]["MART_BUS_SECRET_FILE"] == "/bus/secret"
+    assert ("bus:/bus" if name == "router" else "bus:/bus:ro") in service["volumes"]
+
+
 def test_only_the_web_service_listens_and_only_on_loopback_unless_asked() -> None:
     listening = {name: service["ports"] for name, service in _SERVICES.items() if "ports" in service}
     assert list(listening) == ["web"]

@@ -14,8 +14,9 @@ from mcap.writer import Writer
 
 from mart.episodes.arrays import arrays_from_states
 from mart.episodes.reader import EpisodeFile
+from mart.episodes.writer import EpisodeWriter
 from mart.protocol.errors import Corrupt, MartError, NotFound
-from mart.protocol.recording import CHECKSUMS, MAX_METADATA_BYTES
+from mart.protocol.recording import CHECKSUMS, MAX_METADATA_BYTES, RoomRecord
 from tests.episodes.rewritten import LAYOUTS, by_writer, hostile_files
 from tests.recorder import synthetic
 from tests.recorder.files import write_episode
@@ -61,6 +62,16 @@ def test_what_another_tool_has_added_is_shown_and_in_nobodys_way(source: Path, t
     assert file.metadata["note"] == {"who": "Ben"}
     with pytest.raises(NotFound):
         file.model()
+
+
+def test_the_last_word_about_a_room_holds(tmp_path: Path) -> None:
+    file = EpisodeWriter(tmp_path / "room.mcap")
+    for task in (None, "two_arm_multi_cube_lifting"):
+        record = RoomRecord(room="room-1", task=task)
+        file.add_record(record.NAME, record.to_strings())
+    file.finish()
+    file.move_to(file.path)
+    assert EpisodeFile.open(file.path).room.task == "two_arm_multi_cube_lifting"
 
 
 def test_two_episodes_in_one_file_are_refused(source: Path, tmp_path: Path) -> None:

@@ -194,6 +194,17 @@ def test_a_flipped_bit_outside_of_chunks_is_found(what: bytes, tmp_path: Path) -
         EpisodeFile(path, {}).check()
 
 
+def test_a_room_is_described_once(tmp_path: Path) -> None:
+    file = EpisodeWriter(tmp_path / "room.mcap")
+    full = RoomRecord(room="room-1", task="t").with_numerics(synthetic.NUMERICS)
+    for record in (full, RoomRecord(room="room-1", task="t")):
+        file.describe(record)
+    file.finish()
+    file.move_to(file.path)
+    assert EpisodeFile.open(file.path).room == full
+    assert EpisodeFile.open(file.path).room.numerics == synthetic.NUMERICS
+
+
 def test_no_file_is_not_found(tmp_path: Path) -> None:
     with pytest.raises(NotFound):
         EpisodeFile.open(tmp_path / "none.mcap")

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mart.operators import Operator, SeatView, ToolTarget
+from mart.protocol.holders import holder_tag
 from mart.protocol.messages import (
     OPERATOR_POLICY,
     ArmState,
@@ -54,7 +55,8 @@ def status_of(seats: Sequence[Seat]) -> RoomStatus:
 
 def seat_of(arm: str, epoch: int = 2, holder_id: str = "") -> Seat:
     """A seat that a policy holds."""
-    return Seat(arm=arm, epoch=epoch, operator=OPERATOR_POLICY, holder_id=holder_id, name="mine")
+    tag = holder_tag("1", arm, epoch, holder_id)
+    return Seat(arm=arm, epoch=epoch, operator=OPERATOR_POLICY, holder_tag=tag, name="mine")
 
 
 class Riser(Operator):

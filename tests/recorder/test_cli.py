@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
-from mart.episodes.labels import LabelKind, read
+from mart.episodes.labels import LabelKind, read, say
 from mart.protocol.messages import ENDED_BY_OPERATOR
 from mart.recorder.record.finalize import finalize
 from tests.recorder import synthetic
@@ -134,3 +136,75 @@ def test_a_broken_file_is_named(mart: Mart, path: Path) -> None:
     path.write_bytes(path.read_bytes()[:5000])
     assert "is damaged" in mart("episodes", "show", path, code=1)
     assert "is damaged" in mart("episodes", "list")
+
+
+@pytest.fixture
+def foreign(path: Path) -> Path:
+    """A folder with one episode of MART's and one file of another project."""
+    found = path.with_name("talker.mcap")
+    found.write_bytes(b"\x89MCAP0\r\n\x01\x0c\0\0\0\0\0\0\0\x04\0\0\0ros2\0\0\0\0" + bytes(20))
+    return found
+
+
+@pytest.fixture
+def replica(monkeypatch: pytest.MonkeyPatch) -> None:
+    @contextmanager
+    def toy(_replica: str | None, *, wherever_possible: bool = False) -> Iterator[object]:
+        assert not wherever_possible
+        yield synthetic.ToyReplica()
+
+    monkeypatch.setattr("mart.recorder.cli._resimulation", toy)
+
+
+@pytest.mark.usefixtures("replica")
+def test_verify_tells_what_it_did_whatever_else_lies_there(
+    mart: Mart, path: Path, foreign: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    assert "verified" in mart("episodes", "verify", path.parent)
+    assert f"Left out: {foreign} is an MCAP file of another kind" in caplog.text
+    told = mart.json("episodes", "verify", path.parent)
+    assert [one["path"] for one in told["episodes"]] == [str(path)]
+    assert [one["path"] for one in told["left_out"]] == [str(foreign)]
+    assert "of another kind" in mart("episodes", "verify", path, foreign, code=1)
+    cut = path.with_name("cut.mcap")
+    cut.write_bytes(path.read_bytes()[:3000])
+    assert "verified" in mart("episodes", "verify", path.parent, code=1)  # one of MART's is damaged
+    mart("episodes", "label", "--drop", cut)
+    assert "verified" in mart("episodes", "verify", path.parent)
+
+
+def test_a_file_that_is_not_ours_is_in_nobodys_way(mart: Mart, path: Path, foreign: Path) -> None:
+    rows = {one["path"]: one for one in mart.json("episodes", "list", path.parent)["episodes"]}
+    assert rows[str(path)]["error"] is None
+    assert (rows[str(foreign)]["foreign"], rows[str(path)]["foreign"]) == (True, False)
+    assert mart.json("datasets", "create", "good")["count"] == 1
+    assert "of another kind" in mart("datasets", "add", "good", foreign, code=1)
+    assert "of another kind" in mart("episodes", "show", foreign, code=1)
+    before = foreign.read_bytes()
+    assert "left alone" in mart("episodes", "repair", path.parent)
+    assert foreign.read_bytes() == before
+
+
+def test_repair_takes_files_and_says_what_they_are(mart: Mart, path: Path) -> None:
+    damaged = path.with_name("cut.mcap")
+    data = path.read_bytes()
+    damaged.write_bytes(data[: len(data) * 2 // 3])
+    (one,) = mart.json("episodes", "repair", damaged)["repaired"]
+    assert (one["file"], one["path"]) == (str(damaged), str(path.with_name("cut.repaired.mcap")))
+    assert "whole" in mart("episodes", "repair", path)
+    pointer = path.with_name("pointer.mcap")
+    pointer.write_bytes(b"version https://git-lfs.github.com/spec/v1\n")
+    assert "git lfs pull" in mart("episodes", "repair", pointer, code=1)
+    assert "There is no" in mart("episodes", "repair", path.with_name("none.mcap"), code=1)
+
+
+def test_what_a_file_says_does_not_steer_the_terminal(mart: Mart, path: Path) -> None:
+    labels_of(path, "\x1b[2Jgone\nnew line")
+    for command in (("list",), ("show", path)):
+        printed = mart("episodes", *command)
+        assert "\x1b" not in printed
+        assert "\ufffd[2Jgone\ufffdnew line" in printed
+
+
+def labels_of(path: Path, note: str) -> None:
+    say(path, LabelKind.NOTE, note, 1)

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mart.protocol import clock, keys
-from mart.protocol.errors import Unavailable
+from mart.protocol.errors import Forbidden, Unavailable
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.ports import free_port
@@ -85,7 +85,9 @@ class Running:
 def running_router(port: int | None = None) -> Iterator[str]:
     """A router of its own; yields its endpoint."""
     endpoint = f"tcp/127.0.0.1:{port or free_port()}"
-    with running_service(["router", "--listen", endpoint], endpoint, None, kind="router", id="router"):
+    command = ["router", "--listen", endpoint]
+    secret = {"MART_BUS_SECRET_FILE": f"{os.environ['XDG_STATE_HOME']}/bus"}  # the same one after a restart
+    with running_service(command, endpoint, None, kind="router", id="router", environment=secret):
         yield endpoint
 
 
@@ -133,6 +135,11 @@ def started(
             running.end_group()
 
 
+def environment_at(endpoint: str) -> dict[str, str]:
+    """What a program of somebody's own is started with: nothing but the router's address and its user's folder."""
+    return {"MART_ROUTER": endpoint, "XDG_STATE_HOME": os.environ["XDG_STATE_HOME"]}
+
+
 def _environment(endpoint: str, data_dir: Path | None, more: Mapping[str, str]) -> dict[str, str]:
     inherited = {name: value for name, value in os.environ.items() if not name.startswith("MART_")}
     folder = {} if data_dir is None else {"MART_DATA_DIR": str(data_dir)}
@@ -167,7 +174,7 @@ def _connect(running: Running, command: Sequence[str], endpoint: str, deadline_s
     while True:
         try:
             return ZenohBus.connect(endpoint, wait_for_router=False)
-        except Unavailable as error:
+        except (Unavailable, Forbidden) as error:  # a router that has just started is noted a moment later
             if running.process.poll() is not None or clock.monotonic_s() > deadline_s:
                 raise DidNotStart(command, f"has no router at {endpoint}: {error}", running.log()) from error
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.contract.repository import ROOT
-from tests.support.processes import running_router, running_service
+from tests.support.processes import environment_at, running_router, running_service
 from tests.system.room_client import RoomClient
 
 ROOM = "room-1"
@@ -46,7 +46,7 @@ def program(document: str, name: str, folder: Path, endpoint: str) -> Path:
 def run(path: Path, endpoint: str) -> str:
     done = subprocess.run(
         [sys.executable, "-W", "error", path],
-        env={"MART_ROUTER": endpoint},
+        env=environment_at(endpoint),
         capture_output=True,
         text=True,
         timeout=110,
@@ -66,7 +66,10 @@ def test_the_readmes_operator_drives_until_it_is_interrupted(endpoint: str, tmp_
     path = program("README.md", "rise.py", tmp_path, endpoint)
     with (
         RoomClient(endpoint, ROOM) as client,
-        subprocess.Popen([sys.executable, "-W", "error", path], env={"MART_ROUTER": endpoint}) as process,
+        subprocess.Popen(
+            [sys.executable, "-W", "error", path],
+            env=environment_at(endpoint),
+        ) as process,
     ):
         try:
             client.states.wait_for(lambda state: state.arms[1].tool_in_base.z > 0.5)

@@ -13,7 +13,7 @@ import pytest
 from mart.operators import Operator, OperatorKind, SeatView, ToolTarget, drive_seats
 from mart.protocol.errors import Conflict, InvalidInput, NotFound, Unavailable
 from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, OPERATOR_SCRIPT
-from tests.support.processes import running_router, running_service
+from tests.support.processes import environment_at, running_router, running_service
 from tests.system.room_client import RoomClient
 
 ROOM = "room-1"
@@ -63,13 +63,13 @@ def goes_on(client: RoomClient) -> bool:
     tick = client.states.wait_for(lambda _: True).tick
     client.states.wait_for(lambda state: state.tick > tick + 10)
     status = client.statuses.wait_for(lambda status: status.seats[1].operator == OPERATOR_HOLD)
-    return all(seat.arm != "arm1" or not seat.holder_id for seat in status.seats)
+    return all(seat.arm != "arm1" or not seat.holder_tag for seat in status.seats)
 
 
 def test_the_example_succeeds_beside_a_script(endpoint: str) -> None:
     done = subprocess.run(
         [sys.executable, EXAMPLES / "06_operator_of_your_own.py", ROOM],
-        env={"MART_ROUTER": endpoint},
+        env=environment_at(endpoint),
         capture_output=True,
         text=True,
         timeout=110,
@@ -83,7 +83,7 @@ def test_the_example_of_an_input_device_drives_as_a_person(endpoint: str, client
     client.assign("arm0", OPERATOR_SCRIPT)
     with subprocess.Popen(
         [sys.executable, EXAMPLES / "07_input_device.py", "arm1"],
-        env={"MART_ROUTER": endpoint},
+        env=environment_at(endpoint),
         stdin=subprocess.PIPE,
         text=True,
     ) as device:

@@ -112,11 +112,16 @@ def test_many_viewers_share_one_encode_and_the_ninth_is_refused(on_seat: OnSeat)
         async with contextlib.AsyncExitStack() as stack:
             recorded = stack.enter_context(MessageCollector(seat.bus.bus, video, CompressedVideo))
             viewers: list[Browser] = []
-            for _ in range(peers.MAX_VIEWERS):
-                viewers.append(await stack.enter_async_context(connected(seat.exchange(Role.VIEWER))))
+
+            async def watch(person: str) -> Browser:
+                token = seat.token(Role.VIEWER, holder_id=person)
+                return await stack.enter_async_context(connected(seat.exchange(Role.VIEWER, token)))
+
+            for number in range(peers.MAX_VIEWERS):
+                viewers.append(await watch(f"person-{number}"))
                 await asyncio.sleep(0.21)  # no faster than offers may come
             with pytest.raises(Conflict):
-                await stack.enter_async_context(connected(seat.exchange(Role.VIEWER)))
+                await watch("one more")
             assert all([await viewer.next_tick() is not None for viewer in viewers])
             # As many pictures as ticks, however many watch: those on the bus are the very ones that are sent.
             before, start = len(recorded), seat.room.tick_number

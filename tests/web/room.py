@@ -6,8 +6,10 @@ import contextlib
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import MartError
+from mart.protocol.holders import holder_tag
 from mart.protocol.messages import (
     BARRIER_PHASE_RUNNING,
+    BARRIER_PHASE_STOPPED,
     EpisodeRequest,
     Event,
     RoomReply,
@@ -19,7 +21,10 @@ from mart.protocol.messages import (
 from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.base import Bus, Request
+from mart.sim.room.barrier import Barrier
+from mart.sim.room.emergency_stop import StopLatch
 from mart.sim.room.episode_state_machine import EpisodeStateMachine
+from mart.sim.room.saved_room import SavedStop
 from mart.sim.room.seats import SeatHolder, SeatTable
 
 TASK = "two_arm_multi_cube_lifting"
@@ -34,6 +39,8 @@ class Room:
         self.seats = SeatTable(task.arm_names)
         self.course = EpisodeStateMachine(room_seed=1, horizon_ticks=task.horizon_ticks)
         self.tick = 1
+        self._barrier = Barrier(task.arm_names, 0.05, 0.0)
+        self._stop = StopLatch(self._barrier, self.seats, None, self._on_stop_changed, 0.0)
         self._subtasks = task.subtasks
         with contextlib.ExitStack() as opened:
             self._events = opened.enter_context(contextlib.closing(bus.publisher(keys.event(name))))
@@ -54,7 +61,8 @@ class Room:
             control_hz=20.0,
             tick=self.tick,
             real_time_factor=1.0,
-            barrier=BARRIER_PHASE_RUNNING,
+            barrier=BARRIER_PHASE_STOPPED if self._barrier.stopped else BARRIER_PHASE_RUNNING,
+            stop=self._stop.message(),
             seats=[self._seat(seat) for seat in self.seats],
             wall_ns=clock.wall_ns(),
         )
@@ -78,7 +86,7 @@ class Room:
             arm=seat.arm,
             operator=seat.operator,
             epoch=seat.epoch,
-            holder_id=seat.holder_id,
+            holder_tag=holder_tag("1", seat.arm, seat.epoch, seat.holder_id),
             name=seat.name,
             ready=self.course.is_ready(seat.arm),
             policy=seat.driver.policy,
@@ -97,11 +105,21 @@ class Room:
 
     def _on_episode(self, request: Request) -> None:
         reply = RoomReply()
+        asked = codec.decode(EpisodeRequest, request.payload)
         try:
-            self.course.answer(codec.decode(EpisodeRequest, request.payload), self.seats, clock.monotonic_s())
+            match asked.WhichOneof("what"):
+                case "stop":
+                    self._stop.press(asked.stop, clock.monotonic_s())
+                case "go_on":
+                    self._stop.let_go(asked.go_on)
+                case _:
+                    self.course.answer(asked, self.seats, clock.monotonic_s())
         except MartError as error:
             reply.error.CopyFrom(error_message(error))
         self._reply(request, reply)
+
+    def _on_stop_changed(self, _pressed: SavedStop | None, event: Event) -> None:
+        self.tell(event)
 
     def _reply(self, request: Request, reply: RoomReply) -> None:
         reply.status.CopyFrom(self.status())

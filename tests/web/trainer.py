@@ -109,6 +109,8 @@ class Trainer:
         )
 
     def _withdraw(self, withdraw: TrainerRequest.Withdraw) -> TrainerReply:
+        if withdraw.policy not in self.promoted:
+            raise NotFound.named("policy", withdraw.policy, self.promoted)
         return TrainerReply(policies=[self.promoted.pop(withdraw.policy)])
 
     def _job(self, id: str) -> Job:

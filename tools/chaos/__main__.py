@@ -21,6 +21,7 @@ from typing import NoReturn
 import click
 
 from mart.protocol import clock
+from mart.protocol.errors import MartError
 from mart.runtime.ports import free_port
 from tools.chaos.faults import Fault, NotHere, Scene, every_fault
 from tools.chaos.injected_clock import InjectedClock
@@ -67,8 +68,8 @@ class Rig:
                     trial = try_fault(fault, scene, people)
                 except NotHere as reason:
                     yield Row(fault.name, not_here=str(reason))
-                except TimeoutError as reason:
-                    yield Row(fault.name, short=[str(reason)])
+                except (OSError, ValueError, IndexError, MartError) as reason:  # TimeoutError is an OSError
+                    yield Row(fault.name, short=[f"could not be tried: {reason}"])
                 else:
                     if fault.ends_platform:
                         ended = fault, trial
@@ -94,12 +95,18 @@ class Rig:
 @click.command()
 @click.option("--only", multiple=True, help="Name of a row; several may be given.  [default: all]")
 @click.option("--list", "lists", is_flag=True, help="Print the rows' names.")
+@click.option(
+    "--table", "tables", is_flag=True, help="Write the page's table from the results, and try nothing."
+)
 @click.option("--out", default=_RESULTS, type=click.Path(path_type=Path), show_default=True)
-def main(*, only: tuple[str, ...], lists: bool, out: Path) -> None:
+def main(*, only: tuple[str, ...], lists: bool, tables: bool, out: Path) -> None:
     """Try every fault, print a line of JSON for each, and write the results and the table."""
     faults = every_fault()
-    if lists:
-        click.echo("\n".join(fault.name for fault in faults))
+    if lists or tables:
+        if lists:
+            click.echo("\n".join(fault.name for fault in faults))
+        if tables:
+            write_table(_PAGE, [Row(**known) for known in json.loads(out.read_text())])
         return
     unknown = set(only) - {fault.name for fault in faults}
     if unknown:
@@ -146,7 +153,8 @@ def _save(out: Path, rows: dict[str, Row], order: list[str]) -> None:
     known = {one["fault"]: one for one in json.loads(out.read_text())} if out.exists() else {}
     known |= {name: asdict(row) for name, row in rows.items()}
     out.write_text(json.dumps([known[name] for name in order if name in known], indent=1) + "\n")
-    write_table(_PAGE, [Row(**known[name]) for name in order if name in known])
+    if out == _RESULTS:
+        write_table(_PAGE, [Row(**known[name]) for name in order if name in known])
 
 
 if __name__ == "__main__":

@@ -20,10 +20,12 @@ from mart.platform.run.plan import PlatformOptions
 from mart.platform.run.platform_processes import processes_of
 from mart.platform.run.running import Platform
 from mart.protocol import clock
+from mart.protocol.errors import Conflict
 from mart.runtime.bus.zenoh_bus import ZenohBus
 
 _MART = Path(sys.executable).with_name("mart")
 _STOP_TIMEOUT_S = 60.0
+_SEAT_TIMEOUT_S, _SEAT_AGAIN_S = 90.0, 2.0
 ROOM = "room-1"
 
 
@@ -53,7 +55,8 @@ class RunningMart:
         return Counter(" ".join(_words(pid)[1:4]) for pid in processes_of(self.mark))
 
     def _seat(self, arm: str) -> int:
-        log = (self.platform.logs_dir / "gateway-1.log").read_text(errors="replace")
+        (path,) = self.platform.logs_dir.glob("gateway-*.log")
+        log = path.read_text(errors="replace")
         return int(re.findall(rf"{ROOM} {arm} is served by process (\d+)", log)[-1])
 
 
@@ -104,7 +107,18 @@ def running_mart(
 
 @contextlib.contextmanager
 def seated(running: RunningMart, seed: int) -> Iterator[list[EmulatedUser]]:
-    """Two emulated people drive the room."""
+    """Two emulated people drive the room; after a restart as soon as the seats of those before are free."""
     users = EmulatedUsers(running.platform, skill="average", seed=seed)
-    with users.seated(("arm0", "arm1")) as people:
-        yield people
+    with contextlib.ExitStack() as stack:
+        yield _seat(users, stack)
+
+
+def _seat(users: EmulatedUsers, stack: contextlib.ExitStack) -> list[EmulatedUser]:
+    deadline_s = clock.monotonic_s() + _SEAT_TIMEOUT_S
+    while True:
+        try:
+            return stack.enter_context(users.seated(("arm0", "arm1")))
+        except Conflict:
+            if clock.monotonic_s() > deadline_s:
+                raise
+        clock.sleep_s(_SEAT_AGAIN_S)

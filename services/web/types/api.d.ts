@@ -112,6 +112,7 @@ declare namespace Api {
     episodes_saved: number;
     episodes_good: number;
     plan: Plan | null;
+    stop: { arm: string; name: string } | null;
     unrecorded: string;
     still: number;
     last_episode: LastEpisode | null;

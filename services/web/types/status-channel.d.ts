@@ -3,6 +3,8 @@
 declare namespace StatusChannel {
   type Input = "keyboard" | "phone";
 
+  type LetGo = "" | "new" | "tracking" | "gap" | "jump" | "age" | "picture" | "stop";
+
   interface Latency {
     p50_ms: number;
     p95_ms: number;
@@ -15,13 +17,19 @@ declare namespace StatusChannel {
     sequence: number;
     rtf: number;
     engaged: boolean;
+    let_go: LetGo;
     gripper: number;
+    gripper_set: number;
     holding: boolean;
     barrier: Messages.BarrierPhase;
+    phase: Messages.EpisodePhase | "unspecified";
+    ready: boolean;
+    stopped_by: string;
     waiting: { arm: string; since_s: number }[];
     input: Input;
-    phone: { age_ms: number; tracking: boolean } | null;
+    phone: { age_ms: number; tracking: boolean; started: boolean } | null;
     rejected: Record<string, number>;
+    no_picture: string;
     fps: number;
     latency: Latency | null;
   }

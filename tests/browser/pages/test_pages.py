@@ -166,15 +166,6 @@ def test_help_and_gripper_have_keys(browser: Browser, platform: Platform) -> Non
         expect(page.locator("#gripper")).to_have_text("Close gripper")
 
 
-def test_whoever_stops_everything_lets_it_go_on(browser: Browser, platform: Platform) -> None:
-    with visit(browser, platform) as ana, driving(ana) as page:
-        page.keyboard.press("p")
-        expect(page.locator("#state-label")).to_have_text("Stopped")
-        ana.is_fine("operator-stopped")
-        page.get_by_role("button", name="Go on").click()
-        expect(page.locator("#state-label")).to_have_text("Practice")
-
-
 def test_dragging_the_picture_moves_the_arm(browser: Browser, platform: Platform) -> None:
     with visit(browser, platform) as ana, driving(ana) as page:
         page.mouse.move(720, 400)

@@ -1,4 +1,4 @@
-"""What the status bar says and offers in every state: the pages' one clear next action."""
+"""What the status bar says and offers in every state, how it goes, and what the phone's coach asks for."""
 
 from __future__ import annotations
 
@@ -183,3 +183,59 @@ def test_a_newcomer_is_told_the_first_moves(run: Run) -> None:
     assert "Hold space" in view(run, room(MINE), isNew=True)["hint"]
     assert "Two fingers" in view(run, room(MINE), isNew=True, touch=True)["hint"]
     assert "Nothing is recorded" in view(run, room(MINE), isNew=False)["hint"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "shown"),
+    [
+        ({}, ("good", "good", "60 ms")),
+        ({"delay": 150}, ("fair", "fair", "150 ms")),
+        ({"delay": 900}, ("slow", "slow", "900 ms")),
+        ({"factor": 0.9}, ("fair", "slow world", "60 ms")),
+        ({"factor": 0.03}, ("slow", "slow world", "60 ms")),
+        ({"factor": 0.03, "delay": 900}, ("slow", "slow world", "900 ms")),
+        ({"factor": 0.9, "delay": 900}, ("slow", "slow", "900 ms")),
+        ({"still": True}, ("slow", "picture stands still", "60 ms")),
+        ({"told": False}, ("none", "No link", "– ms")),
+        ({"live": False}, ("none", "No link", "– ms")),
+        ({"barrier": "stopped", "live": False}, ("none", "Stopped", "– ms")),
+        ({"barrier": "paused"}, ("none", "Paused", "– ms")),
+    ],
+)
+def test_the_health_figure_is_the_worst_of_what_is_known_now(
+    run: Run, changes: dict[str, Any], shown: tuple[str, str, str]
+) -> None:
+    script = """({ healthOf }, { told, live, still, delay, factor, barrier }) => {
+      const status = { latency: { p50_ms: delay, p95_ms: delay, stages: {} } };
+      const { grade, word, figure } = healthOf({
+        told, live, still, status, room: { barrier, real_time_factor: factor },
+      });
+      return [grade, word, figure];
+    }"""
+    known = {"told": True, "live": True, "still": False, "delay": 60, "factor": 1.0, "barrier": "running"}
+    assert run("hud/health-figure.js", script, known | changes) == list(shown)
+
+
+def test_the_coach_leaves_out_what_the_phone_cannot_do(run: Run) -> None:
+    script = """({ Tutorial }) => {
+      const tutorial = new Tutorial("touch");
+      const tips = [];
+      let nowMs = 0;
+      let hand = { held: false, position: [0, 0, 0], quaternionWxyz: [1, 0, 0, 0], gripper: 0 };
+      const be = (changes, lastsMs = 100) => {
+        hand = { ...hand, ...changes };
+        for (let ms = 0; ms < lastsMs; ms += 20) tutorial.see(hand, (nowMs += 20));
+        tips.push(tutorial.tip);
+      };
+      be({ held: true }, 600);
+      tutorial.leaveOutTurning();
+      be({ position: [0, 0.1, 0] });
+      be({ position: [0, 0.3, 0] });
+      tutorial.leaveOutTurning();
+      be({ gripper: 1 });
+      return [tips, tutorial.finished];
+    }"""
+    tips, finished = run("phone/tutorial.js", script)
+    assert [tip[:6] for tip in tips] == ["2 of 4", "3 of 3", "3 of 3", ""]
+    assert "gripper" in tips[2]
+    assert finished

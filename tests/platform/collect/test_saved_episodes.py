@@ -9,10 +9,15 @@ from pathlib import Path
 import pytest
 
 from mart.episodes.reader import EpisodeFile
+from mart.platform.collect import saved_episodes
 from mart.platform.collect.saved_episodes import SavedEpisodes
-from mart.protocol.errors import Corrupt
-from mart.protocol.vocabulary import EpisodeOutcome
+from mart.protocol.errors import Corrupt, Unavailable
+from mart.protocol.recording import RoomRecord, VerificationRecord
+from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.record.finalize import finalize
+from mart.recorder.verify.replica import nobody
+from mart.recorder.verify.resimulation import verify
+from mart.recorder.verify.verdict_label import keep_verdict
 from tests.recorder import synthetic
 from tests.recorder.files import by_toy_replica, write_episode, write_part
 
@@ -50,6 +55,26 @@ def test_what_was_there_before_does_not_count(recorded: Path, tmp_path: Path) ->
     written = EpisodeFile.open(recorded).episode
     put(recorded, tmp_path, f"{written.room}-{written.number:04}-cubes.mcap")
     assert SavedEpisodes(tmp_path).find(written.room, written.number) is None
+
+
+def test_a_verdict_that_is_pending_is_awaited_for_a_while(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def by_nobody(file: EpisodeFile, room: RoomRecord) -> VerificationRecord:
+        return verify(file, room, nobody(Unavailable("no router")))
+
+    saved = SavedEpisodes(tmp_path)
+    path = write_episode(tmp_path / "episodes", ticks=3, verify=by_nobody).path
+    assert saved.find(synthetic.ROOM, 1) is None
+    keep_verdict(path, VerificationRecord(verdict=Verdict.VERIFIED, detail=""), 1)
+    found = saved.find(synthetic.ROOM, 1)
+    assert found is not None
+    assert found.verified
+    write_episode(tmp_path / "episodes", 3, 2, by_nobody)
+    monkeypatch.setattr(saved_episodes, "VERDICT_PATIENCE_S", 0.0)
+    found = saved.find(synthetic.ROOM, 2)
+    assert found is not None
+    assert found.verdict is Verdict.UNVERIFIED
 
 
 def test_of_several_files_of_an_episode_the_one_that_knows_the_outcome_counts(tmp_path: Path) -> None:

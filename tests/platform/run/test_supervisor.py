@@ -51,3 +51,17 @@ def test_a_process_that_ends_with_a_sentence_is_told(tmp_path: Path) -> None:
         assert "juggling" in told["sim-lab"]
     finally:
         stop_child(process, 30.0)
+
+
+def test_what_an_earlier_platform_ended_with_is_no_refusal(tmp_path: Path) -> None:
+    plan = (Process(("sim", "--room", "lab"), ServiceKind.SIM, "lab"),)
+    log = tmp_path / "logs" / "sim-lab.log"
+    log.parent.mkdir()
+    log.write_text("mart: Stopped.\n")
+    supervisor = Supervisor(PlatformOptions(tmp_path), plan, tmp_path / "socket")
+    assert supervisor._last_refusal("sim-lab") == ""
+    with log.open("a") as file:
+        file.write("mart: The disk is full.\nand more\n")
+    assert supervisor._last_refusal("sim-lab") == "The disk is full."
+    log.write_text("mart: Anew.\n")
+    assert supervisor._last_refusal("sim-lab") == "Anew."

@@ -163,9 +163,9 @@ def test_what_cannot_be_put_together_is_refused_and_nothing_changes(root: Path) 
         LabelledEpisode(path="b", size_bytes=1, task=other),
     ]
     with pytest.raises(InvalidInput, match="several tasks"):
-        take_in(root, "both", rows, [], 1)
+        take_in(root, "both", rows, [], now_ns=1)
     with pytest.raises(InvalidInput, match="several tasks"):
-        take_in(root, "held", rows[1:], [rows[0].model_copy(update={"datasets": ("held",)})], 1)
+        take_in(root, "held", rows[1:], [rows[0].model_copy(update={"datasets": ("held",)})], now_ns=1)
     with pytest.raises(InvalidInput):
         edit(asked, dataset="new", all=CatalogueRequest.List(outcome="failure"))
     with pytest.raises(InvalidInput):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mart.protocol.errors import Corrupt
-from mart.recorder.catalogue.pictures import RecordedFrame, as_mp4, last_picture
+from mart.recorder.catalogue.pictures import RecordedFrame, last_picture, write_mp4
 
 EVERY_NS = 50_000_000
 STRIP_ROWS = 16
@@ -34,6 +34,12 @@ def pictures(width_px: int, height_px: int) -> list[RecordedFrame]:
         picture.pts = number
         packets += encoder.encode(picture)
     return [RecordedFrame(number * EVERY_NS, bytes(packet)) for number, packet in enumerate(packets)]
+
+
+def as_mp4(frames: list[RecordedFrame]) -> bytes:
+    out = io.BytesIO()
+    write_mp4(frames, out)
+    return out.getvalue()
 
 
 def test_key_frames_are_known(frames: list[RecordedFrame]) -> None:

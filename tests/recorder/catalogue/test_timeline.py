@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from mart.protocol.messages import CUE_GO, OPERATOR_HUMAN, OPERATOR_POLICY, ArmState, Event, Lane, Span, State
-from mart.recorder.catalogue.timeline import MAX_POINTS, runs, timeline
+from mart.recorder.catalogue.timeline import MAX_POINTS, MAX_SPANS, runs, timeline
 from tests.recorder import synthetic
 
 
@@ -64,6 +64,26 @@ def test_long_episodes_are_thinned() -> None:
         ("arm0", "height", "m"),
         ("arm0", "gripper", ""),
     ]
+
+
+def test_what_is_told_is_bounded() -> None:
+    """Whoever drives changes at every tick, of more arms than there are."""
+    states = (
+        state(tick, source=(OPERATOR_HUMAN, OPERATOR_POLICY)[tick % 2], late_s=1.0)
+        for tick in range(3 * MAX_SPANS)
+    )
+    events = (Event(wall_ns=2**63, notice=Event.Notice(text="x" * 10_000)) for _ in range(2 * MAX_SPANS))
+    details = timeline(states, events)
+    assert max(len(one.spans) for one in details.lanes) == MAX_SPANS
+    assert details.ByteSize() < 5_000_000
+
+
+def test_states_that_do_not_agree_are_told_as_far_as_they_do() -> None:
+    strange = State(tick=1, arms=[ArmState(arm="arm7", fresh=True)], straggler="arm7", straggler_late_s=9.0)
+    strange.stamps.stepped_ns = synthetic.START_NS
+    strange.arms[0].tool_in_base.z = float("nan")
+    for order in ([state(0), strange, state(2)], [strange, state(0)], [strange, State()]):
+        timeline(order, []).SerializeToString()
 
 
 def test_a_file_without_states_has_no_time() -> None:

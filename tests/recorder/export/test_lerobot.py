@@ -94,6 +94,40 @@ def test_the_folder_describes_itself(exported: Exported) -> None:
     assert episodes[1]["tasks"] == [TASK.instruction]
 
 
+def test_every_episode_has_its_own_statistics(exported: Exported) -> None:
+    """In the columns from which LeRobot's tools make those of what is left, merged or split."""
+    features = exported.json("info.json")["features"]
+    rows = pq.read_table(exported.folder / "meta/episodes/chunk-000/file-000.parquet").to_pylist()
+    names = ("min", "max", "mean", "std", "count", "q01", "q10", "q50", "q90", "q99")
+    assert {name for name in rows[0] if name.startswith("stats/")} == {
+        f"stats/{feature}/{name}" for feature in features for name in names
+    }
+    for row in rows:
+        part = slice(row["dataset_from_index"], row["dataset_to_index"])
+        for feature in features:
+            values = exported.column(feature)[part].reshape(row["length"], -1).astype(np.float64)
+            stats = {name: row[f"stats/{feature}/{name}"] for name in names}
+            assert stats["count"] == [row["length"]]
+            np.testing.assert_allclose(stats["mean"], values.mean(0), atol=1e-9)
+            np.testing.assert_allclose(stats["std"], values.std(0), atol=1e-9)
+            np.testing.assert_array_equal(stats["max"], values.max(0))
+            np.testing.assert_allclose(stats["q90"], np.quantile(values, 0.9, axis=0))
+    means = np.array([row["stats/action/mean"] for row in rows])
+    lengths = np.array([row["length"] for row in rows])
+    aggregated = (means * lengths[:, None]).sum(0) / lengths.sum()
+    np.testing.assert_allclose(aggregated, exported.json("stats.json")["action"]["mean"], atol=1e-9)
+
+
+def test_each_tick_says_who_drove_and_whether_the_clutch_was_held(exported: Exported) -> None:
+    sources = np.concatenate([one.sources for one in exported.sources])
+    engaged = np.concatenate([one.engaged for one in exported.sources])
+    np.testing.assert_array_equal(exported.column("source"), sources)
+    np.testing.assert_array_equal(exported.column("engaged"), engaged)
+    features = exported.json("info.json")["features"]
+    assert features["source"] == {"dtype": "int64", "shape": [2], "names": ["arm0/source", "arm1/source"]}
+    assert features["engaged"]["dtype"] == "bool"
+
+
 def test_the_tasks_table_is_indexed_by_words(exported: Exported) -> None:
     table = pq.read_table(exported.folder / "meta/tasks.parquet")
     index = json.loads(table.schema.metadata[b"pandas"])["index_columns"]

@@ -15,6 +15,7 @@ from mart.episodes.arrays import arrays_for_task
 from mart.episodes.filter import EpisodeFilter
 from mart.episodes.folder import list_episodes
 from mart.episodes.labels import LabelKind, say
+from mart.episodes.reader import open_episode
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput
 from mart.protocol.messages import OUTCOME_FAILURE, State
 from mart.protocol.tasks import get_task
@@ -60,6 +61,10 @@ def renumbered(states: list[State], number: int) -> list[State]:
     return [changed(state, lambda copy: setattr(copy, "episode", number)) for state in states]
 
 
+def open_states(path: Path) -> list[State]:
+    return list(open_episode(path).states())
+
+
 def changed(state: State, change: Callable[[State], object]) -> State:
     copy = State.FromString(state.SerializeToString())
     change(copy)
@@ -98,6 +103,8 @@ def assert_holds(demo: h5py.Group, states: list[State]) -> None:
     assert demo["states"][0].tobytes() == before[0].integration_state
     assert demo["states"][-1].tobytes() == before[-1].integration_state
     assert demo["dones"][:].tolist() == [0] * (len(before) - 1) + [1]
+    assert demo["source"][:].tolist() == [[arm.source for arm in state.arms] for state in after]
+    assert demo["engaged"][:].tolist() == [[arm.engaged for arm in state.arms] for state in after]
     assert demo["rewards"][:].tolist() == [float(state.progress.success) for state in after]
 
 
@@ -115,8 +122,10 @@ def test_what_the_file_is_stands_in_it(folder: Path) -> None:
     with h5py.File(folder / "lifting.hdf5") as file:
         environment = json.loads(file["data"].attrs["env_args"])
         observations = json.loads(file["data"].attrs["observations"])
+        sources = json.loads(file["data"].attrs["source"])
         groups = {key: [name.decode() for name in names] for key, names in file["mask"].items()}
     assert environment["env_name"] == recorded.TASK
+    assert sources == {"1": "hold", "2": "human", "3": "policy", "4": "script"}
     assert environment["env_kwargs"] == {"control_hz": 20.0, "arms": 2}
     assert observations["arm1_gripper"]["arms"] == ["arm1"]
     assert groups["success"] == ["demo_0", "demo_2", "demo_3"]
@@ -161,11 +170,25 @@ def test_a_mixture_is_refused(source: Source, folder: Path, field: str, value: o
         write(folder, folder / "lifting.hdf5")
 
 
-def test_a_damaged_file_is_named(folder: Path) -> None:
-    path = min(folder.rglob("*.mcap"))
-    path.write_bytes(path.read_bytes()[:5000])
-    with pytest.raises(Corrupt, match=path.name):
-        write(folder, folder / "lifting.hdf5")
+def test_a_file_that_cannot_be_read_is_named_and_in_nobodys_way(
+    folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """One is cut off, one has a broken chunk, one is another's; named itself, each is an error."""
+    first, second = sorted(folder.rglob("*.mcap"))[:2]
+    recorded.write(folder, World.build(recorded.TASK), renumbered(open_states(second), 7))
+    foreign = folder / "foreign.mcap"
+    foreign.write_bytes(b"PAR1")
+    first.write_bytes(first.read_bytes()[:5000])
+    data = bytearray(second.read_bytes())
+    data[data.index(b"zstd") + 2000] ^= 1
+    second.write_bytes(data)
+    write(folder, folder / "lifting.hdf5")
+    with h5py.File(folder / "lifting.hdf5") as file:
+        assert len(file["data"]) == 1
+    for path in (first, second, foreign):
+        assert f"Left out: {path}" in caplog.text
+        with pytest.raises(Corrupt, match=path.name):
+            write(path, folder / "none.hdf5")
 
 
 def test_an_episode_whose_model_has_a_spoilt_bit_is_not_exported(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from random import Random
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mart.protocol import recording
@@ -125,6 +125,7 @@ def driven(arrived: Arrivals) -> DrivenRoom:
     return room
 
 
+@settings(max_examples=60)
 @given(arrivals())
 def test_every_state_that_came_is_in_one_file_in_order(arrived: Arrivals) -> None:
     room = driven(arrived)
@@ -139,6 +140,7 @@ def test_every_state_that_came_is_in_one_file_in_order(arrived: Arrivals) -> Non
             assert episode.missing_ticks == came[-1] - came[0] + 1 - len(came)
 
 
+@settings(max_examples=60)
 @given(arrivals())
 def test_every_command_that_states_name_is_in_the_file_or_counted(arrived: Arrivals) -> None:
     room = driven(arrived)
@@ -158,6 +160,7 @@ def named_in(room: DrivenRoom, episode: EpisodeAccumulator) -> set[int]:
     return {arm.sequence for tick in ticks for arm in states[tick].arms if arm.fresh}
 
 
+@settings(max_examples=60)
 @given(arrivals())
 def test_an_outcome_is_known_where_any_word_of_it_came(arrived: Arrivals) -> None:
     room = driven(arrived)

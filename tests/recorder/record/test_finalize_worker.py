@@ -11,13 +11,11 @@ import pytest
 
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import keys
-from mart.protocol.errors import Conflict
 from mart.protocol.messages import Event, Model
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.recorder.record.announcer import Announcer
 from mart.recorder.record.finalize import SavedEpisode, below, free_path
 from mart.recorder.record.finalize_worker import FinalizeWorker
-from mart.recorder.record.folder_claim import only_recorder_of
 from mart.recorder.record.room_models import RoomModels
 from mart.recorder.repair.repair import repair_all
 from mart.runtime.bus.memory import MemoryNetwork
@@ -87,10 +85,3 @@ def test_no_file_is_ever_overwritten(tmp_path: Path) -> None:
     below(tmp_path)(file, episode.record(facts))
     assert file.path.name.endswith("-2.mcap")
     assert name.read_bytes() == b"of somebody who was quicker"
-
-
-def test_a_folder_has_one_recorder(tmp_path: Path) -> None:
-    with only_recorder_of(tmp_path), pytest.raises(Conflict), only_recorder_of(tmp_path):
-        pass
-    with only_recorder_of(tmp_path):
-        pass

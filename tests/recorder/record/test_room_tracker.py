@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mart.protocol import codec, recording
+from mart.protocol.messages import BARRIER_PHASE_PAUSED, BARRIER_PHASE_RUNNING, Event
 from mart.recorder.record.episode_closing import GRACE_S, LINGER_S, SILENCE_S
 from mart.recorder.record.newest_pictures import has_key_frame
 from mart.recorder.record.room_tracker import CloseFile, OpenFile
@@ -102,6 +103,22 @@ def test_an_abandoned_episode_is_left_alone_and_the_next_is_recorded() -> None:
     room.states(synthetic.states(2, number=2, first_tick=20))
     assert room.course == [OpenFile, OpenFile]
     assert room.ticks == [0, 1, 2, 3, 20, 21, 22]
+
+
+def test_what_happened_before_an_episode_or_after_it_is_not_in_its_file() -> None:
+    room = DrivenRoom()
+    room.states(synthetic.states(5, first_tick=10))
+    for tick in (7, 12, 0):
+        phase = BARRIER_PHASE_PAUSED if tick == 7 else BARRIER_PHASE_RUNNING
+        room.event(Event(tick=tick, barrier_changed=Event.BarrierChanged(phase=phase)))
+    room.state(practice(16))
+    for tick in (14, 17):
+        room.event(Event(tick=tick, barrier_changed=Event.BarrierChanged(phase=BARRIER_PHASE_RUNNING)))
+    room.event(synthetic.ended(15))
+    room.wait(LINGER_S)
+    written = [Event.FromString(entry.payload).tick for entry in room.entries(recording.EVENT)]
+    assert written == [12, 0, 14, 15]
+    assert not room.closed[0].episode.interrupted
 
 
 def test_what_came_just_before_belongs_to_the_episode() -> None:

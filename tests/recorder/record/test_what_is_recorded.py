@@ -89,3 +89,29 @@ def test_a_file_that_is_deleted_while_it_is_written_is_told_at_once(session: Rec
     part.unlink()
     (notice,) = session.told("notice")
     assert (notice.notice.level, "deleted" in notice.notice.text) == ("error", True)
+
+
+def test_an_episode_that_has_its_file_is_not_recorded_again(tmp_path: Path) -> None:
+    """A recorder that was started anew hears again what a room said before."""
+    for _ in range(2):
+        with closing(RecordingSession(tmp_path)) as session:
+            session.episode(number=1)
+            session.states(synthetic.states(3, number=2, first_tick=50))
+            session.event(synthetic.ended(53, 2))
+            session.until(lambda: len(list(tmp_path.rglob("*.mcap"))) == 2)
+    assert len(list(tmp_path.rglob("*.mcap*"))) == 2
+
+
+def test_two_recorders_of_a_folder_record_each_room_once(tmp_path: Path) -> None:
+    with closing(RecordingSession(tmp_path)) as first, closing(RecordingSession(tmp_path)) as second:
+        first.episode()
+        second.episode()
+        first.told("episode_saved")
+        for state in synthetic.states(5, room="room-2"):  # a room of its own
+            second.put(keys.state("room-2"), codec.encode(state))
+        second.recorder.step(0.0)
+    rooms = [EpisodeFile.open(path).episode.room for path in sorted(tmp_path.rglob("*.mcap"))]
+    assert rooms == ["room-1", "room-2"]
+    with closing(RecordingSession(tmp_path)) as third:  # who has left leaves the rooms to others
+        third.episode(number=2, first_tick=50)
+        third.told("episode_saved")

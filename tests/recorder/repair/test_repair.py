@@ -110,6 +110,18 @@ def test_a_finished_file_with_a_spoilt_model_is_not_called_complete(tmp_path: Pa
     assert EpisodeFile.open(one.saved.path).episode.repaired
 
 
+def test_a_state_of_another_version_costs_itself_only(tmp_path: Path) -> None:
+    states = synthetic.states(10)
+    states[4].arms[0].source = 77  # type: ignore[assignment]
+    file, _, _ = write_part(tmp_path, states)
+    file.flush()
+    file.abandon()
+    one = repaired(tmp_path)
+    assert one.saved is not None
+    assert ticks(one.saved.path) == [0, 1, 2, 3, 5, 6, 7, 8, 9, 10]
+    assert "1 messages that cannot be read" in one.detail
+
+
 def test_what_somebody_else_repairs_is_left_alone(tmp_path: Path, left: Left) -> None:
     part = leftover(tmp_path, left.data)
     with part.open("rb") as elsewhere:
@@ -210,11 +222,12 @@ def test_garbage_is_refused_and_kept(
 ) -> None:
     """What a crash may have left is set aside, so that it is looked at once; what is not ours keeps its name."""
     root = tmp_path_factory.mktemp("garbage")
-    data = b"\x89MCAP0\r\n" + garbage if begins_as_ours else garbage
+    magic = b"\x89MCAP0\r\n"
+    data = magic + garbage if begins_as_ours else garbage
     part = leftover(root, data)
     one = repaired(root)
     assert one.saved is None
-    ours = begins_as_ours or not garbage
+    ours = begins_as_ours or magic.startswith(garbage)  # a crash may come before the first bytes are whole
     kept = part.with_name(part.name.replace(".part", ".unreadable")) if ours else part
     assert kept.read_bytes() == data
     assert list(kept.parent.iterdir()) == [kept]

@@ -93,7 +93,9 @@ class RoomHarness:
             ready = EpisodeRequest.Ready(arm=arm, holder_id=arm, ready=True)
             assert self.ask(EpisodeRequest(ready=ready)) == ""
 
-    def command(self, arm: str, x_m: float = 0.0, gripper: float = 0.0, stop: bool = False) -> None:
+    def command(
+        self, arm: str, x_m: float = 0.0, gripper: float = 0.0, stop: bool = False, state_tick: int = 0
+    ) -> None:
         """The tool is to go `x_m` from where it is."""
         self._sequence += 1
         target = pose_message(self.world.tool_pose_in_base(arm))
@@ -106,6 +108,7 @@ class RoomHarness:
             gripper=gripper,
             engaged=True,
             emergency_stop=stop,
+            state_tick=state_tick,
         )
         self.room.hear(codec.encode(command), arm, self.now_s, round(self.now_s * 1e9))
 

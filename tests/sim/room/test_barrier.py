@@ -149,24 +149,57 @@ def test_a_room_where_all_seats_are_on_hold_lives_on_at_its_pace() -> None:
     assert (decision.inputs, decision.next_s) == (None, PERIOD_S)
 
 
-def test_an_emergency_stop_holds_until_it_is_released(barrier: Barrier) -> None:
+def test_an_emergency_stop_latches_until_somebody_lets_go(barrier: Barrier) -> None:
     give(barrier, "arm0", sequence=1, at_s=0.0, stop=True)
     give(barrier, "arm1", sequence=1, at_s=0.0)
     decision = barrier.advance(2.0, gate_open=True)
     assert (decision.phase, decision.waiting_for) == (BARRIER_PHASE_STOPPED, (("arm0", 2.0),))
     assert decision.inputs is None
-    give(barrier, "arm0", "arm1", sequence=2, at_s=2.1)
+    give(barrier, "arm0", "arm1", sequence=2, at_s=2.1)  # the button is not pressed any more
+    assert barrier.advance(2.1, gate_open=True).phase == BARRIER_PHASE_STOPPED
+    barrier.let_go()
     fire(barrier, 2.1)
 
 
-def test_an_emergency_stop_ends_with_its_seat(barrier: Barrier) -> None:
+def test_an_emergency_stop_outlives_its_seat(barrier: Barrier) -> None:
     give(barrier, "arm0", sequence=1, at_s=0.0, stop=True)
     give(barrier, "arm1", sequence=1, at_s=0.0)
     barrier.seat("arm0", OPERATOR_HOLD, 2, 0.1)
+    assert barrier.advance(0.1, gate_open=True).phase == BARRIER_PHASE_STOPPED
+    barrier.let_go()
     fire(barrier, 0.1)
 
 
-def test_a_late_repeat_of_a_release_does_not_undo_a_stop(barrier: Barrier) -> None:
+def test_a_button_that_stays_pressed_stops_once(barrier: Barrier) -> None:
+    give(barrier, "arm0", sequence=1, at_s=0.0, stop=True)
+    barrier.let_go()
+    give(barrier, "arm0", sequence=2, at_s=0.1, stop=True)
+    give(barrier, "arm1", sequence=1, at_s=0.1)
+    fire(barrier, 0.1)
+    give(barrier, "arm0", sequence=3, at_s=0.2)
+    give(barrier, "arm0", sequence=4, at_s=0.3, stop=True)  # pressed anew
+    assert barrier.advance(0.3, gate_open=True).phase == BARRIER_PHASE_STOPPED
+
+
+def test_whoever_has_no_seat_stops_everything_too(barrier: Barrier) -> None:
+    barrier.stop("", 1.0)
+    barrier.stop("arm1", 2.0)  # once is enough
+    decision = barrier.advance(2.0, gate_open=True)
+    assert (decision.phase, decision.waiting_for) == (BARRIER_PHASE_STOPPED, ())
+
+
+def test_an_old_command_moves_nothing_and_stops_all_the_same(barrier: Barrier) -> None:
+    assert barrier.offer(received("arm0", 1, 1, 0.0), in_time=False) is CommandRejection.OLD_STATE
+    assert barrier.newest("arm0") is None
+    assert (
+        barrier.offer(received("arm0", 2, 1, 0.0, stop=True), in_time=False) is CommandRejection.WRONG_EPOCH
+    )
+    assert not barrier.stopped
+    assert barrier.offer(received("arm0", 1, 1, 0.0, stop=True), in_time=False) is CommandRejection.OLD_STATE
+    assert barrier.stopped
+
+
+def test_a_late_repeat_of_an_older_command_does_not_undo_a_stop(barrier: Barrier) -> None:
     give(barrier, "arm0", sequence=2, at_s=0.0, stop=True)
     assert barrier.offer(received("arm0", 1, 1, 0.1)) is CommandRejection.OLD_SEQUENCE
     assert barrier.advance(0.1, gate_open=True).phase == BARRIER_PHASE_STOPPED

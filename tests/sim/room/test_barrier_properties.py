@@ -60,6 +60,7 @@ class BarrierMachine(RuleBasedStateMachine):
         self.barrier = Barrier(ARMS, PERIOD_S, self.now_s)
         self.said = {arm: Said(heard_s=self.now_s) for arm in ARMS}
         self.fired_s: list[float] = []
+        self.stopped: set[str] | None = None  # where it was pressed
 
     def driven(self) -> dict[str, Said]:
         return {arm: said for arm, said in self.said.items() if said.operator != OPERATOR_HOLD}
@@ -94,8 +95,21 @@ class BarrierMachine(RuleBasedStateMachine):
         assert (rejection is None) == good
         assert self.barrier.rejected.total() - before == (not good)
         if good:
+            if stop and not said.accepted.get(said.newest) and self.stopped is None:
+                self.stopped = {arm}
             said.accepted[sequence] = stop
             said.heard_s = self.now_s
+
+    @rule(arm=st.sampled_from([*ARMS, ""]))
+    def press_stop(self, arm: str) -> None:
+        self.barrier.stop(arm, self.now_s)
+        if self.stopped is None:
+            self.stopped = {arm} - {""}
+
+    @rule()
+    def let_go_of_stop(self) -> None:
+        self.barrier.let_go()
+        self.stopped = None
 
     @rule()
     def reset_world(self) -> None:
@@ -122,11 +136,10 @@ class BarrierMachine(RuleBasedStateMachine):
         decision = self.barrier.advance(self.now_s, gate_open)
         driven = self.driven()
         silence_s = {arm: self.now_s - said.heard_s for arm, said in driven.items()}
-        stopped = {arm for arm, said in driven.items() if said.accepted.get(said.newest)}
         longest_s = max(silence_s.values(), default=0.0)
 
         expected = BARRIER_PHASE_RUNNING
-        if stopped:
+        if self.stopped is not None:
             expected = BARRIER_PHASE_STOPPED
         elif longest_s >= PAUSED_AFTER_S:
             expected = BARRIER_PHASE_PAUSED
@@ -134,7 +147,7 @@ class BarrierMachine(RuleBasedStateMachine):
             expected = BARRIER_PHASE_STALLED
         assert decision.phase == expected
         missing = {arm for arm, since_s in silence_s.items() if since_s >= STALLED_AFTER_S}
-        assert {arm for arm, _ in decision.waiting_for} == (stopped or missing)
+        assert {arm for arm, _ in decision.waiting_for} == (missing if self.stopped is None else self.stopped)
         assert set(decision.silent) == {
             arm
             for arm, since_s in silence_s.items()

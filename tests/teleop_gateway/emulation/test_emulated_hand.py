@@ -20,6 +20,7 @@ from mart.teleop_gateway.emulation.emulated_hand import (
 from mart.teleop_gateway.input.frame_validator import FrameValidator
 from mart.teleop_gateway.input.phone_frame import Flag
 from mart.teleop_gateway.input.retarget import ArmTarget, Retarget
+from mart.teleop_gateway.input.tool_motion import ToolMotion
 from tests.teleop_gateway.input.strategies import NONE, angles_rad, phone_frame
 
 FRAME_S = 1 / 60
@@ -59,7 +60,7 @@ class Loop:
         )
         admitted = self.validator.validate(frame.encode(), self.now_s)
         assert admitted is not None, self.validator.rejected
-        target = self.retarget.follow(admitted, self.tool)
+        target = self.retarget.follow(admitted, ToolMotion(self.tool, self.now_s))
         self.tool, self.engaged = target.pose_tool_in_base, target.engaged
         return held, target
 

@@ -10,8 +10,10 @@ import pytest
 from mart.protocol.messages import OPERATOR_HUMAN, ArmState, Command, pose_from_message
 from mart.protocol.pose import Pose
 from mart.teleop_gateway.input.driving import LOST_AFTER_S, Driving, InputDevice
+from mart.teleop_gateway.input.frame_validator import LetGo
 from mart.teleop_gateway.input.phone_frame import Flag
 from mart.teleop_gateway.input.retarget import Retarget
+from mart.teleop_gateway.input.tool_motion import ToolMotion
 from tests.teleop_gateway.input.strategies import NONE, phone_frame
 
 EPOCH = 7
@@ -34,7 +36,8 @@ class Seat:
         self.numbers[source] += 1
         flags = given.pop("more", NONE) | Flag.SCREEN_ALIGNED
         frame = phone_frame(self.numbers[source], sent_us=int(self.now_s * 1e6), more=flags, **given)
-        return self.driving.receive(source, frame.encode(), measured, self.now_s, NOW_NS)
+        tool = None if measured is None else ToolMotion(measured, self.now_s)
+        return self.driving.receive(source, frame.encode(), tool, self.now_s, NOW_NS)
 
     def command(self, source: InputDevice = InputDevice.KEYBOARD, **given: Any) -> Command:
         command = self.send(source, **given)
@@ -70,14 +73,15 @@ def test_a_held_clutch_moves_the_target(seat: Seat) -> None:
     assert target(pressed).distance_to(HOME)[0] == 0
     moved = seat.command(clutch=True, position=(0.0, 0.05, 0.0))
     np.testing.assert_allclose(target(moved).position, HOME.position + np.array((0, 0, 0.05)), atol=1e-6)
-    released = seat.command(position=(0.0, 0.1, 0.0))
-    assert target(released).distance_to(target(moved))[0] < 1e-9
+    here = Pose(np.array([0.5, 0.0, 0.32]), HOME.quaternion_wxyz)
+    released = seat.command(position=(0.0, 0.1, 0.0), measured=here)
+    assert target(released).distance_to(here)[0] < 1e-9
 
 
 def test_bad_frames_and_unseen_arms_give_no_command(seat: Seat) -> None:
     assert seat.send(InputDevice.KEYBOARD, epoch=8) is None
     assert seat.send(InputDevice.KEYBOARD, measured=None) is None
-    assert seat.driving.receive(InputDevice.KEYBOARD, b"junk", HOME, seat.now_s, NOW_NS) is None
+    assert seat.driving.receive(InputDevice.KEYBOARD, b"junk", ToolMotion(HOME), seat.now_s, NOW_NS) is None
     assert seat.driving.rejected() == {"epoch": 1, "malformed": 1}
 
 
@@ -188,7 +192,7 @@ def test_the_phones_state_is_told(seat: Seat) -> None:
 
 
 def test_whoever_takes_over_drops_nothing_before_the_first_press_or_grip(seat: Seat) -> None:
-    seat.driving.see(ArmState(arm="arm0", gripper=0.6, action=[0.0] * 6 + [1.0]), 0.0)
+    seat.driving.see(ArmState(arm="arm0", gripper=0.6, action=[0.0] * 6 + [1.0]), 1, 0.0, 50.0)
     assert seat.driving.gripper == 1.0  # what a page that comes now is told
     assert [seat.command(gripper=0.0).gripper for _ in range(3)] == [1.0, 1.0, 1.0]
     assert target(seat.command(gripper=0.0)).distance_to(HOME) == (0.0, 0.0)
@@ -197,13 +201,59 @@ def test_whoever_takes_over_drops_nothing_before_the_first_press_or_grip(seat: S
 
 
 def test_a_grip_counts_also_with_an_open_clutch(seat: Seat) -> None:
-    seat.driving.see(ArmState(arm="arm0", action=[0.0] * 6 + [1.0]), 0.0)
+    seat.driving.see(ArmState(arm="arm0", action=[0.0] * 6 + [1.0]), 1, 0.0, 50.0)
     assert [seat.command(gripper=given).gripper for given in (0.0, 0.0, 0.5, 0.5)] == [1.0, 1.0, 0.5, 0.5]
 
 
 def test_a_phone_that_comes_drops_nothing_either(seat: Seat) -> None:
-    seat.driving.see(ArmState(arm="arm0", gripper=0.0), 0.0)
+    seat.driving.see(ArmState(arm="arm0", gripper=0.0), 1, 0.0, 50.0)
     seat.command(gripper=0.0)
     seat.command(gripper=1.0)
     seat.driving.connect(InputDevice.PHONE)
     assert seat.command(InputDevice.PHONE, gripper=0.0).gripper == 1.0
+
+
+def test_the_gripper_begins_open_at_every_reset_and_its_device_follows(seat: Seat) -> None:
+    """Also where the clutch stays held; what the device says counts again once it says something new."""
+    seat.command(gripper=1.0)
+    assert seat.command(gripper=1.0, clutch=True).gripper == 1.0
+    before = seat.driving.gripper_set
+    seat.driving.see(ArmState(arm="arm0", gripper=0.9), 2, 0.0, 50.0)  # measured; the reset opens it
+    seat.driving.world_was_reset()
+    assert seat.driving.gripper_set == before + 1
+    assert [seat.command(gripper=1.0, clutch=True).gripper for _ in range(3)] == [0.0, 0.0, 0.0]
+    assert [seat.command(gripper=g, clutch=True).gripper for g in (0.0, 0.0, 1.0, 1.0)] == [
+        0.0,
+        0.0,
+        1.0,
+        1.0,
+    ]
+
+
+def test_the_device_that_takes_over_goes_on_with_the_gripper_as_it_is(seat: Seat) -> None:
+    seat.driving.connect(InputDevice.PHONE)
+    seat.command(InputDevice.PHONE, gripper=0.0)
+    assert seat.command(InputDevice.PHONE, gripper=1.0).gripper == 1.0
+    seat.driving.see(ArmState(arm="arm0", gripper=0.9, action=[0.0] * 6 + [1.0]), 2, 0.1, 50.0)
+    before = seat.driving.gripper_set
+    seat.driving.select(InputDevice.KEYBOARD)
+    assert seat.driving.gripper_set == before + 1
+    assert seat.command(gripper=0.0).gripper == 1.0
+
+
+def test_an_emergency_stop_lets_go_of_every_clutch(seat: Seat) -> None:
+    seat.command()
+    assert seat.command(clutch=True).engaged
+    seat.driving.stopped = True
+    assert not seat.command(clutch=True).engaged
+    seat.driving.stopped = False
+    assert not seat.command(clutch=True).engaged
+    assert seat.driving.let_go(seat.now_s) is LetGo.STOP
+    seat.command()
+    assert seat.command(clutch=True).engaged
+
+
+def test_a_command_tells_from_which_state_it_was_made(seat: Seat) -> None:
+    assert seat.command().state_tick == 0
+    seat.driving.see(ArmState(arm="arm0"), 41, 0.0, 50.0)
+    assert seat.command().state_tick == 41

@@ -109,9 +109,12 @@ def test_a_driver_holds_what_the_states_tell() -> None:
     told = []
     for tick, measured in enumerate((0.0, 0.3, 0.5, 0.5, 0.5)):
         driving.see(
-            ArmState(arm="arm0", gripper=measured, action=[0.0] * 6 + [1.0 if tick else -1.0]), tick / 20
+            ArmState(arm="arm0", gripper=measured, action=[0.0] * 6 + [1.0 if tick else -1.0]),
+            tick,
+            tick / 20,
+            0.0,
         )
         told.append(driving.holding)
     assert told == [False, False, False, True, True]
-    driving.see(ArmState(arm="arm0", gripper=0.0), 0.0)
+    driving.see(ArmState(arm="arm0", gripper=0.0), 6, 0.0, 0.0)
     assert not driving.holding

@@ -13,9 +13,11 @@ from mart.protocol.pose import Pose, quaternion_multiply, rotate
 from mart.teleop_gateway.emulation.emulated_hand import resting_pose
 from mart.teleop_gateway.input.phone_frame import Flag
 from mart.teleop_gateway.input.retarget import Retarget, azimuth_of_camera_rad, heading_rad, session_to_base
+from mart.teleop_gateway.input.tool_motion import ToolMotion
 from tests.teleop_gateway.input.strategies import angles_rad, hand, poses, positions, quaternions
 
 HOME = Pose(np.array([0.5, 0.0, 0.3]), np.array([0.0, 1.0, 0.0, 0.0]))
+REST = ToolMotion(HOME)
 scales = st.floats(0.2, 2.0)
 
 
@@ -28,26 +30,32 @@ def assert_same(a: Pose, b: Pose) -> None:
 @given(poses, poses, angles_rad)
 def test_pressing_moves_nothing(phone: Pose, tool: Pose, azimuth_rad: float) -> None:
     retarget = Retarget(azimuth_rad)
-    retarget.follow(hand(phone, clutch=False), HOME)
-    target = retarget.follow(hand(phone, clutch=True), tool)
+    retarget.follow(hand(phone, clutch=False), REST)
+    target = retarget.follow(hand(phone, clutch=True), ToolMotion(tool))
     assert_same(target.pose_tool_in_base, tool)
     assert target.engaged
-    again = retarget.follow(hand(phone, clutch=True), HOME)
+    again = retarget.follow(hand(phone, clutch=True), REST)
     assert_same(again.pose_tool_in_base, tool)
 
 
 @given(st.lists(st.tuples(poses, st.booleans(), poses), min_size=1, max_size=12), angles_rad)
-def test_an_open_clutch_holds_the_last_target(
+def test_an_open_clutch_asks_for_where_the_tool_is_until_it_rests_and_then_for_nothing_else(
     steps: list[tuple[Pose, bool, Pose]], azimuth_rad: float
 ) -> None:
+    """A second passes between two steps: a tool that was let go rests by then."""
     retarget = Retarget(azimuth_rad)
-    last: Pose | None = None
-    for phone, clutch, tool in steps:
-        target = retarget.follow(hand(phone, clutch=clutch), tool)
+    held: Pose | None = None
+    for second, (phone, clutch, tool) in enumerate(steps):
+        target = retarget.follow(hand(phone, clutch=clutch), ToolMotion(tool, float(second)))
         assert target.engaged == clutch
-        if not clutch:
-            assert_same(target.pose_tool_in_base, last or tool)
-        last = target.pose_tool_in_base
+        if clutch:
+            held = None
+            continue
+        if held is None:
+            assert_same(target.pose_tool_in_base, tool)
+        settled = retarget.follow(hand(phone, clutch=False), ToolMotion(tool, second + 0.6))
+        assert_same(settled.pose_tool_in_base, held or tool)
+        held = settled.pose_tool_in_base
 
 
 @given(positions, positions, angles_rad, angles_rad, scales)
@@ -61,10 +69,10 @@ def test_a_motion_keeps_its_length_its_height_and_its_side(
     """Seen with the phone's heading, right, up and towards are camera right, up and towards, times the scale."""
     retarget = Retarget(azimuth_rad, scale)
     pose = Pose(np.array(start), resting_pose(phone_heading_rad).quaternion_wxyz)
-    retarget.follow(hand(pose, clutch=True), HOME)
+    retarget.follow(hand(pose, clutch=True), REST)
     about_up = np.array([math.cos(phone_heading_rad / 2), 0.0, math.sin(phone_heading_rad / 2), 0.0])
     moved = Pose(pose.position + rotate(about_up, np.array(shift)), pose.quaternion_wxyz)
-    target = retarget.follow(hand(moved, clutch=True), HOME)
+    target = retarget.follow(hand(moved, clutch=True), REST)
     right, up, towards = shift
     ahead = np.array([math.cos(azimuth_rad), math.sin(azimuth_rad), 0.0])
     right_of = np.array([math.sin(azimuth_rad), -math.cos(azimuth_rad), 0.0])
@@ -77,9 +85,9 @@ def test_a_motion_keeps_its_length_its_height_and_its_side(
 def test_a_turn_keeps_its_angle(turn: np.ndarray, phone_heading_rad: float, azimuth_rad: float) -> None:
     retarget = Retarget(azimuth_rad)
     start = resting_pose(phone_heading_rad)
-    retarget.follow(hand(start, clutch=True), HOME)
+    retarget.follow(hand(start, clutch=True), REST)
     moved = Pose(start.position, quaternion_multiply(turn, start.quaternion_wxyz))
-    target = retarget.follow(hand(moved, clutch=True), HOME)
+    target = retarget.follow(hand(moved, clutch=True), REST)
     _, asked_rad = moved.distance_to(start)
     metres, done_rad = target.pose_tool_in_base.distance_to(HOME)
     assert done_rad == pytest.approx(asked_rad, abs=1e-6)
@@ -96,8 +104,8 @@ def test_the_session_may_start_anywhere(session_yaw_rad: float, shift_m: float) 
     targets = []
     for frame in (Pose.identity(), session):
         retarget = Retarget(0.4)
-        retarget.follow(hand(frame @ start, clutch=True), HOME)
-        targets.append(retarget.follow(hand(frame @ moved, clutch=True), HOME).pose_tool_in_base)
+        retarget.follow(hand(frame @ start, clutch=True), REST)
+        targets.append(retarget.follow(hand(frame @ moved, clutch=True), REST).pose_tool_in_base)
     assert_same(*targets)
 
 
@@ -106,9 +114,9 @@ def test_a_screen_aligned_pose_needs_no_heading(
     phone: Pose, shift: tuple[float, float, float], azimuth_rad: float
 ) -> None:
     retarget = Retarget(azimuth_rad)
-    retarget.follow(hand(phone, clutch=True, more=Flag.SCREEN_ALIGNED), HOME)
+    retarget.follow(hand(phone, clutch=True, more=Flag.SCREEN_ALIGNED), REST)
     moved = Pose(phone.position + np.array(shift), phone.quaternion_wxyz)
-    target = retarget.follow(hand(moved, clutch=True, more=Flag.SCREEN_ALIGNED), HOME)
+    target = retarget.follow(hand(moved, clutch=True, more=Flag.SCREEN_ALIGNED), REST)
     expected = rotate(session_to_base(0.0, azimuth_rad), np.array(shift))
     np.testing.assert_allclose(target.pose_tool_in_base.position - HOME.position, expected, atol=1e-9)
 
@@ -119,10 +127,10 @@ def test_a_touch_pad_is_aligned_though_the_phone_is_not(
 ) -> None:
     retarget = Retarget(0.0)
     start = resting_pose(phone_heading_rad)
-    retarget.follow(hand(start, clutch=True, more=Flag.ORIENTATION_ONLY), HOME)
+    retarget.follow(hand(start, clutch=True, more=Flag.ORIENTATION_ONLY), REST)
     pitch = np.array([math.cos(0.2), *(math.sin(0.2) * _right_of(phone_heading_rad))])
     moved = Pose(start.position + np.array(shift), quaternion_multiply(pitch, start.quaternion_wxyz))
-    target = retarget.follow(hand(moved, clutch=True, more=Flag.ORIENTATION_ONLY), HOME).pose_tool_in_base
+    target = retarget.follow(hand(moved, clutch=True, more=Flag.ORIENTATION_ONLY), REST).pose_tool_in_base
     right, up, towards = shift
     np.testing.assert_allclose(target.position - HOME.position, (-towards, -right, up), atol=1e-9)
     # Tilting the phone's top towards its holder turns the tool about the axis to the right, wherever they face.
@@ -133,18 +141,18 @@ def test_a_touch_pad_is_aligned_though_the_phone_is_not(
 @given(poses, poses, poses)
 def test_after_a_reset_the_references_are_taken_anew(phone: Pose, moved: Pose, tool: Pose) -> None:
     retarget = Retarget(0.3)
-    retarget.follow(hand(phone, clutch=True), HOME)
-    retarget.follow(hand(moved, clutch=True), HOME)
+    retarget.follow(hand(phone, clutch=True), REST)
+    retarget.follow(hand(moved, clutch=True), REST)
     retarget.forget()
-    assert_same(retarget.follow(hand(moved, clutch=True), tool).pose_tool_in_base, tool)
+    assert_same(retarget.follow(hand(moved, clutch=True), ToolMotion(tool)).pose_tool_in_base, tool)
     retarget.forget()
-    assert_same(retarget.follow(hand(phone, clutch=False), tool).pose_tool_in_base, tool)
+    assert_same(retarget.follow(hand(phone, clutch=False), ToolMotion(tool)).pose_tool_in_base, tool)
 
 
 def test_the_gripper_follows_whatever_the_clutch_does() -> None:
     retarget = Retarget(0.0)
     for clutch, gripper in ((False, 0.2), (True, 0.4), (False, 1.0)):
-        assert retarget.follow(hand(Pose.identity(), clutch=clutch, gripper=gripper), HOME).gripper == gripper
+        assert retarget.follow(hand(Pose.identity(), clutch=clutch, gripper=gripper), REST).gripper == gripper
 
 
 @given(angles_rad, st.floats(0.0, math.pi / 2))
@@ -177,8 +185,8 @@ def test_session_to_base_is_a_rotation_that_keeps_up(phone_heading_rad: float, a
 def test_targets_are_always_sound(phone: Pose, moved: Pose) -> None:
     assume(phone.distance_to(moved)[0] < 2.0)
     retarget = Retarget(1.0)
-    retarget.follow(hand(phone, clutch=True), HOME)
-    target = retarget.follow(hand(moved, clutch=True), HOME)
+    retarget.follow(hand(phone, clutch=True), REST)
+    target = retarget.follow(hand(moved, clutch=True), REST)
     assert np.isfinite(target.pose_tool_in_base.position).all()
     assert np.linalg.norm(target.pose_tool_in_base.quaternion_wxyz) == pytest.approx(1.0)
 

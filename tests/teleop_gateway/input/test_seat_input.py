@@ -107,7 +107,7 @@ def test_frames_of_the_holder_alone_become_commands() -> None:
         seat.input.receive(InputDevice.KEYBOARD, phone_frame(epoch=1).encode())  # nobody holds the seat
         seat.input.on_camera_azimuth(0.0)
         seat.tell(epoch=1)
-        seat.input.on_state(ArmState(arm=SEAT.arm), Pose.identity(), 0.0, was_reset=False)
+        seat.input.on_state(ArmState(arm=SEAT.arm), Pose.identity(), 1, 0.0, was_reset=False)
         seat.input.connect(InputDevice.KEYBOARD)
         before_ns = clock.wall_ns()
         seat.input.receive(InputDevice.KEYBOARD, phone_frame(epoch=1).encode())

@@ -12,9 +12,10 @@ import pytest
 from av.video.codeccontext import VideoCodecContext
 
 from mart.protocol import clock
+from mart.protocol.errors import Unavailable
 from mart.protocol.messages import Model, State, TickStamps
 from mart.sim.world.world import World
-from mart.teleop_gateway.video import tick_code
+from mart.teleop_gateway.video import live_view, tick_code
 from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.video.live_view import KEYFRAME_EVERY_S, LiveView, SeatPicture
 from mart.teleop_gateway.video.render_queue import RenderQueue, RenderQueueClosed
@@ -191,3 +192,16 @@ def test_where_drawing_fails_the_process_ends(model_message: Model, monkeypatch:
     view.start()
     assert "view-arm0 failed (OSError)" in said.get(timeout=30.0)
     view.stop()
+
+
+def test_a_machine_that_cannot_draw_says_why(model_message: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live_view, "SeatRenderer", _cannot_draw)
+    view = LiveView(load_room_model(model_message), "arm0", 20.0, lambda _: None, end=pytest.fail)
+    view.start()
+    view.stop()
+    assert view.failure == "Nothing can be drawn on this machine."
+    assert view.frames_per_s() == 0.0
+
+
+def _cannot_draw(*_: object) -> None:
+    raise Unavailable("Nothing can be drawn on this machine.")

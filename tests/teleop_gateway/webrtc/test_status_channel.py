@@ -12,8 +12,11 @@ from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import (
     BARRIER_PHASE_STALLED,
     CUE_WAIT,
+    EPISODE_PHASE_RECORDING,
     ArmState,
+    Episode,
     RoomStatus,
+    Seat,
     State,
     Waiting,
 )
@@ -21,6 +24,7 @@ from mart.protocol.tasks import MAX_ARMS
 from mart.teleop_gateway.input.driving import Driving, InputDevice
 from mart.teleop_gateway.input.frame_validator import FrameRejection
 from mart.teleop_gateway.input.retarget import Retarget
+from mart.teleop_gateway.input.tool_motion import ToolMotion
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 from mart.teleop_gateway.webrtc import status_channel
 from tests.teleop_gateway.input.strategies import phone_frame
@@ -34,7 +38,7 @@ LATENCY = LatencySummary(
 def driving() -> Driving:
     driving = Driving("arm0", 7, 100, Retarget(0.0))
     driving.connect(InputDevice.PHONE)
-    driving.receive(InputDevice.PHONE, phone_frame(41, gripper=0.25).encode(), HOME, 10.0, 0)
+    driving.receive(InputDevice.PHONE, phone_frame(41, gripper=0.25).encode(), ToolMotion(HOME), 10.0, 0)
     return driving
 
 
@@ -42,7 +46,12 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
     state = State(
         tick=182, real_time_factor=0.9987, arms=[ArmState(arm="arm1"), ArmState(arm="arm0", sequence=100)]
     )
-    room = RoomStatus(barrier=BARRIER_PHASE_STALLED, waiting_for=[Waiting(arm="arm1", since_s=0.801)])
+    room = RoomStatus(
+        barrier=BARRIER_PHASE_STALLED,
+        waiting_for=[Waiting(arm="arm1", since_s=0.801)],
+        seats=[Seat(arm="arm1"), Seat(arm="arm0", ready=True)],
+        episode=Episode(phase=EPISODE_PHASE_RECORDING),
+    )
     text = status_channel.tick(state, room, driving(), 10.016, frames_per_s=19.98, latency=LATENCY)
     assert json.loads(text) == {
         "type": "tick",
@@ -50,13 +59,19 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "sequence": 41,
         "rtf": 0.999,
         "engaged": False,
+        "let_go": "",
         "gripper": 0.25,
+        "gripper_set": 1,
         "holding": False,
+        "phase": "recording",
+        "ready": True,
         "barrier": "stalled",
+        "stopped_by": "",
         "waiting": [{"arm": "arm1", "since_s": 0.8}],
         "input": "phone",
-        "phone": {"age_ms": 16, "tracking": True},
+        "phone": {"age_ms": 16, "tracking": True, "started": True},
         "rejected": {},
+        "no_picture": "",
         "fps": 20.0,
         "latency": {
             "p50_ms": 45.0,
@@ -73,8 +88,11 @@ def test_the_longest_tick_message_fits_one_packet() -> None:
     state = State(tick=2**32, real_time_factor=0.999, arms=[ArmState(arm="arm0", sequence=100)])
     slow = LatencySummary(9999.94, 9999.94, 300, (1999.94,) * len(STAGES))
     room = RoomStatus(barrier=BARRIER_PHASE_STALLED, waiting_for=waiting)
-    text = status_channel.tick(state, room, hand, 1e4, frames_per_s=119.9, latency=slow)
-    assert len(text.encode()) <= status_channel.MAX_CHARACTERS
+    room.stop.name = "\N{SNOWMAN}" * 64
+    text = status_channel.tick(
+        state, room, hand, 1e4, frames_per_s=119.9, latency=slow, no_picture="x" * 1000
+    )
+    assert len(text.encode()) <= status_channel.MAX_CHARACTERS, len(text.encode())
 
 
 def test_nothing_is_made_up_before_there_is_anything() -> None:
@@ -120,6 +138,8 @@ def test_what_peers_say_is_understood(text: str, message: object) -> None:
         '{"type":"clock","offset_ns":1e999}',
         '{"type":"clock","offset_ns":1' + "0" * 400 + "}",
         '{"type":"seen","tick":1.5,"t_us":1}',
+        '{"type":"seen","tick":1,"t_us":1e306}',
+        '{"type":"seen","tick":1,"t_us":-1e306}',
         '{"type":"input","input":"mind"}',
         '{"type":"cue","cue":"hurry","t_us":1}',
         '{"type":"cue","cue":["go"],"t_us":1}',

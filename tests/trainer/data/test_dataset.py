@@ -179,6 +179,24 @@ def test_a_damaged_file_is_corrupt(episodes: Recorded, tmp_path: Path) -> None:
         load_dataset([tmp_path], Selection())
 
 
+def test_a_file_that_cannot_be_read_is_left_out_and_said(
+    episodes: Recorded, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    first = recorded.write(tmp_path, episodes.world, episodes.states[0])
+    second = recorded.write(tmp_path, episodes.world, episodes.states[1])
+    foreign = tmp_path / "real.mcap"
+    foreign.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
+    data = bytearray(second.read_bytes())
+    data[data.index(b"zstd") + 2000] ^= 1
+    second.write_bytes(data)
+    for paths in ([tmp_path], [first, second, foreign]):  # as a folder, and as a job names its files
+        assert [used.path for used in load_dataset(paths, Selection()).digest.episodes] == [str(first)]
+        assert f"Left out: {second} is damaged" in caplog.text
+        assert f"Left out: {foreign} is an HDF5 file" in caplog.text
+    with pytest.raises(Corrupt, match="an HDF5 file"):
+        load_dataset([foreign], Selection())
+
+
 def test_sources_are_by_tick(episodes: Recorded) -> None:
     def source(tick: int, arm: int) -> Operator:
         return OPERATOR_HUMAN if arm == 1 and tick > 20 else OPERATOR_SCRIPT

@@ -58,6 +58,7 @@ def test_why_an_attempt_ended_is_told_until_the_next_one(tmp_path: Path) -> None
     say_why(tmp_path, "The disk is full.")
     assert why_ended(tmp_path, 1) == "The disk is full."
     assert "SIGKILL" in why_ended(tmp_path, -9)
+    assert "signal 40" in why_ended(tmp_path, -40)
     save_spec(tmp_path, SPEC)
     assert "exit status 1" in why_ended(tmp_path, 1)
 

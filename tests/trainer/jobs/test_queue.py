@@ -54,7 +54,7 @@ def table(tmp_path: Path) -> Iterator[JobTable]:
 
 
 def test_jobs_come_back_as_they_were_put(table: JobTable, tmp_path: Path) -> None:
-    queue = JobQueue(table, {"local": Slots(1)}, tmp_path)
+    queue = JobQueue(table, {"local": Slots(1)}, tmp_path, now_ns=0)
     jobs = queue.submit([SPEC, SPEC], "local", now_ns=5)
     assert [job.id for job in jobs] == ["job-0001", "job-0002"]
     with contextlib.closing(JobTable(tmp_path / "jobs.sqlite")) as again:
@@ -66,7 +66,7 @@ def test_jobs_come_back_as_they_were_put(table: JobTable, tmp_path: Path) -> Non
 
 def test_the_oldest_run_first_and_no_more_than_there_is_room_for(table: JobTable, tmp_path: Path) -> None:
     slots = Slots(2)
-    queue = JobQueue(table, {"local": slots}, tmp_path)
+    queue = JobQueue(table, {"local": slots}, tmp_path, now_ns=0)
     queue.submit([SPEC] * 4, "local", now_ns=0)
     queue.advance(now_ns=1)
     assert slots.running == [1, 2]
@@ -78,7 +78,7 @@ def test_the_oldest_run_first_and_no_more_than_there_is_room_for(table: JobTable
 
 def test_a_crash_is_tried_again_three_times_and_a_refusal_never(table: JobTable, tmp_path: Path) -> None:
     slots = Slots(1)
-    queue = JobQueue(table, {"local": slots}, tmp_path)
+    queue = JobQueue(table, {"local": slots}, tmp_path, now_ns=0)
     queue.submit([SPEC, SPEC], "local", now_ns=0)
     for _ in range(MAX_ATTEMPTS):
         queue.advance(now_ns=1)
@@ -92,7 +92,7 @@ def test_a_crash_is_tried_again_three_times_and_a_refusal_never(table: JobTable,
 
 def test_a_job_that_is_still_stopping_waits_for_its_own_end(table: JobTable, tmp_path: Path) -> None:
     slots = Slots(1)
-    queue = JobQueue(table, {"local": slots}, tmp_path)
+    queue = JobQueue(table, {"local": slots}, tmp_path, now_ns=0)
     queue.submit([SPEC], "local", now_ns=0)
     queue.advance(now_ns=1)
     queue.retry(*queue.cancel([table.get(1)], now_ns=2))
@@ -106,33 +106,103 @@ def test_a_job_that_is_still_stopping_waits_for_its_own_end(table: JobTable, tmp
 
 def test_a_lost_cluster_costs_no_attempt(table: JobTable, tmp_path: Path) -> None:
     slots = Slots(1)
-    queue = JobQueue(table, {"ray": slots}, tmp_path)
+    queue = JobQueue(table, {"ray": slots}, tmp_path, now_ns=0)
     queue.submit([SPEC], "ray", now_ns=0)
+    now_ns = 0
     for _ in range(5 * MAX_ATTEMPTS):
-        queue.advance(now_ns=1)
-        queue.end(JobEnded(slots.running.pop(), ExitCode.LOST, "waits for the cluster"), now_ns=2)
+        now_ns = table.get(1).retry_ns
+        queue.advance(now_ns)
+        queue.end(JobEnded(slots.running.pop(), ExitCode.LOST, "waits for the cluster"), now_ns)
     assert (table.get(1).state, table.get(1).attempt) == (JobState.QUEUED, 0)
 
 
+def setbacks(queue: JobQueue, table: JobTable, slots: Slots, code: ExitCode, worked_s: int = 1) -> list[int]:
+    """Let job 1 meet one setback after the other, at once when it may; return the seconds that it waited each time."""
+    now_ns, waited = 0, list[int]()
+    while table.get(1).state is JobState.QUEUED and len(waited) < 50:
+        queue.advance(now_ns)
+        if not slots.running:  # not yet
+            assert table.get(1).retry_ns > now_ns
+            waited.append((table.get(1).retry_ns - now_ns) // 10**9)
+            now_ns = table.get(1).retry_ns
+            queue.advance(now_ns)
+        slots.running.clear()
+        now_ns += worked_s * 10**9
+        queue.end(JobEnded(1, code, "no replica is up"), now_ns)
+    return waited
+
+
+@pytest.mark.parametrize("code", [ExitCode.AWAY, ExitCode.LOST])
+def test_setbacks_are_waited_out_longer_each_time_and_end_somewhere(
+    table: JobTable, tmp_path: Path, code: ExitCode
+) -> None:
+    slots = Slots(1)
+    queue = JobQueue(table, {"local": slots}, tmp_path, now_ns=0)
+    queue.submit([SPEC], "local", now_ns=0)
+    waited = setbacks(queue, table, slots, code)
+    assert waited[:4] == [10, 20, 40, 80]
+    assert waited[-1] == 600
+    assert sum(waited) > 2 * 3600
+    assert (table.get(1).state, table.get(1).attempt) == (JobState.FAILED, 1)
+    assert "no replica is up" in table.get(1).detail
+    queue.retry(table.get(1))
+    queue.advance(now_ns=1)
+    assert slots.running == [1]
+
+
+def test_a_job_that_worked_in_between_may_be_interrupted_for_ever(table: JobTable, tmp_path: Path) -> None:
+    slots = Slots(1)
+    queue = JobQueue(table, {"local": slots}, tmp_path, now_ns=0)
+    queue.submit([SPEC], "local", now_ns=0)
+    setbacks(queue, table, slots, ExitCode.AWAY, worked_s=3600)
+    assert table.get(1).state is JobState.QUEUED
+
+
+def test_what_waits_is_looked_through_without_reading_what_it_trains_on(
+    table: JobTable, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    queue = JobQueue(table, {"local": Slots(0)}, tmp_path, now_ns=0)
+    queue.submit([SPEC] * 3, "local", now_ns=0)
+
+    def reading(*_: object, **__: object) -> TrainingSpec:
+        pytest.fail("A spec was read.")
+
+    monkeypatch.setattr(TrainingSpec, "model_validate_json", reading)
+    queue.advance(now_ns=1)
+    assert [job.detail for job in table.queued()] == ["nobody is there"] * 3
+
+
+def test_a_table_of_the_version_before_is_gone_on_with(tmp_path: Path) -> None:
+    path = tmp_path / "jobs.sqlite"
+    with contextlib.closing(JobTable(path)) as table:
+        jobs = JobQueue(table, {"local": Slots(1)}, tmp_path, now_ns=0).submit([SPEC], "local", now_ns=5)
+    with contextlib.closing(sqlite3.connect(path)) as older:
+        older.executescript(
+            "ALTER TABLE jobs DROP COLUMN setbacks; ALTER TABLE jobs DROP COLUMN retry_ns; PRAGMA user_version = 1;"
+        )
+    with contextlib.closing(JobTable(path)) as table:
+        assert table.newest(10) == jobs
+
+
 def test_a_job_that_waits_says_for_what(table: JobTable, tmp_path: Path) -> None:
-    queue = JobQueue(table, {"ray": Slots(0)}, tmp_path)
+    queue = JobQueue(table, {"ray": Slots(0)}, tmp_path, now_ns=0)
     queue.submit([SPEC], "ray", now_ns=0)
     queue.advance(now_ns=1)
     assert table.get(1).detail == "nobody is there"
 
 
 def test_what_ran_when_the_trainer_died_is_queued_again(table: JobTable, tmp_path: Path) -> None:
-    JobQueue(table, {"local": (first := Slots(1))}, tmp_path).submit([SPEC], "local", now_ns=0)
-    JobQueue(table, {"local": first}, tmp_path).advance(now_ns=1)
+    JobQueue(table, {"local": (first := Slots(1))}, tmp_path, now_ns=0).submit([SPEC], "local", now_ns=0)
+    JobQueue(table, {"local": first}, tmp_path, now_ns=0).advance(now_ns=1)
     assert table.get(1).state is JobState.RUNNING
     second = Slots(1)
-    JobQueue(table, {"local": second}, tmp_path).advance(now_ns=2)
+    JobQueue(table, {"local": second}, tmp_path, now_ns=0).advance(now_ns=2)
     assert second.running == [1]
     assert table.get(1).attempt == 1
 
 
 def test_what_cannot_be_is_said(table: JobTable, tmp_path: Path) -> None:
-    queue = JobQueue(table, {"local": Slots(0)}, tmp_path)
+    queue = JobQueue(table, {"local": Slots(0)}, tmp_path, now_ns=0)
     with pytest.raises(NotFound):
         queue.submit([SPEC], "locl", now_ns=0)
     with pytest.raises(NotFound):
@@ -169,7 +239,7 @@ class QueueMachine(RuleBasedStateMachine):
         super().__init__()
         self.table = JobTable(Path(":memory:"))
         self.slots = Slots(2)
-        self.queue = JobQueue(self.table, {"local": self.slots}, self.folder)
+        self.queue = JobQueue(self.table, {"local": self.slots}, self.folder, now_ns=0)
         self.submitted = 0
 
     def teardown(self) -> None:
@@ -208,7 +278,7 @@ class QueueMachine(RuleBasedStateMachine):
     @rule()
     def die(self) -> None:
         self.slots.close()
-        self.queue = JobQueue(self.table, {"local": self.slots}, self.folder)
+        self.queue = JobQueue(self.table, {"local": self.slots}, self.folder, now_ns=0)
 
     @invariant()
     def nothing_is_lost(self) -> None:

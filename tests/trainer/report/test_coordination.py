@@ -107,6 +107,15 @@ def test_files_tell_what_was_done_at_any_time(episodes: Path) -> None:
     assert [attempt.success for attempt in found.attempts] == [True, False, False]
 
 
+def test_a_file_that_is_not_ours_is_left_out_and_said(
+    episodes: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    (episodes / "talker.mcap").write_bytes(b"#ROSBAG V2.0\n")
+    (found,) = read_attempts(episodes)
+    assert len(found.attempts) == 3
+    assert "talker.mcap is a bag of ROS 1" in caplog.text
+
+
 def test_a_label_goes_before_the_recorded_outcome(episodes: Path) -> None:
     labels.say(sorted(episodes.glob("*.mcap"))[1], labels.LabelKind.OUTCOME, "discarded", 1)
     (found,) = read_attempts(episodes)

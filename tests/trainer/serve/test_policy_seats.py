@@ -253,3 +253,14 @@ def test_one_policys_failure_is_that_policys(stand: Stand, error: Exception) -> 
     assert stand.show() == [("arm1", 2)]
     assert stand.room.seats["arm0"].operator == OPERATOR_HOLD
     assert type(error).__name__ in stand.events.all()[-1].notice.text
+
+
+def test_a_room_whose_sim_is_gone_is_forgotten_sooner(stand: Stand, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mart.operators.driver.GONE_AFTER_S", 0.0)
+    stand.assign("arm1", "alone")
+    assert stand.show() == [("arm1", 2)]
+    stand.room.close()
+    for _ in range(3):
+        stand.driver.work()
+    stand.show()
+    assert stand.driver._driven == {}

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from mart.episodes import labels
 from mart.protocol import codec, keys
 from mart.protocol.messages import (
     BARRIER_PHASE_RUNNING,
@@ -113,6 +114,7 @@ async def test_a_data_set_is_put_together_and_every_act_is_undone(enter: Enter, 
     assert (listing["matching"], [one["name"] for one in listing["datasets"]]) == (1, ["good"])
     undone = await ana.post("/api/datasets/good/undo", json={"act_ns": curated["act_ns"]})
     assert undone.json()["curated"]["episodes"] == 1
+    assert {label.by for label in labels.read(root)} == {"Ana"}
 
 
 @pytest.mark.parametrize(

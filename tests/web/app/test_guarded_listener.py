@@ -7,11 +7,11 @@ import contextlib
 import errno
 import logging
 import socket
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 
 import pytest
 import uvicorn
-from starlette.types import Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 from mart.web.access import connection_table
 from mart.web.access.connection_table import ConnectionTable
@@ -30,11 +30,17 @@ async def greet(_scope: Scope, _receive: Receive, send: Send) -> None:
     await send({"type": "http.response.body", "body": b"hi"})
 
 
+async def pour(_scope: Scope, _receive: Receive, send: Send) -> None:
+    await send({"type": "http.response.start", "status": 200, "headers": []})
+    while True:
+        await send({"type": "http.response.body", "body": bytes(1_000_000), "more_body": True})
+
+
 @contextlib.asynccontextmanager
-async def served(table: ConnectionTable) -> AsyncIterator[int]:
+async def served(table: ConnectionTable, application: ASGIApp = greet) -> AsyncIterator[int]:
     listener = GuardedListener(listen("127.0.0.1", 0), table)
     port = listener.getsockname()[1]
-    app = ConnectionMiddleware(greet, table)
+    app = ConnectionMiddleware(application, table)
     server = uvicorn.Server(
         uvicorn.Config(app, lifespan="off", log_config=None, proxy_headers=False, timeout_graceful_shutdown=1)
     )
@@ -52,6 +58,15 @@ async def connect(port: int, exits: contextlib.AsyncExitStack) -> Stream:
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     exits.callback(writer.close)
     return reader, writer
+
+
+async def until(holds: Callable[[], bool]) -> None:
+    """The table is pure and tells nobody of a change, so it is looked at."""
+    for _ in range(1500):
+        if holds():
+            return
+        await asyncio.sleep(0.02)
+    raise AssertionError
 
 
 async def ask(stream: Stream) -> bytes:
@@ -80,6 +95,19 @@ async def test_one_that_never_asks_is_ended(monkeypatch: pytest.MonkeyPatch) -> 
         for reader, _writer in (silent, half):
             assert await asyncio.wait_for(reader.read(), 30) == b""
         assert len(table) == 0
+
+
+async def test_one_that_takes_nothing_of_its_answer_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(connection_table, "SILENT_S", 0.05)
+    monkeypatch.setattr(guarded_listener, "_LOOK_EVERY_S", 0.05)
+    monkeypatch.setattr(guarded_listener, "TAKEN_WITHIN_S", 0.2)
+    table = ConnectionTable(per_address=8, in_all=100)
+    async with served(table, pour) as port, contextlib.AsyncExitStack() as exits:
+        deaf = socket.create_connection(("127.0.0.1", port), 30)
+        exits.callback(deaf.close)
+        deaf.sendall(ASKED)
+        await until(lambda: bool(table.overdue(1e12)))  # it was seen to ask nothing any more
+        await until(lambda: not len(table))
 
 
 async def test_what_has_ended_counts_no_more() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from mart.protocol.messages import Event
 from mart.web.api.app_state import AppState
-from mart.web.lobby.health_findings import RelayCheck, delays, machine, relays, rooms, services
+from mart.web.lobby.health_findings import RelayCheck, delays, machine, pictures, relays, rooms, services
 from mart.web.lobby.room_json import Json
 from tests.web.conftest import Enter
 from tests.web.room import Room
@@ -18,7 +18,7 @@ EVERYTHING = ("sim", "gateway", "recorder", "replica", "experts", "catalogue", "
 
 def a_room(**changes: object) -> Json:
     told = {"room": "room-1", "title": "Lifting", "real_time_factor": 1.0, "stale": False, "tick": 99}
-    return {**told, "waiting_for": [], "barrier": "running", **changes}
+    return {**told, "waiting_for": [], "barrier": "running", "stop": None, **changes}
 
 
 def test_all_is_well_where_everything_runs() -> None:
@@ -54,13 +54,45 @@ def test_a_room_that_does_not_do_well(changes: Json, found: str) -> None:
     assert not resting.mend
 
 
+def slow(stage: str, p50_ms: float = 250.0) -> Event.Latency:
+    stages = [Event.Latency.Stage(name=stage, p50_ms=200), Event.Latency.Stage(name="physics", p50_ms=1)]
+    return Event.Latency(arm="arm0", p50_ms=p50_ms, p95_ms=413, stages=stages)
+
+
+@pytest.mark.parametrize(
+    ("latency", "load", "mend"),
+    [
+        (slow("send → displayed"), 0.5, "Use a cable"),
+        (slow("input → gateway"), 0.5, "Use a cable"),
+        (slow("send → displayed"), 3.0, "This machine is busy"),
+        (slow("render"), 0.5, "This machine is busy"),
+        (slow("send → displayed", p50_ms=60), 0.5, "Use a cable"),  # now and then it is late
+        (Event.Latency(arm="arm0", p50_ms=60, p95_ms=90), 9.0, ""),
+    ],
+)
+def test_the_advice_is_for_the_cause(latency: Event.Latency, load: float, mend: str) -> None:
+    (finding,) = delays([("room-1", latency)], load)
+    assert finding.mend.startswith(mend)
+    assert bool(finding.mend) == bool(mend)
+
+
+def test_a_seat_that_cannot_be_drawn_is_a_finding() -> None:
+    missing = Event.NoPicture(arm="arm0", reason="Nothing can be drawn on this machine.")
+    (finding,) = pictures([("room-1", missing)])
+    assert (finding.name, finding.found) == ("arm0 in room-1, picture", missing.reason)
+    assert "mart doctor" in finding.mend
+
+
+def test_a_stopped_room_says_who_stopped_it() -> None:
+    (finding,) = rooms([a_room(barrier="stopped", stop={"arm": "", "name": "Ben"})])
+    assert finding.found == "stopped by Ben"
+    assert "Go on" in finding.mend
+
+
 def test_long_delays_full_disks_and_old_certificates() -> None:
-    slow = Event.Latency(
-        arm="arm0", p50_ms=250, p95_ms=400, stages=[Event.Latency.Stage(name="to_photon", p50_ms=200)]
-    )
-    (late,) = delays([("room-1", slow)])
+    (late,) = delays([("room-1", slow("send → displayed"))])
     assert "250 ms" in late.found
-    assert "to photon" in late.mend
+    assert "send → displayed" in late.mend
     disk, certificate = machine(5_000_000, 3.0)
     assert disk.mend
     assert certificate.mend
@@ -71,11 +103,15 @@ def test_long_delays_full_disks_and_old_certificates() -> None:
 async def test_who_has_joined_sees_it(enter: Enter, room: Room, app_state: AppState) -> None:
     assert (await (await enter()).get("/api/health/findings")).status_code == 401
     room.tell(Event(latency=Event.Latency(arm="arm0", p50_ms=40, p95_ms=60)))
+    room.tell(Event(no_picture=Event.NoPicture(arm="arm1", reason="No EGL.")))
     await asyncio.sleep(0)
     told = (await (await enter("Ana")).get("/api/health/findings")).json()["findings"]
     areas = {finding["area"]: finding for finding in told}
+    assert [finding["found"] for finding in told if finding["name"] == "arm1 in room-1, picture"] == [
+        "No EGL."
+    ]
     assert areas["delays"]["found"] == "40 ms typical, 95 % under 60 ms"
-    assert areas["rooms"]["name"] == "room-1"
+    assert "room-1" in areas["rooms"]["name"]
     assert "good for 39" in areas["machine"]["found"]
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from mart.protocol import keys
 from mart.protocol.errors import InvalidInput, NotFound
+from mart.protocol.holders import holder_tag
 from mart.protocol.messages import (
     BARRIER_PHASE_STALLED,
     CUE_GO,
@@ -26,7 +27,8 @@ from mart.web.lobby.room_table import GONE_AFTER_S, STALE_AFTER_S
 def status(room: str = "room-1", task: str = "two_arm_multi_cube_lifting") -> RoomStatus:
     told = RoomStatus(room=room, task=task, control_hz=20.0, tick=7, real_time_factor=0.99)
     told.barrier = BARRIER_PHASE_STALLED
-    told.seats.append(Seat(arm="arm0", operator=OPERATOR_HUMAN, epoch=2, holder_id="secret", name="Ana"))
+    tag = holder_tag("1", "arm0", 2, "secret")
+    told.seats.append(Seat(arm="arm0", operator=OPERATOR_HUMAN, epoch=2, holder_tag=tag, name="Ana"))
     told.seats.append(Seat(arm="arm1", operator=OPERATOR_SCRIPT, epoch=3))
     told.waiting_for.add(arm="arm0", since_s=0.8)
     told.episode.phase = EPISODE_PHASE_RECORDING

@@ -4,6 +4,7 @@ import json
 from unittest import mock
 
 from mart.protocol import keys
+from mart.protocol.holders import holder_tag
 from mart.protocol.messages import OPERATOR_HUMAN, RoomStatus, Seat
 from mart.protocol.vocabulary import ServiceKind
 from mart.web.lobby.lobby import Lobby
@@ -18,7 +19,7 @@ def lobby() -> Lobby:
 
 
 def status(tick: int) -> RoomStatus:
-    seat = Seat(arm="arm0", operator=OPERATOR_HUMAN, holder_id="ana", name="Ana")
+    seat = Seat(arm="arm0", operator=OPERATOR_HUMAN, holder_tag=holder_tag("1", "arm0", 0, "ana"), name="Ana")
     return RoomStatus(room="room-1", task="two_arm_multi_cube_lifting", seats=[seat], tick=tick, wall_ns=tick)
 
 

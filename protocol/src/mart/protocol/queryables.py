@@ -1,30 +1,36 @@
-"""Name every question that a service answers on the bus: what is asked, what is answered, how long a question may be.
+"""Name everything that travels on the bus: what is said on which key, and what is asked and answered.
 
-`mart.protocol.keys` has their keys. The compiled model of a room is asked for by a word, not by a message, so it is
-not among them.
+The compiled model of a room is asked for by a word, not by a message; it is a question all the same.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from google.protobuf.message import Message
 
-from mart.protocol import codec
+from mart.protocol import codec, keys
+from mart.protocol.keys import Topic
 from mart.protocol.messages import (
     Answer,
     CatalogueReply,
     CatalogueRequest,
+    Command,
     EpisodeRequest,
+    Event,
     Offer,
     OpenSeat,
     OpenSeatReply,
+    RecordingReport,
     RolloutReply,
     RolloutRequest,
     RoomReply,
     RoomsRequest,
+    RoomStatus,
     SeatRequest,
+    State,
     TrainerReply,
     TrainerRequest,
 )
@@ -36,23 +42,43 @@ MAX_SDP_CHARACTERS = 65536
 
 
 @dataclass(frozen=True)
+class Broadcast:
+    """Describe what is said to whoever listens; `message_type` is None for what other projects define."""
+
+    topic: Callable[..., Topic]
+    message_type: type[Message] | None
+
+
+@dataclass(frozen=True)
 class Queryable(Generic[Q, R]):
     """Describe one kind of question. Every reply has a field `error`."""
 
     name: str
+    topic: Callable[..., Topic]
     request_type: type[Q]
     reply_type: type[R]
     limit_bytes: int  # of a request
 
 
-SEAT = Queryable("seat", SeatRequest, RoomReply, 4096)
-EPISODE = Queryable("episode", EpisodeRequest, RoomReply, 4096)
-ROOMS = Queryable("rooms", RoomsRequest, RoomReply, 1024)
-OPEN_SEAT = Queryable("open", OpenSeat, OpenSeatReply, 1024)
-SIGNAL = Queryable("signal", Offer, Answer, MAX_SDP_CHARACTERS + 4096)
-ROLLOUT = Queryable("rollout", RolloutRequest, RolloutReply, codec.MAX_MESSAGE_BYTES)
-CATALOGUE = Queryable("catalogue", CatalogueRequest, CatalogueReply, 64 * 1024)
-TRAINING = Queryable("jobs", TrainerRequest, TrainerReply, 64 * 1024)
+SEAT = Queryable("seat", keys.seat, SeatRequest, RoomReply, 4096)
+EPISODE = Queryable("episode", keys.episode, EpisodeRequest, RoomReply, 4096)
+ROOMS = Queryable("rooms", keys.rooms, RoomsRequest, RoomReply, 1024)
+OPEN_SEAT = Queryable("open", keys.open_seat, OpenSeat, OpenSeatReply, 1024)
+SIGNAL = Queryable("signal", keys.signal, Offer, Answer, MAX_SDP_CHARACTERS + 4096)
+ROLLOUT = Queryable("rollout", keys.rollout, RolloutRequest, RolloutReply, codec.MAX_MESSAGE_BYTES)
+CATALOGUE = Queryable("catalogue", keys.catalogue, CatalogueRequest, CatalogueReply, 64 * 1024)
+TRAINING = Queryable("jobs", keys.training, TrainerRequest, TrainerReply, 64 * 1024)
+
+BROADCASTS = (
+    Broadcast(keys.command, Command),
+    Broadcast(keys.intent, Command),
+    Broadcast(keys.state, State),
+    Broadcast(keys.status, RoomStatus),
+    Broadcast(keys.event, Event),
+    Broadcast(keys.recording, RecordingReport),
+    Broadcast(keys.video, None),
+    Broadcast(keys.still, None),
+)
 
 QUERYABLES: tuple[Queryable[Message, Message], ...] = (
     SEAT, EPISODE, ROOMS, OPEN_SEAT, SIGNAL, ROLLOUT, CATALOGUE, TRAINING,

@@ -29,7 +29,16 @@ MAX_CONTROL_HZ = 1000.0
 
 # What is said again and again, to everybody. Questions and answers have bounds where they are handled.
 _SPOKEN = frozenset(
-    {"Command", "State", "RoomStatus", "Event", "SeatRequest", "EpisodeRequest", "RoomsRequest"}
+    {
+        "Command",
+        "State",
+        "RoomStatus",
+        "Event",
+        "RecordingReport",
+        "SeatRequest",
+        "EpisodeRequest",
+        "RoomsRequest",
+    }
 )
 # Said at every tick: looking at each name would take half of what looking at the numbers takes.
 _BOUNDED_BY_SIZE = frozenset({"mart/v1/state.proto", "mart/v1/command.proto"})

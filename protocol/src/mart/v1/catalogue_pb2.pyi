@@ -201,23 +201,27 @@ class CatalogueRequest(_message.Message):
         path: str
         def __init__(self, path: _Optional[str] = ...) -> None: ...
     class Curate(_message.Message):
-        __slots__ = ("dataset", "take_out", "paths", "all")
+        __slots__ = ("dataset", "take_out", "paths", "all", "by")
         DATASET_FIELD_NUMBER: _ClassVar[int]
         TAKE_OUT_FIELD_NUMBER: _ClassVar[int]
         PATHS_FIELD_NUMBER: _ClassVar[int]
         ALL_FIELD_NUMBER: _ClassVar[int]
+        BY_FIELD_NUMBER: _ClassVar[int]
         dataset: str
         take_out: bool
         paths: _containers.RepeatedScalarFieldContainer[str]
         all: CatalogueRequest.List
-        def __init__(self, dataset: _Optional[str] = ..., take_out: _Optional[bool] = ..., paths: _Optional[_Iterable[str]] = ..., all: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ...) -> None: ...
+        by: str
+        def __init__(self, dataset: _Optional[str] = ..., take_out: _Optional[bool] = ..., paths: _Optional[_Iterable[str]] = ..., all: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ..., by: _Optional[str] = ...) -> None: ...
     class Undo(_message.Message):
-        __slots__ = ("dataset", "act_ns")
+        __slots__ = ("dataset", "act_ns", "by")
         DATASET_FIELD_NUMBER: _ClassVar[int]
         ACT_NS_FIELD_NUMBER: _ClassVar[int]
+        BY_FIELD_NUMBER: _ClassVar[int]
         dataset: str
         act_ns: int
-        def __init__(self, dataset: _Optional[str] = ..., act_ns: _Optional[int] = ...) -> None: ...
+        by: str
+        def __init__(self, dataset: _Optional[str] = ..., act_ns: _Optional[int] = ..., by: _Optional[str] = ...) -> None: ...
     LIST_FIELD_NUMBER: _ClassVar[int]
     SHOW_FIELD_NUMBER: _ClassVar[int]
     LABEL_FIELD_NUMBER: _ClassVar[int]

@@ -31,7 +31,7 @@ class CommandStamps(_message.Message):
     def __init__(self, input_sent_ns: _Optional[int] = ..., gateway_received_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ...) -> None: ...
 
 class Command(_message.Message):
-    __slots__ = ("arm", "seat_epoch", "sequence", "target_tool_in_base", "gripper", "engaged", "source", "stamps", "seen_tick", "emergency_stop")
+    __slots__ = ("arm", "seat_epoch", "sequence", "target_tool_in_base", "gripper", "engaged", "source", "stamps", "seen_tick", "emergency_stop", "state_tick")
     ARM_FIELD_NUMBER: _ClassVar[int]
     SEAT_EPOCH_FIELD_NUMBER: _ClassVar[int]
     SEQUENCE_FIELD_NUMBER: _ClassVar[int]
@@ -42,6 +42,7 @@ class Command(_message.Message):
     STAMPS_FIELD_NUMBER: _ClassVar[int]
     SEEN_TICK_FIELD_NUMBER: _ClassVar[int]
     EMERGENCY_STOP_FIELD_NUMBER: _ClassVar[int]
+    STATE_TICK_FIELD_NUMBER: _ClassVar[int]
     arm: str
     seat_epoch: int
     sequence: int
@@ -52,4 +53,5 @@ class Command(_message.Message):
     stamps: CommandStamps
     seen_tick: int
     emergency_stop: bool
-    def __init__(self, arm: _Optional[str] = ..., seat_epoch: _Optional[int] = ..., sequence: _Optional[int] = ..., target_tool_in_base: _Optional[_Union[_pose_pb2.Pose, _Mapping]] = ..., gripper: _Optional[float] = ..., engaged: _Optional[bool] = ..., source: _Optional[_Union[Operator, str]] = ..., stamps: _Optional[_Union[CommandStamps, _Mapping]] = ..., seen_tick: _Optional[int] = ..., emergency_stop: _Optional[bool] = ...) -> None: ...
+    state_tick: int
+    def __init__(self, arm: _Optional[str] = ..., seat_epoch: _Optional[int] = ..., sequence: _Optional[int] = ..., target_tool_in_base: _Optional[_Union[_pose_pb2.Pose, _Mapping]] = ..., gripper: _Optional[float] = ..., engaged: _Optional[bool] = ..., source: _Optional[_Union[Operator, str]] = ..., stamps: _Optional[_Union[CommandStamps, _Mapping]] = ..., seen_tick: _Optional[int] = ..., emergency_stop: _Optional[bool] = ..., state_tick: _Optional[int] = ...) -> None: ...

@@ -77,7 +77,7 @@ CUE_SLOWER: Cue
 CUE_THANKS: Cue
 
 class Seat(_message.Message):
-    __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged", "policy", "relieved")
+    __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged", "policy", "relieved", "holder_tag")
     ARM_FIELD_NUMBER: _ClassVar[int]
     OPERATOR_FIELD_NUMBER: _ClassVar[int]
     EPOCH_FIELD_NUMBER: _ClassVar[int]
@@ -87,6 +87,7 @@ class Seat(_message.Message):
     ENGAGED_FIELD_NUMBER: _ClassVar[int]
     POLICY_FIELD_NUMBER: _ClassVar[int]
     RELIEVED_FIELD_NUMBER: _ClassVar[int]
+    HOLDER_TAG_FIELD_NUMBER: _ClassVar[int]
     arm: str
     operator: _command_pb2.Operator
     epoch: int
@@ -96,7 +97,8 @@ class Seat(_message.Message):
     engaged: bool
     policy: str
     relieved: str
-    def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., epoch: _Optional[int] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., ready: _Optional[bool] = ..., engaged: _Optional[bool] = ..., policy: _Optional[str] = ..., relieved: _Optional[str] = ...) -> None: ...
+    holder_tag: str
+    def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., epoch: _Optional[int] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., ready: _Optional[bool] = ..., engaged: _Optional[bool] = ..., policy: _Optional[str] = ..., relieved: _Optional[str] = ..., holder_tag: _Optional[str] = ...) -> None: ...
 
 class Waiting(_message.Message):
     __slots__ = ("arm", "since_s")
@@ -142,8 +144,18 @@ class Plan(_message.Message):
     good: int
     def __init__(self, episodes: _Optional[int] = ..., good: _Optional[int] = ...) -> None: ...
 
+class EmergencyStop(_message.Message):
+    __slots__ = ("arm", "name", "wall_ns")
+    ARM_FIELD_NUMBER: _ClassVar[int]
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    WALL_NS_FIELD_NUMBER: _ClassVar[int]
+    arm: str
+    name: str
+    wall_ns: int
+    def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ...) -> None: ...
+
 class RoomStatus(_message.Message):
-    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "last_ended", "unrecorded")
+    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded")
     ROOM_FIELD_NUMBER: _ClassVar[int]
     TASK_FIELD_NUMBER: _ClassVar[int]
     CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -160,6 +172,7 @@ class RoomStatus(_message.Message):
     BOOT_FIELD_NUMBER: _ClassVar[int]
     REJECTED_COMMANDS_FIELD_NUMBER: _ClassVar[int]
     PLAN_FIELD_NUMBER: _ClassVar[int]
+    STOP_FIELD_NUMBER: _ClassVar[int]
     LAST_ENDED_FIELD_NUMBER: _ClassVar[int]
     UNRECORDED_FIELD_NUMBER: _ClassVar[int]
     room: str
@@ -178,9 +191,10 @@ class RoomStatus(_message.Message):
     boot: int
     rejected_commands: int
     plan: Plan
+    stop: EmergencyStop
     last_ended: Event.EpisodeEnded
     unrecorded: str
-    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ...) -> None: ...
+    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ...) -> None: ...
 
 class SeatRequest(_message.Message):
     __slots__ = ("claim", "release", "assign", "hand_back")
@@ -229,7 +243,7 @@ class SeatRequest(_message.Message):
     def __init__(self, claim: _Optional[_Union[SeatRequest.Claim, _Mapping]] = ..., release: _Optional[_Union[SeatRequest.Release, _Mapping]] = ..., assign: _Optional[_Union[SeatRequest.Assign, _Mapping]] = ..., hand_back: _Optional[_Union[SeatRequest.HandBack, _Mapping]] = ...) -> None: ...
 
 class EpisodeRequest(_message.Message):
-    __slots__ = ("ready", "finish", "reset")
+    __slots__ = ("ready", "finish", "reset", "stop", "go_on")
     class Ready(_message.Message):
         __slots__ = ("arm", "holder_id", "ready", "number")
         ARM_FIELD_NUMBER: _ClassVar[int]
@@ -253,13 +267,29 @@ class EpisodeRequest(_message.Message):
         HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
         holder_id: str
         def __init__(self, holder_id: _Optional[str] = ...) -> None: ...
+    class Stop(_message.Message):
+        __slots__ = ("holder_id", "name")
+        HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
+        NAME_FIELD_NUMBER: _ClassVar[int]
+        holder_id: str
+        name: str
+        def __init__(self, holder_id: _Optional[str] = ..., name: _Optional[str] = ...) -> None: ...
+    class GoOn(_message.Message):
+        __slots__ = ("name",)
+        NAME_FIELD_NUMBER: _ClassVar[int]
+        name: str
+        def __init__(self, name: _Optional[str] = ...) -> None: ...
     READY_FIELD_NUMBER: _ClassVar[int]
     FINISH_FIELD_NUMBER: _ClassVar[int]
     RESET_FIELD_NUMBER: _ClassVar[int]
+    STOP_FIELD_NUMBER: _ClassVar[int]
+    GO_ON_FIELD_NUMBER: _ClassVar[int]
     ready: EpisodeRequest.Ready
     finish: EpisodeRequest.Finish
     reset: EpisodeRequest.Reset
-    def __init__(self, ready: _Optional[_Union[EpisodeRequest.Ready, _Mapping]] = ..., finish: _Optional[_Union[EpisodeRequest.Finish, _Mapping]] = ..., reset: _Optional[_Union[EpisodeRequest.Reset, _Mapping]] = ...) -> None: ...
+    stop: EpisodeRequest.Stop
+    go_on: EpisodeRequest.GoOn
+    def __init__(self, ready: _Optional[_Union[EpisodeRequest.Ready, _Mapping]] = ..., finish: _Optional[_Union[EpisodeRequest.Finish, _Mapping]] = ..., reset: _Optional[_Union[EpisodeRequest.Reset, _Mapping]] = ..., stop: _Optional[_Union[EpisodeRequest.Stop, _Mapping]] = ..., go_on: _Optional[_Union[EpisodeRequest.GoOn, _Mapping]] = ...) -> None: ...
 
 class RoomsRequest(_message.Message):
     __slots__ = ("open", "close")
@@ -306,7 +336,7 @@ class RoomReply(_message.Message):
     def __init__(self, error: _Optional[_Union[Error, _Mapping]] = ..., status: _Optional[_Union[RoomStatus, _Mapping]] = ..., seat: _Optional[_Union[Seat, _Mapping]] = ...) -> None: ...
 
 class Event(_message.Message):
-    __slots__ = ("wall_ns", "room", "tick", "barrier_changed", "seat_changed", "episode_started", "episode_ended", "episode_saved", "world_reset", "notice", "latency", "cue_given")
+    __slots__ = ("wall_ns", "room", "tick", "barrier_changed", "seat_changed", "episode_started", "episode_ended", "episode_saved", "world_reset", "notice", "latency", "cue_given", "no_picture")
     class BarrierChanged(_message.Message):
         __slots__ = ("phase", "waiting_for")
         PHASE_FIELD_NUMBER: _ClassVar[int]
@@ -417,6 +447,13 @@ class Event(_message.Message):
         arm: str
         cue: Cue
         def __init__(self, arm: _Optional[str] = ..., cue: _Optional[_Union[Cue, str]] = ...) -> None: ...
+    class NoPicture(_message.Message):
+        __slots__ = ("arm", "reason")
+        ARM_FIELD_NUMBER: _ClassVar[int]
+        REASON_FIELD_NUMBER: _ClassVar[int]
+        arm: str
+        reason: str
+        def __init__(self, arm: _Optional[str] = ..., reason: _Optional[str] = ...) -> None: ...
     WALL_NS_FIELD_NUMBER: _ClassVar[int]
     ROOM_FIELD_NUMBER: _ClassVar[int]
     TICK_FIELD_NUMBER: _ClassVar[int]
@@ -429,6 +466,7 @@ class Event(_message.Message):
     NOTICE_FIELD_NUMBER: _ClassVar[int]
     LATENCY_FIELD_NUMBER: _ClassVar[int]
     CUE_GIVEN_FIELD_NUMBER: _ClassVar[int]
+    NO_PICTURE_FIELD_NUMBER: _ClassVar[int]
     wall_ns: int
     room: str
     tick: int
@@ -441,7 +479,8 @@ class Event(_message.Message):
     notice: Event.Notice
     latency: Event.Latency
     cue_given: Event.CueGiven
-    def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ..., latency: _Optional[_Union[Event.Latency, _Mapping]] = ..., cue_given: _Optional[_Union[Event.CueGiven, _Mapping]] = ...) -> None: ...
+    no_picture: Event.NoPicture
+    def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ..., latency: _Optional[_Union[Event.Latency, _Mapping]] = ..., cue_given: _Optional[_Union[Event.CueGiven, _Mapping]] = ..., no_picture: _Optional[_Union[Event.NoPicture, _Mapping]] = ...) -> None: ...
 
 class RecordingReport(_message.Message):
     __slots__ = ("recorder", "boot", "episode", "last_tick")

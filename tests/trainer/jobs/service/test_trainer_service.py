@@ -231,7 +231,7 @@ def test_a_job_whose_data_is_damaged_fails_with_a_sentence(client: Client, data_
     details = client.wait_until_over(job.id)
     assert details.job.state == JOB_STATE_FAILED
     assert details.job.attempt == 1
-    assert "is damaged" in details.job.detail
+    assert "is no MCAP file" in details.job.detail
     assert "Traceback" not in client.log(job.id)
 
 

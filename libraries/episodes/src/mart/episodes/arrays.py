@@ -25,6 +25,7 @@ class EpisodeData:
     observations: by name, each float64[T + 1, *shape]; quaternions are wxyz.
     actions: float64[T, arms, 7], as applied, in [-1, 1]: a step of the tool (6 numbers), then the gripper.
     sources: int8[T, arms], who drove the arm in that tick (mart.v1.Operator).
+    engaged: bool[T, arms], whether the arm's operator had the clutch held in that tick.
     subtasks: by name, each bool[T + 1], whether it was done.
     success: bool[T + 1], whether the task was done.
     sim_time_s: float64[T + 1], simulated seconds, as the world counted them.
@@ -36,6 +37,7 @@ class EpisodeData:
     observations: Mapping[str, NDArray[np.float64]]
     actions: NDArray[np.float64]
     sources: NDArray[np.int8]
+    engaged: NDArray[np.bool_]
     subtasks: Mapping[str, NDArray[np.bool_]]
     success: NDArray[np.bool_]
     sim_time_s: NDArray[np.float64]
@@ -74,6 +76,7 @@ def arrays_from_states(
         observations=_observations(states, wanted),
         actions=_actions(moved),
         sources=np.array([[arm.source for arm in row] for row in moved], dtype=np.int8),
+        engaged=np.array([[arm.engaged for arm in row] for row in moved], dtype=np.bool_),
         subtasks=_subtasks(states),
         success=np.array([state.progress.success for state in states]),
         sim_time_s=np.array([state.sim_time_s for state in states]),

@@ -44,12 +44,13 @@ def read_messages(file: BoundedFile, finished: bool) -> Iterator[tuple[Channel, 
 
 
 def read_metadata(file: BoundedFile, finished: bool) -> Mapping[str, Mapping[str, str]]:
-    """Return the metadata records by name; the last one where another tool has written several of a name.
+    """Return the metadata records by name; the last one where several of a name are written.
 
     Records above `MAX_METADATA_BYTES`, which are none of ours, are left out. Raises one of `SYMPTOMS`, also where two
-    of our own records of a name differ, or one does not have its checksum.
+    of our own records of a name contradict each other (a later one may know more), or one does not have its checksum.
     """
     found: dict[str, Mapping[str, str]] = {}
+    checksums: dict[str, str] = {}
     left_bytes = _MAX_METADATA_RECORDS * MAX_METADATA_BYTES
     for place in _metadata_places(file, finished):
         if place.size_bytes > MAX_METADATA_BYTES:
@@ -61,10 +62,13 @@ def read_metadata(file: BoundedFile, finished: bool) -> Mapping[str, Mapping[str
             )
         record = parse(file, place)
         assert isinstance(record, Metadata)
-        if record.name.startswith(_OURS) and found.get(record.name, record.metadata) != record.metadata:
+        if record.name == CHECKSUMS:  # those of what is known when a file begins, and all when it ends
+            checksums |= record.metadata
+            continue
+        before = found.get(record.name, {})
+        if record.name.startswith(_OURS) and not before.items() <= record.metadata.items():
             raise ValueError(f"it holds two records {record.name} that differ, as if of two episodes")
         found[record.name] = record.metadata
-    checksums = found.pop(CHECKSUMS, {})
     for name, checksum in checksums.items():
         if name not in found or metadata_checksum(found[name]) != checksum:
             raise ValueError(f"its record {name[:64]} is not what was written")

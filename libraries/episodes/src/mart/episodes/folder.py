@@ -6,6 +6,7 @@ Nothing is kept between two calls, so what is listed is what is there. The recor
 from __future__ import annotations
 
 import glob
+import logging
 import os
 from collections.abc import Iterable
 from pathlib import Path
@@ -13,8 +14,10 @@ from pathlib import Path
 from mart.episodes import labels
 from mart.episodes.filter import EpisodeFilter
 from mart.episodes.labelled_episode import LabelledEpisode, describe
-from mart.protocol.errors import NotFound
+from mart.protocol.errors import Corrupt, NotFound
 from mart.protocol.recording import SUFFIX
+
+_log = logging.getLogger(__name__)
 
 PathLike = str | os.PathLike[str]
 
@@ -64,6 +67,24 @@ def described(files: Iterable[Path]) -> list[LabelledEpisode]:
         except FileNotFoundError:  # moved or deleted since it was listed
             continue
     return found
+
+
+def readable(found: Iterable[LabelledEpisode], given: Iterable[PathLike]) -> list[LabelledEpisode]:
+    """Return those that can be read, of what was found in the paths that were given.
+
+    A file that cannot be read is in nobody's way: one of a folder is left out, and the log says so in a sentence,
+    unless people have dropped it. Raises Corrupt, with the reason, for one that was named itself.
+    """
+    named = {labels.resolved(path) for path in map(Path, given) if not path.is_dir()}
+    left: list[LabelledEpisode] = []
+    for episode in found:
+        if episode.error is None:
+            left.append(episode)
+        elif labels.resolved(episode.file_path) in named:
+            raise Corrupt(episode.error)
+        elif not episode.dropped:
+            _log.warning("Left out: %s", episode.error)
+    return left
 
 
 def episode_files(paths: Iterable[Path]) -> list[Path]:

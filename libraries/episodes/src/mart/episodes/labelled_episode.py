@@ -10,7 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from mart.episodes.labels import EpisodeLabels
 from mart.episodes.reader import EpisodeFile
-from mart.protocol.errors import Corrupt, MartError
+from mart.episodes.scan import ForeignFile
+from mart.protocol.errors import Corrupt, MartError, NotFound
 from mart.protocol.recording import OperatorsRecord, Shift, VerificationRecord
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 
@@ -26,7 +27,8 @@ class LabelledEpisode(BaseModel):
     verification_pending: it is unverified because nobody could step it again yet; the recorder tries until it can.
     ended_by: task, time, operator, absence or room; None where nobody wrote it down. subtasks_done: in the last state.
     missing_commands: how many commands the states name and the file lacks; None where nobody counted.
-    error: why the file cannot be used; what else it says is not known then. dropped: nobody shall learn from it.
+    error: why the file cannot be used; what else it says is not known then. foreign: because it is none of MART's.
+    dropped: nobody shall learn from it.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -64,6 +66,7 @@ class LabelledEpisode(BaseModel):
     interrupted: bool = False
     operators: dict[str, str] = {}
     error: str | None = None
+    foreign: bool = False
     outcome_by: str | None = None
     note: str | None = None
     dropped: bool = False
@@ -111,11 +114,12 @@ def describe(file_path: Path, path: str) -> LabelledEpisode:
     try:
         return found.model_copy(update=_facts(EpisodeFile.open(file_path)))
     except MartError as error:
-        why = str(error)
+        why, foreign = str(error), isinstance(error, ForeignFile | NotFound)
     except Exception as error:  # noqa: BLE001 - logged whole; one file never keeps a folder from being listed
         _log.exception("%s could not be described", as_utf8(str(file_path)))
+        foreign = False
         why = f"{file_path} cannot be read: {error}. That it is not told better is a fault of MART's."
-    return found.model_copy(update={"error": as_utf8(why)})
+    return found.model_copy(update={"error": as_utf8(why), "foreign": foreign})
 
 
 def _facts(file: EpisodeFile) -> dict[str, object]:
@@ -151,10 +155,3 @@ def _size_of(path: Path) -> int:
 def as_utf8(text: str) -> str:
     """Return text that can be written; bytes of a file's name that are no UTF-8 become a sign for it."""
     return text.encode(errors="surrogateescape").decode(errors="replace")
-
-
-def require_readable(episodes: list[LabelledEpisode]) -> None:
-    """Raise Corrupt, with the first one's reason, where an episode cannot be read."""
-    for episode in episodes:
-        if episode.error is not None:
-            raise Corrupt(episode.error)

@@ -14,7 +14,7 @@ from typing import TypeVar
 from mart.episodes.arrays import EpisodeData, arrays_for_task, arrays_from_states
 from mart.episodes.contents import read_attachments, read_messages, read_metadata, require_intact_data
 from mart.episodes.foreign import foreign_kind
-from mart.episodes.scan import BoundedFile, corruption
+from mart.episodes.scan import BoundedFile, ForeignFile, corruption
 from mart.episodes.summary import read_summary
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
@@ -81,7 +81,7 @@ class EpisodeFile:
         with BoundedFile(path) as file, corruption(path):
             foreign = foreign_kind(file)
             if foreign:
-                raise Corrupt(f"{path} {foreign}.")
+                raise ForeignFile(f"{path} {foreign}.")
             return cls(path, read_metadata(file, is_finished(path)))
 
     @property

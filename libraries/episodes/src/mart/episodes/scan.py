@@ -63,6 +63,10 @@ _PARSED: Mapping[int, Callable[[ReadDataStream], McapRecord]] = {
 }
 
 
+class ForeignFile(Corrupt):
+    """What was named is no episode file of MART's, and not a damaged one either."""
+
+
 class FoundRecord(NamedTuple):
     """Tell where a record is. at: of its opcode. size_bytes: of its content, as its head says and the file holds."""
 
@@ -85,7 +89,7 @@ class BoundedFile(io.FileIO):
     def __init__(self, path: Path) -> None:
         try:
             if not stat.S_ISREG(path.stat().st_mode):
-                raise Corrupt(f"{path} is no file but a folder or a device; move it out of the way.")
+                raise ForeignFile(f"{path} is no file but a folder or a device; move it out of the way.")
             super().__init__(path, "rb")
             self.size = os.fstat(self.fileno()).st_size
         except FileNotFoundError as error:

@@ -33,7 +33,7 @@ class EpisodeWriter:
         path.parent.mkdir(parents=True, exist_ok=True)
         self.path = path
         self.messages = 0
-        self.description: RoomRecord | None = None
+        self._description: Mapping[str, str] = {}
         self.has_model = False
         opening = path.with_name(f".{path.name}.opening")  # a repair must not find it before it is locked
         self._file = opening.open("wb")
@@ -57,10 +57,16 @@ class EpisodeWriter:
         self.messages += 1
 
     def describe(self, record: RoomRecord) -> None:
-        """Say of what room this file is, once that is known, and again once more is known: the last word holds."""
-        if record != self.description:
-            self.description = record
-            self.add_record(record.NAME, record.to_strings())
+        """Say of what room this file is, once that is known, and again when more is known: the last word holds.
+
+        A record that knows no more than the one before says nothing. The checksum of one that stands follows at once,
+        since the file may be cut short.
+        """
+        strings = record.to_strings()
+        if not self._description or not strings.items() <= self._description.items():
+            self._description = strings
+            self.add_record(record.NAME, strings)
+            self._mcap.add_metadata(CHECKSUMS, self._checksums)
 
     def attach_model(self, model: Model, now_ns: int) -> None:
         """Attach the compiled MuJoCo model. now_ns: Unix time."""

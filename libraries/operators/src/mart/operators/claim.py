@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from mart.operators.room_client import RoomClient
 from mart.protocol.errors import MartError, Unavailable
+from mart.protocol.holders import is_held_by
 from mart.protocol.messages import OPERATOR_POLICY, Operator, RoomStatus, Seat
 
 
@@ -49,7 +50,7 @@ class ClaimedSeats:
             claimed = self._claimed.get(seat.arm)
             if claimed is None:
                 continue
-            if seat.holder_id == self._holder_id:
+            if is_held_by(seat, self._holder_id):
                 epochs[seat.arm] = seat.epoch
             elif seat.epoch > claimed.epoch and seat.relieved != claimed.name:
                 del self._claimed[seat.arm]

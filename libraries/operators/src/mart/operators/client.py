@@ -58,11 +58,12 @@ def drive_seats(
     >>> drive_seats(Riser(), arms=["arm1"], episodes=1)  # doctest: +SKIP
     [<EpisodeOutcome.SUCCESS: 'success'>]
     """
-    holder_id = f"operate-{secrets.token_hex(8)}"
+    holder_id = secrets.token_hex(16)
+    called = f"operate-{secrets.token_hex(8)}"  # everybody sees it: another one
     with contextlib.ExitStack() as stack:
         stop = stop or stack.enter_context(stop_requested())
         bus = stack.enter_context(ZenohBus.connect(router or Settings().router))
-        stack.enter_context(announced(Service(ServiceKind.OPERATE, holder_id, bus, stop)))
+        stack.enter_context(announced(Service(ServiceKind.OPERATE, called, bus, stop)))
         client = RoomClient(bus, room)
         source = _source(kind)
         seats = stack.enter_context(claimed_seats(client, arms, holder_id, name, source))

@@ -116,6 +116,7 @@ class SeatCommander:
             source=self._source,
             stamps=CommandStamps(sent_ns=wall_ns),
             seen_tick=self._newest[1],
+            state_tick=self._newest[1],
         )
 
 

@@ -23,7 +23,8 @@ from mart.runtime.throttled_log import ThrottledLog
 
 REPEAT_S = 0.1  # while no new state comes: the barrier hears that the operator is still there
 LEAVE_AGAIN_S = 5.0
-FORGOTTEN_AFTER_S = 60.0  # a room that says nothing: nobody tells that one was closed
+FORGOTTEN_AFTER_S = 60.0  # a room that says nothing
+GONE_AFTER_S = 10.0  # one whose sim has no token any more: a sim that is started anew has one within seconds
 _FROZEN_S = 5.0  # between two looks: rooms spoke meanwhile, and this process stood still
 
 _log = logging.getLogger(__name__)
@@ -127,13 +128,17 @@ class SeatDriver(Generic[K]):
         self._heard_s.update(dict.fromkeys((*self._heard_s, *rooms) if frozen else rooms, now_s))
 
     def _forget_silent(self, now_s: float) -> None:
-        silent = {room for room, heard_s in self._heard_s.items() if now_s - heard_s > FORGOTTEN_AFTER_S}
+        silent = {room for room, heard_s in self._heard_s.items() if now_s - heard_s > self._patience_s(room)}
         for place in [place for place in self._driven if place[0] in silent]:
             self._driven.pop(place).close()
         for place in [place for place in self._failed if place[0] in silent]:
             del self._failed[place]
         for room in silent:
             del self._heard_s[room]
+            self._watch.forget(room)
+
+    def _patience_s(self, room: str) -> float:
+        return GONE_AFTER_S if self._watch.is_gone(room) else FORGOTTEN_AFTER_S
 
     def _follow_seats(self, room: str, status: RoomStatus) -> None:
         wanted = self._selection.assigned(room, status)

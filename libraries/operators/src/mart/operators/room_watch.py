@@ -11,6 +11,7 @@ from mart.protocol import keys
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import RoomStatus, State
 from mart.protocol.received import decode_received
+from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Bus, Sample
 
 _MAX_STATUS_BYTES = 64 * 1024
@@ -29,10 +30,12 @@ class RoomWatch:
         self.unusable: Counter[str] = Counter()
         self._states: dict[str, bytes] = {}
         self._statuses: dict[str, bytes] = {}
+        self._gone: set[str] = set()
         self._arrived = threading.Condition()
         self._subscriptions = (
             bus.subscribe(keys.status(room).key if room else keys.EVERY_STATUS, self._on_status),
             bus.subscribe(keys.state(room).key if room else keys.EVERY_STATE, self._on_state),
+            bus.watch(keys.alive_of(ServiceKind.SIM), self._on_sim),
         )
 
     def take(self, timeout_s: float) -> tuple[Mapping[str, RoomStatus], Mapping[str, State]]:
@@ -47,9 +50,23 @@ class RoomWatch:
             self._decoded(State, states, _MAX_STATE_BYTES),
         )
 
+    def is_gone(self, room: str) -> bool:
+        """Whether the room's sim had a liveliness token and has none now."""
+        with self._arrived:
+            return room in self._gone
+
+    def forget(self, room: str) -> None:
+        """Forget that a room is gone."""
+        with self._arrived:
+            self._gone.discard(room)
+
     def close(self) -> None:
         for subscription in self._subscriptions:
             subscription.close()
+
+    def _on_sim(self, key: str, alive: bool) -> None:
+        with self._arrived:
+            (self._gone.discard if alive else self._gone.add)(keys.last_of(key))
 
     def _on_status(self, sample: Sample) -> None:
         with self._arrived:

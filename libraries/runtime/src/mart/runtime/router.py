@@ -2,26 +2,44 @@
 
 from __future__ import annotations
 
+import contextlib
 import signal
+from collections.abc import Iterator
+from pathlib import Path
 
 import click
 
 from mart.protocol import keys
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.bus_secret import noted
+from mart.runtime.privacy import keep_private
+from mart.runtime.secret_file import load_or_create_secret
 from mart.runtime.service import configure_logging
 from mart.runtime.settings import Settings
+
+
+@contextlib.contextmanager
+def admitting_router(endpoint: str, secret_path: Path) -> Iterator[ZenohBus]:
+    """Give a router that listens at `endpoint` and admits whoever knows the secret at `secret_path`, made at first use.
+
+    Raises InvalidInput for a secret that cannot be used, Unavailable where the address is taken.
+    """
+    secret = load_or_create_secret(secret_path)
+    with ZenohBus.route(endpoint, secret) as bus, noted(endpoint, secret):
+        yield bus
 
 
 @click.command()
 @click.option("--listen", help="Endpoint to listen at; default: the one that MART_ROUTER names.")
 def router(listen: str | None) -> None:
-    """Run the Zenoh router that all services meet at."""
+    """Run the Zenoh router that all services meet at. It admits whoever knows its secret, in the data folder."""
     settings = Settings()
     configure_logging(settings.log_level, ServiceKind.ROUTER)
+    keep_private(settings.data_dir)
     signals = {signal.SIGTERM, signal.SIGINT}
     signal.pthread_sigmask(signal.SIG_BLOCK, signals)  # before Zenoh's threads start, so that they inherit it
-    with ZenohBus.route(listen or settings.router) as bus:
+    with admitting_router(listen or settings.router, settings.bus_secret_path) as bus:
         token = bus.announce(keys.alive(ServiceKind.ROUTER, "router"))
         signal.sigwait(signals)
         token.close()

@@ -17,6 +17,7 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import Bus
 from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.privacy import keep_private
 from mart.runtime.settings import Settings
 from mart.runtime.stop_signals import stop_signals
 
@@ -53,6 +54,7 @@ def running(settings: Settings, kind: ServiceKind, id: str) -> Iterator[Service]
 def connected(settings: Settings, kind: ServiceKind, id: str) -> Iterator[Service]:
     """A service that has something to set up before it is `announced`: the token says that it answers."""
     configure_logging(settings.log_level, kind)
+    keep_private(settings.data_dir)
     with stop_requested() as stop, ZenohBus.connect(settings.router) as bus:
         yield Service(kind, id, bus, stop)
 
@@ -100,6 +102,7 @@ def run_async(
                 await task
 
     configure_logging(settings.log_level, kind)
+    keep_private(settings.data_dir)
     asyncio.run(supervise())
 
 

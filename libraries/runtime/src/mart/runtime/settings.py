@@ -22,6 +22,9 @@ class Settings(BaseSettings):
 
     router: str = Field("tcp/127.0.0.1:7447", description="Zenoh endpoint of the router.")
     data_dir: Path = Field(Path("data"), description="Where episodes, secrets and certificates are kept.")
+    bus_secret_file: Path | None = Field(
+        None, description="The secret of the router; without it, secrets/bus below the data folder."
+    )
     log_level: str = Field("INFO", description="DEBUG, INFO, WARNING or ERROR.")
 
     def __init__(self, **options: Any) -> None:
@@ -47,6 +50,10 @@ class Settings(BaseSettings):
     @property
     def episodes_dir(self) -> Path:
         return self.data_dir / "episodes"
+
+    @property
+    def bus_secret_path(self) -> Path:
+        return self.bus_secret_file or self.data_dir / "secrets" / "bus"
 
     @property
     def secret_path(self) -> Path:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mart.episodes import find_episodes
+from mart.episodes import LabelledEpisode, find_episodes
 from mart.episodes.reader import EpisodeFile
+from mart.protocol import clock
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.messages import Event
 from mart.protocol.recording import SUFFIX
@@ -70,6 +71,10 @@ class CollectedEpisode:
         }
 
 
+VERDICT_PATIENCE_S = (
+    45.0  # for one that could not be had at first; a collection replaces what is lost for 60 s
+)
+
 # Of a room and the number of an episode: the episode, once it is saved.
 FindEpisode = Callable[[str, int], CollectedEpisode | None]
 
@@ -80,21 +85,32 @@ class SavedEpisodes:
     def __init__(self, data_dir: Path) -> None:
         self._data_dir = data_dir
         self._before = frozenset((data_dir / "episodes").glob(f"*/*{SUFFIX}"))
+        self._seen_s: dict[Path, float] = {}
 
     def find(self, room: str, number: int) -> CollectedEpisode | None:
-        """Return episode `number` of `room`; None while it has no file.
+        """Return episode `number` of `room`; None while it has no file, or for a while no verdict.
 
         An episode that a restart of the recorder cut has several files; the one that knows the outcome counts.
         Raises Corrupt where a file is no episode.
         """
-        found = {one.file_path for one in find_episodes(self._data_dir / "episodes", room, number)}
-        episodes = [read_collected(path, self._data_dir) for path in sorted(found - self._before)]
-        ended = [episode for episode in episodes if episode.outcome is not EpisodeOutcome.UNSPECIFIED]
-        return next(iter(ended or episodes), None)
+        found = {one.file_path: one for one in find_episodes(self._data_dir / "episodes", room, number)}
+        new = [found[path] for path in sorted(found.keys() - self._before)]
+        ended = [one for one in new if one.outcome != EpisodeOutcome.UNSPECIFIED]
+        chosen = next(iter(ended or new), None)
+        if chosen is None or self._is_awaited(chosen):
+            return None
+        return read_collected(chosen, self._data_dir)
+
+    def _is_awaited(self, episode: LabelledEpisode) -> bool:
+        """Tell whether its verdict, which could not be had when it was saved, may still come."""
+        now_s = clock.monotonic_s()
+        seen_s = self._seen_s.setdefault(episode.file_path, now_s)
+        return episode.verification_pending and now_s - seen_s < VERDICT_PATIENCE_S
 
 
-def read_collected(path: Path, data_dir: Path) -> CollectedEpisode:
-    """Return what an episode's file says of itself; raises Corrupt where it is no episode."""
+def read_collected(found: LabelledEpisode, data_dir: Path) -> CollectedEpisode:
+    """Return what an episode's file says of itself, and its newest verdict; raises Corrupt where it is no episode."""
+    path = found.file_path
     file = EpisodeFile.open(path)
     episode, cadence = file.episode, file.cadence
     return CollectedEpisode(
@@ -107,7 +123,7 @@ def read_collected(path: Path, data_dir: Path) -> CollectedEpisode:
         ticks=episode.ticks,
         simulated_s=episode.ticks / (episode.control_hz or DEFAULT_CONTROL_HZ),
         real_time_factor=cadence.real_time_factor,
-        verdict=file.verification.verdict,
+        verdict=Verdict(found.verdict),
         missing_ticks=cadence.missing_ticks,
         missing_commands=cadence.missing_commands,
         latencies=tuple(

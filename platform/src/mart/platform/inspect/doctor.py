@@ -16,7 +16,7 @@ from mart.platform.collect.browser import chromium_path
 from mart.platform.run.folder_claim import claim_holder, leftovers_of
 from mart.platform.run.room_statuses import open_rooms
 from mart.protocol import clock, keys
-from mart.protocol.errors import Unavailable
+from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.messages import barrier_word
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.ice_check import check_ice_server
@@ -130,10 +130,14 @@ def _router(endpoint: str) -> Diagnosis:
     host, _, port = endpoint.rpartition("/")[2].rpartition(":")
     try:
         with socket.create_connection((host, int(port)), timeout=1.0):
-            return Diagnosis("router", True, f"answers at {endpoint}")
+            pass
+        ZenohBus.connect(endpoint, wait_for_router=False).close()
+    except MartError as error:
+        return Diagnosis("router", False, f"does not let this in at {endpoint}", str(error))
     except OSError as error:
         mend = "start MART with `make run`, or set MART_ROUTER to where it runs"
         return Diagnosis("router", False, f"{endpoint}: {error}", mend)
+    return Diagnosis("router", True, f"answers at {endpoint}")
 
 
 def _service(kind: str, alive: list[str]) -> Diagnosis:

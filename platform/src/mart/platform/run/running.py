@@ -42,6 +42,7 @@ from mart.runtime.alive_wait import await_alive
 from mart.runtime.bus.base import Bus
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.child_process import start_child
+from mart.runtime.privacy import keep_private
 
 _log = logging.getLogger(__name__)
 
@@ -83,6 +84,7 @@ def running_platform(options: PlatformOptions, plan: tuple[Process, ...] | None 
     Raises Conflict where the data folder or a port is taken, and Unavailable where a service does not come up or the
     supervisor dies; the block is interrupted then.
     """
+    keep_private(options.data_dir)
     plan = plan or processes(options)
     mark = uuid4().hex
     url = options.url if any(process.kind == ServiceKind.WEB for process in plan) else ""

@@ -38,6 +38,7 @@ class Supervisor:
         self._options, self._socket = options, socket
         self._programs = {process.name: (order, process) for order, process in enumerate(plan)}
         self._last = len(plan)
+        self._said_before = {name: _size(_log_path(options, name)) for name in self._programs}
         options.logs_dir.mkdir(parents=True, exist_ok=True)
         self.config = options.run_dir / "supervisord.conf"
         self._write()
@@ -66,8 +67,12 @@ class Supervisor:
 
     def _last_refusal(self, name: str) -> str:
         with contextlib.suppress(OSError):
-            content = _log_path(self._options, name).read_bytes()[-_LOG_TAIL_BYTES:].decode(errors="replace")
-            for line in reversed(content.splitlines()):
+            log = _log_path(self._options, name)
+            before = self._said_before.get(
+                name, 0
+            )  # by an earlier platform; a log that became shorter begins anew
+            said = log.read_bytes()[before if before <= _size(log) else 0 :]
+            for line in reversed(said[-_LOG_TAIL_BYTES:].decode(errors="replace").splitlines()):
                 if line.startswith(_REFUSAL):
                     return line.removeprefix(_REFUSAL)
         return ""
@@ -149,3 +154,7 @@ def _escaped(value: Path | str) -> str:
 
 def _log_path(options: PlatformOptions, name: str) -> Path:
     return options.logs_dir.resolve() / f"{name}.log"
+
+
+def _size(path: Path) -> int:
+    return path.stat().st_size if path.exists() else 0

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mart.protocol import clock
-from mart.protocol.errors import InvalidInput, Unavailable
+from mart.protocol.errors import Forbidden, InvalidInput, Unavailable
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
 from mart.recorder.settings import RecorderSettings
@@ -91,22 +91,26 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
 
     The answer is kept as a label. It covers states and actions; what else a file says is not part of it.
     """
-    from mart.episodes.folder import episode_files
-    from mart.episodes.reader import EpisodeFile
+    from mart.episodes.folder import described, episode_files, readable
     from mart.recorder import formatting
     from mart.recorder.verify.resimulation import verify as verify_file
     from mart.recorder.verify.verdict_label import keep_verdict
 
-    found = []
+    found: list[dict[str, Any]] = []
+    listed = described(episode_files(_given(paths)))
     with _resimulation(replica) as ask:
-        for path in tracked(episode_files(_given(paths)), "Verified", as_json=as_json):
-            file = EpisodeFile.open(path)
+        for one in tracked(readable(listed, paths), "Verified", as_json=as_json):
+            file = one.open()
             said = verify_file(file, file.room, ask)
-            keep_verdict(path, said, clock.wall_ns())
-            found.append(formatting.verified(path, said))
-    lines = [f"{entry['path']}: {entry['verdict']}. {entry['detail']}" for entry in found]
-    print_result({"episodes": found}, "\n".join(lines) or "There are no episodes.", as_json)
-    return 0 if all(entry["verdict"] == Verdict.VERIFIED for entry in found) else 1
+            keep_verdict(one.file_path, said, clock.wall_ns())
+            found.append(formatting.verified(one.file_path, said))
+            if not as_json:  # at once: what has been labelled is told whatever comes later
+                click.echo("{path}: {verdict}. {detail}".format(**found[-1]))
+    left_out = [{"path": str(one.file_path), "why": one.error} for one in listed if one.error is not None]
+    if as_json or not found:
+        print_result({"episodes": found, "left_out": left_out}, "There are no episodes.", as_json)
+    damaged = any(one.error is not None and not (one.foreign or one.dropped) for one in listed)
+    return 1 if damaged or any(entry["verdict"] != Verdict.VERIFIED for entry in found) else 0
 
 
 @episodes.command()
@@ -212,8 +216,9 @@ def export(
 ) -> None:
     """Write episodes of one task as a data set of another project; dropped ones are left out."""
     from mart.episodes.filter import EpisodeFilter
+    from mart.episodes.folder import readable
     from mart.recorder.catalogue.episode_catalogue import list_paths
-    from mart.recorder.export.selection import choose
+    from mart.recorder.export.selection import choose, sound
 
     if file_format == "robomimic":
         from mart.recorder.export.robomimic import write_robomimic as write
@@ -222,7 +227,9 @@ def export(
 
     of_dataset = EpisodeFilter(datasets=(dataset,) if dataset else (), unusable=True)
     listed = of_dataset.apply(list_paths(_given(paths)))
-    selection = choose(listed, filter_of(wanted, unusable=False))
+    asked = filter_of(wanted, unusable=False)
+    taken = readable(sound(asked.apply(readable(listed, paths))), paths)
+    selection = choose(taken or [one for one in listed if one.error is None], asked)
     each = partial(tracked, label="Episodes", as_json=as_json)
     ticks = write(replace(selection, each=each), out)
     count, task = len(selection.episodes), selection.task.name
@@ -248,7 +255,7 @@ def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> It
     settings = _settings(replica)
     try:
         bus = ZenohBus.connect(settings.router, wait_for_router=False)
-    except Unavailable as error:
+    except (Unavailable, Forbidden) as error:
         if not wherever_possible:
             raise
         yield verification.nobody(error)

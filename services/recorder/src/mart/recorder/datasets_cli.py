@@ -164,7 +164,7 @@ def _take_in(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, wa
 
     chosen = _chosen(folder, paths, wanted)
     _say(
-        dataset_editing.take_in(folder, name, chosen, list_folder(folder), clock.wall_ns()),
+        dataset_editing.take_in(folder, name, chosen, list_folder(folder), now_ns=clock.wall_ns()),
         "put into it",
         as_json,
     )
@@ -172,9 +172,11 @@ def _take_in(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, wa
 
 def _chosen(folder: Path, paths: tuple[Path, ...], wanted: dict[str, Any]) -> list[LabelledEpisode]:
     """Choose episodes. Raises InvalidInput for a path that is not in the folder, and where nothing is let through."""
+    from mart.episodes.folder import readable
     from mart.recorder.catalogue.episode_catalogue import list_paths
 
-    listed = list_paths([_placed(folder, path) for path in paths] or (folder,))
+    placed = [_placed(folder, path) for path in paths] or [folder]
+    listed = readable(list_paths(placed), placed)
     for episode in listed:
         _below(folder, episode.file_path)
     passed = filter_of(wanted, unusable=True).apply(listed)

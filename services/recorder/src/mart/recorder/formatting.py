@@ -31,7 +31,8 @@ def table(episodes: Sequence[LabelledEpisode], paths: Sequence[str] | None = Non
     if not episodes:
         return "There are no episodes."
     names = [str(episode.file_path) for episode in episodes] if paths is None else paths
-    cells = [_COLUMNS, *(_cells(name, one) for name, one in zip(names, episodes, strict=True))]
+    rows = (_cells(name, one) for name, one in zip(names, episodes, strict=True))
+    cells = [_COLUMNS, *(tuple(map(_shown, row)) for row in rows)]
     widths = [max(len(line[i]) for line in cells) for i in range(len(_COLUMNS))]
     return "\n".join(
         "  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in cells
@@ -76,6 +77,11 @@ def model(file: EpisodeFile) -> str:
         return str(error)
 
 
+def _shown(text: str) -> str:
+    """Return text from a file as a terminal may have it: what steers one, or is no text, becomes a sign for it."""
+    return "".join(sign if sign.isprintable() else "\ufffd" for sign in text)
+
+
 def details(result: Mapping[str, Any]) -> str:
     """Return nested facts as text, two spaces a level."""
     return "\n".join(_lines(result, ""))
@@ -87,7 +93,7 @@ def _lines(facts: Mapping[str, Any], indent: str) -> list[str]:
         if isinstance(value, Mapping):
             lines += [f"{indent}{name}", *_lines(value, indent + "  ")]
         elif value is not None:
-            lines.append(f"{indent}{name}: {value}")
+            lines.append(f"{indent}{_shown(name)}: {_shown(str(value))}")
     return lines
 
 

@@ -17,7 +17,6 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.catalogue.episode_catalogue import list_folder
 from mart.recorder.record.announcer import Announcer
 from mart.recorder.record.finalize import SavedEpisode, VerifyFile
-from mart.recorder.record.folder_claim import only_recorder_of
 from mart.recorder.record.inbox import Inbox, RoomSubscriptions
 from mart.recorder.record.recorder import Recorder
 from mart.recorder.repair.repair import log_repairs, repair_all
@@ -36,13 +35,9 @@ _log = logging.getLogger(__name__)
 
 
 def serve_recorder(settings: RecorderSettings, name: str) -> None:
-    """Record until the process is asked to stop; what is being recorded then is saved as it is.
-
-    Raises Conflict where another recorder writes into the same folder.
-    """
+    """Record until the process is asked to stop; what is being recorded then is saved as it is."""
     inbox, root = Inbox(), settings.episodes_dir.resolve()
     with (
-        only_recorder_of(root),
         connected(settings, ServiceKind.RECORDER, name) as service,
         ZenohBus.connect(settings.router) as video_bus,
         closing(LiveIds(service.bus, ServiceKind.SIM, _FORGOTTEN_AFTER_S)) as live_rooms,

@@ -65,7 +65,7 @@ class RoomFeed:
         was_reset = state.boot != before.boot or state.sim_time_s < before.sim_time_s
         self._broadcaster.state = state
         self._events.tick = state.tick
-        self._input.on_state(arm, tool_in_base, state.sim_time_s, was_reset)
+        self._input.on_state(arm, tool_in_base, state.tick, state.sim_time_s, was_reset)
         self._views.on_boot(state.boot)
         control_hz = self._broadcaster.status.control_hz
         if control_hz:

@@ -35,6 +35,8 @@ from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
 
 _log = logging.getLogger(__name__)
 
+_NO_PICTURE_EVERY_S = 3.0
+
 
 class Seat:
     """Put the parts of a seat together, and take them down in the right order."""
@@ -59,7 +61,9 @@ class Seat:
             on_new_holder=self._peers.drop_driving,
         )
         self._video = VideoPublisher(video_bus, address)
-        relay = PictureRelay(asyncio.get_running_loop(), self._peers.put, self._video, self._latency)
+        relay = PictureRelay(
+            asyncio.get_running_loop(), self._peers.put, self._video, self._latency, self._input.on_drawn
+        )
         self._views = ViewManager(
             bus,
             address,
@@ -101,12 +105,20 @@ class Seat:
                         self._broadcaster.run(),
                         report_latency(self._latency, self._events.latency),
                         self._ice.run(),
+                        self._report_no_picture(),
                     )
             finally:
                 await self._peers.close()
                 await self._views.close()
                 if summary := self._latency.summary():
                     _log.info("%s motion to photon: %s", self._address.id, summary)
+
+    async def _report_no_picture(self) -> None:
+        """Tell now and then, as long as it is so, that the seat cannot be drawn; until cancelled."""
+        while True:
+            if failure := self._views.failure():
+                self._events.no_picture(failure)
+            await asyncio.sleep(_NO_PICTURE_EVERY_S)
 
     def _open(self) -> list[Closable]:
         return [

@@ -9,6 +9,8 @@ from mart.protocol.messages import Cue, Event
 from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.served_seats import SeatAddress
 
+_MAX_CHARACTERS = 500
+
 
 class SeatEvents:
     """Publish events of one seat. Open from its making until `close`; `tick` is the newest that the seat has seen."""
@@ -29,6 +31,10 @@ class SeatEvents:
     def latency(self, measured: Event.Latency) -> None:
         """Tell what was measured from motion to photon."""
         self._tell(latency=measured)
+
+    def no_picture(self, reason: str) -> None:
+        """Tell that this seat cannot be drawn, and why."""
+        self._tell(no_picture=Event.NoPicture(arm=self._seat.arm, reason=reason[:_MAX_CHARACTERS]))
 
     def _tell(self, **what: Any) -> None:
         event = Event(wall_ns=clock.wall_ns(), room=self._seat.room, tick=self.tick, **what)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import click
@@ -17,6 +18,7 @@ from mart.runtime.cli import json_option, print_result
 @json_option
 def web(as_json: bool, **options: Any) -> None:
     """Serve the lobby and the operators' and phones' pages over HTTPS."""
+    from mart.runtime.privacy import keep_private
     from mart.runtime.service import run_async
     from mart.web.access.join_code import load_or_make_join_code
     from mart.web.access.site_names import in_url
@@ -24,12 +26,15 @@ def web(as_json: bool, **options: Any) -> None:
     from mart.web.app.settings import WebSettings
 
     settings = WebSettings(**{name: value for name, value in options.items() if value is not None})
+    keep_private(settings.data_dir)
     join_code = load_or_make_join_code(settings.join_code_path, settings.join_code)
     with listen(settings.web_host, settings.web_port) as listener:
         port = listener.getsockname()[1]
         name = next(iter(settings.public_names), settings.web_host)
         url = f"https://{in_url(name)}:{port}/"
-        print_result({"url": url, "join_code": join_code}, f"Lobby {url}  join code {join_code}", as_json)
+        # What a service prints ends up in a log, which more people read than should know the code.
+        shown = join_code if sys.stdout.isatty() else f"in {settings.join_code_path}"
+        print_result({"url": url, "join_code": join_code}, f"Lobby {url}  join code {shown}", as_json)
         run_async(
             settings, ServiceKind.WEB, "web", lambda service: serve(settings, service, listener, join_code)
         )

@@ -53,7 +53,8 @@ class Bus(ABC):
         """Call `handler` for each sample, in a publisher's order.
 
         recover: what was missed, because this process stood still or its link was lost, is asked for again, as far back
-        as its publisher keeps it (`Topic.kept`); what came after it waits meanwhile.
+        as its publisher keeps it (`Topic.kept`); what came after it waits meanwhile. What was said in the two minutes
+        before this call is asked for too.
         """
 
     @abstractmethod

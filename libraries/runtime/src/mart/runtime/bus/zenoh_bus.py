@@ -1,18 +1,6 @@
 """The bus on Zenoh: the only file that imports it.
 
-Settings and their reasons (measured on Zenoh 1.10.2):
-
-- A lease of 4 s, with a sign of life every 0.25 s: on a busy machine a link of 2 s expired while both ends were well,
-  and with 10 s a frozen recorder held up the world (decision 0022). A peer that dies is noticed at once, by its socket.
-- Multicast is off, or any peer on the network joins.
-- Shared memory is off, because a receiver that is descheduled for 100 ms silently loses messages over it.
-- `connect/timeout_ms` -1 keeps a client trying until a router is there, at first every 0.1 s and at least every second,
-  so that a router's return is noticed; the default waits 1 to 4 s.
-- A queue has 16 batches: with the default of 2, a burst of 8 commands on a busy machine lost 18 %, with 16 none.
-- A peer that takes nothing for 0.5 s is disconnected, because the router waits for it with everything else: with the
-  default of 5 s a frozen recorder held up the world for 10 s, with this not at all.
-- What is recorded is kept by its publisher for a while (`Topic.kept`), and the recorder asks for what it missed
-  (decision 0031): a put costs the same, 50 to 200 µs. Zenoh wants time stamps for it.
+Its settings, and their reasons, are in `zenoh_settings`.
 """
 
 from __future__ import annotations
@@ -20,8 +8,10 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
+import tempfile
 import threading
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 from uuid import uuid4
 
@@ -31,16 +21,16 @@ import zenoh.ext
 from mart.protocol import clock
 from mart.protocol.errors import Unavailable
 from mart.protocol.keys import Priority, Topic
+from mart.runtime.bus import zenoh_settings
 from mart.runtime.bus.base import AliveHandler, Bus, Closable, Handler, Publisher, RequestHandler, Sample
 from mart.runtime.bus.repetitions import Repetitions
+from mart.runtime.bus.zenoh_settings import Settings
+from mart.runtime.bus_secret import admitted_with
 
 _log = logging.getLogger(__name__)
 
-_LEASE_MS = 4_000
-_SIGNS_OF_LIFE_A_LEASE = 16
-_QUEUED_BATCHES = 16
-_BLOCKED_AT_MOST_US = 500_000
 _HEARTBEAT_S = 0.5  # how soon a subscriber learns that it missed the newest, where nothing follows it
+_ASKED_BACK_S = 120.0  # by a subscriber that is new
 _FIRST_REST_S = 0.05  # before a query that was dropped is asked again; doubled each time
 
 _PRIORITY = {
@@ -59,21 +49,27 @@ class ZenohBus(Bus):
 
     @classmethod
     def connect(cls, endpoint: str, wait_for_router: bool = True) -> ZenohBus:
-        """A client of the router at `endpoint` ("tcp/127.0.0.1:7447").
+        """A client of the router at `endpoint` ("tcp/127.0.0.1:7447"), with the secret that `bus_secret` finds for it.
 
-        Raises Unavailable where no router answers and `wait_for_router` is False; else keeps trying.
+        Raises Unavailable where no router answers and `wait_for_router` is False, else keeps trying; Forbidden where
+        the router admits only who knows its secret, and none that is known here is that.
         """
-        settings = {
-            "mode": "client",
-            "connect/endpoints": [endpoint],
-            "connect/timeout_ms": -1 if wait_for_router else 1000,
-        }
+        secret = admitted_with(endpoint, partial(_opens, endpoint), wait_for_router=wait_for_router)
+        settings = zenoh_settings.client(endpoint, wait_for_router) | zenoh_settings.identity(secret)
         return cls(_open(settings, endpoint))
 
     @classmethod
-    def route(cls, endpoint: str) -> ZenohBus:
-        """A router that listens at `endpoint`; raises Unavailable where the address is taken."""
-        return cls(_open({"mode": "router", "listen/endpoints": [endpoint]}, endpoint))
+    def route(cls, endpoint: str, secret: bytes | None = None) -> ZenohBus:
+        """A router that listens at `endpoint` and admits who knows `secret`, or everybody where there is none.
+
+        Raises Unavailable where the address is taken.
+        """
+        if secret is None:
+            return cls(_open(zenoh_settings.router(endpoint), endpoint))
+        with tempfile.NamedTemporaryFile(prefix="mart-") as users:  # readable by this user alone
+            users.write(zenoh_settings.users(secret))
+            users.flush()
+            return cls(_open(zenoh_settings.router(endpoint, users.name), endpoint))
 
     def publisher(self, topic: Topic) -> Publisher:
         control = zenoh.CongestionControl.BLOCK if topic.must_arrive else zenoh.CongestionControl.DROP
@@ -103,9 +99,10 @@ class ZenohBus(Bus):
 
         if recover:
             recovery = zenoh.ext.RecoveryConfig(periodic_queries=None, heartbeat=True)
+            history = zenoh.ext.HistoryConfig(max_age=_ASKED_BACK_S)
             return self._keep(
                 zenoh.ext.declare_advanced_subscriber(
-                    self._session, key_expression, _logged(deliver), recovery=recovery
+                    self._session, key_expression, _logged(deliver), recovery=recovery, history=history
                 )
             )
         return self._keep(self._session.declare_subscriber(key_expression, _logged(deliver)))
@@ -237,24 +234,18 @@ class _Declared:
             self._handle.undeclare()
 
 
-def _open(settings: dict[str, Any], endpoint: str) -> zenoh.Session:
+def _opens(endpoint: str, secret: bytes | None) -> bool:
+    """Try once to open a session with this secret, and close it."""
+    try:
+        _open(zenoh_settings.one_try(endpoint) | zenoh_settings.identity(secret), endpoint).close()
+    except Unavailable:
+        return False
+    return True
+
+
+def _open(settings: Settings, endpoint: str) -> zenoh.Session:
     config = zenoh.Config()
-    common = {
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": False,
-        "scouting/delay": 0,  # ms; else a router waits half a second for others, although it looks for none
-        "transport/link/tx/lease": _LEASE_MS,
-        "transport/link/tx/keep_alive": _SIGNS_OF_LIFE_A_LEASE,
-        "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2},
-        "transport/shared_memory/enabled": False,
-        "timestamping/enabled": True,
-        "transport/link/tx/queue/congestion_control/block/wait_before_close": _BLOCKED_AT_MOST_US,
-        **{
-            f"transport/link/tx/queue/size/{queue}": _QUEUED_BATCHES
-            for queue in ("real_time", "data_high", "data")
-        },
-    }
-    for path, value in (common | settings).items():
+    for path, value in (zenoh_settings.COMMON | settings).items():
         config.insert_json5(path, json.dumps(value))
     try:
         return zenoh.open(config)

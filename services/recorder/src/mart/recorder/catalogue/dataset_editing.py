@@ -1,10 +1,13 @@
-"""Put episodes into named data sets and take them out: what the command line and the catalogue share."""
+"""Put episodes into named data sets and take them out: what the command line and the catalogue share.
+
+Each act says `by` whom it is, as others see them; empty where that is not known.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mart.episodes import datasets, labels
@@ -27,7 +30,13 @@ class DataSetEdit:
 
 
 def take_in(
-    root: Path, name: str, chosen: Iterable[LabelledEpisode], known: Iterable[LabelledEpisode], now_ns: int
+    root: Path,
+    name: str,
+    chosen: Iterable[LabelledEpisode],
+    known: Iterable[LabelledEpisode],
+    *,
+    now_ns: int,
+    by: str = "",
 ) -> DataSetEdit:
     """Make `chosen` part of a data set, but for those that nobody shall learn from. known: all that there are.
 
@@ -48,24 +57,29 @@ def take_in(
     members = [row for row in known if name in row.datasets]
     require_alike([*members, *taken], "a data set holds one: narrow the choice, or use another name")
     said = labels.read_folded(root)
-    return _act(root, name, datasets.join(said, name, [row.path for row in taken], now_ns), now_ns, left_out)
+    joining = datasets.join(said, name, [row.path for row in taken], now_ns)
+    return _act(root, name, _said_by(joining, by), now_ns, left_out)
 
 
-def take_out(root: Path, name: str, paths: Iterable[str], now_ns: int) -> DataSetEdit:
+def take_out(root: Path, name: str, paths: Iterable[str], now_ns: int, by: str = "") -> DataSetEdit:
     """Take the episodes with these paths out of a data set. Raises NotFound where there is no such data set."""
     said = labels.read_folded(root)
     datasets.find(said, name)
-    return _act(root, name, datasets.leave(said, name, paths, now_ns), now_ns)
+    return _act(root, name, _said_by(datasets.leave(said, name, paths, now_ns), by), now_ns)
 
 
-def undo(root: Path, name: str, act_ns: int, now_ns: int) -> DataSetEdit:
+def undo(root: Path, name: str, act_ns: int, now_ns: int, by: str = "") -> DataSetEdit:
     """Take back what was done to a data set at `act_ns`. Raises NotFound where nothing was done to it then."""
     opposite = datasets.undo(labels.read(root), name, act_ns, now_ns)
     if not opposite:
         raise NotFound(
             f"Nothing was done to the data set {name[:100]!r} at {act_ns}, so nothing can be undone."
         )
-    return _act(root, name, opposite, now_ns)
+    return _act(root, name, _said_by(opposite, by), now_ns)
+
+
+def _said_by(said: Iterable[Label], by: str) -> list[Label]:
+    return [replace(label, by=by) for label in said]
 
 
 def _act(

@@ -21,7 +21,7 @@ from mart.episodes.labelled_episode import LabelledEpisode, as_utf8, describe
 _log = logging.getLogger(__name__)
 
 FILE_NAME = "catalogue.sqlite"
-_VERSION = 6  # of what a row holds: another one is thrown away and derived anew
+_VERSION = 7  # of what a row holds: another one is thrown away and derived anew
 _IN_THE_WAY = (  # no fault of the file: somebody else has it, the disk is full, the folder is not ours
     sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_READONLY, sqlite3.SQLITE_PERM, sqlite3.SQLITE_IOERR,
     sqlite3.SQLITE_FULL, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_AUTH,

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from mart.episodes import datasets, labels
 from mart.episodes.labelled_episode import LabelledEpisode
@@ -20,13 +20,13 @@ from mart.recorder.catalogue import dataset_editing, pictures
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.catalogue.drawings import Drawings
 from mart.recorder.catalogue.episode_catalogue import list_folder
+from mart.recorder.catalogue.kept_files import KeptFiles
 from mart.recorder.catalogue.listing import episode_message, filter_of, listing
 from mart.recorder.catalogue.timeline import timeline
 
 PIECE_BYTES = 1024 * 1024
 _FRESH_S = 1.0
-_MAX_KEPT = 64
-_MAX_KEPT_BYTES = 128 * 1024 * 1024
+_MAX_PICTURES = 64  # of some 20 kB
 
 
 class CatalogueHandlers:
@@ -40,7 +40,8 @@ class CatalogueHandlers:
         self._drawings = Drawings(render_log or root.parent / "logs" / "render.log")
         self._rows: dict[str, LabelledEpisode] = {}
         self._read_s = float("-inf")
-        self._kept: OrderedDict[tuple[str, ...], bytes] = OrderedDict()
+        self._pictures: OrderedDict[str, bytes] = OrderedDict()
+        self._videos = KeptFiles(root)
         self._handlers: dict[str, Callable[[Any], CatalogueReply]] = {
             "list": self._list,
             "show": lambda asked: CatalogueReply(details=self._details(asked.path)),
@@ -89,15 +90,12 @@ class CatalogueHandlers:
 
     def _details(self, path: str) -> CatalogueReply.Details:
         file = self._file(path)
-        states: dict[int, State] = {}
-        for state in file.states():
-            states.setdefault(state.tick, state)
-        events = [codec.decode(Event, message.payload) for message in file.messages(EVENT)]
-        views = _views(file, next(iter(states.values())).stamps.stepped_ns) if states else []
-        details = timeline(list(states.values()), events, None if views else file.room.control_hz)
+        views = _views(file)
+        events = (codec.decode(Event, message.payload) for message in file.messages(EVENT))
+        details = timeline(_each_tick_once(file), events, None if views else file.room.control_hz)
         details.episode.CopyFrom(episode_message(self._rows[path]))
         details.views.extend(views)
-        details.viewpoints.extend(_viewpoints(file) if states else ())
+        details.viewpoints.extend(_viewpoints(file) if details.traces else ())
         details.cadence.update(file.metadata.get(CadenceRecord.NAME, {}))
         details.versions.update(file.metadata.get(VERSIONS, {}))
         details.verification = file.metadata.get(VerificationRecord.NAME, {}).get("detail", "")
@@ -129,11 +127,13 @@ class CatalogueHandlers:
             raise InvalidInput("Name the episodes, or give a filter that lets them through: one of the two.")
         chosen = filter_of(asked.all).apply(known) if by_filter else map(self._row, asked.paths)
         if asked.take_out:
-            return dataset_editing.take_out(self._root, asked.dataset, [row.path for row in chosen], now_ns)
-        return dataset_editing.take_in(self._root, asked.dataset, chosen, known, now_ns)
+            return dataset_editing.take_out(
+                self._root, asked.dataset, [row.path for row in chosen], now_ns, asked.by
+            )
+        return dataset_editing.take_in(self._root, asked.dataset, chosen, known, now_ns=now_ns, by=asked.by)
 
     def _undo(self, asked: CatalogueRequest.Undo) -> DataSetEdit:
-        return dataset_editing.undo(self._root, asked.dataset, asked.act_ns, clock.wall_ns())
+        return dataset_editing.undo(self._root, asked.dataset, asked.act_ns, clock.wall_ns(), asked.by)
 
     def _edited(self, done: DataSetEdit) -> CatalogueReply:
         self._read_s = float("-inf")  # the rows say what they are part of
@@ -154,7 +154,12 @@ class CatalogueHandlers:
         file = self._file(path)
         if next(iter(file.messages(video_topic(camera))), None) is None:
             return self._drawn_piece(file, camera, asked.offset)
-        return _piece(self._kept_or(("video", path, camera), lambda: self._video(path, camera)), asked.offset)
+
+        def make(out: BinaryIO) -> None:
+            pictures.write_mp4(pictures.frames_of(file, camera), out)
+
+        piece, size_bytes = self._videos.piece((path, camera), make, asked.offset, PIECE_BYTES)
+        return CatalogueReply.Piece(piece=piece, size_bytes=size_bytes)
 
     def _drawn_piece(self, file: EpisodeFile, viewpoint: str, offset: int) -> CatalogueReply.Piece:
         if viewpoint not in _viewpoints(file):
@@ -162,11 +167,13 @@ class CatalogueHandlers:
         video = self._drawings.video(file, viewpoint)
         return CatalogueReply.Piece(pending=True) if video is None else _file_piece(video, offset)
 
-    def _video(self, path: str, camera: str) -> bytes:
-        return pictures.as_mp4(pictures.frames_of(self._file(path), camera))
-
     def _picture(self, path: str) -> bytes:
-        return self._kept_or(("picture", path), lambda: self._draw(path))
+        if path not in self._pictures:
+            self._pictures[path] = self._draw(path)
+        self._pictures.move_to_end(path)
+        while len(self._pictures) > _MAX_PICTURES:
+            self._pictures.popitem(last=False)
+        return self._pictures[path]
 
     def _draw(self, path: str) -> bytes:
         file = self._file(path)
@@ -177,20 +184,21 @@ class CatalogueHandlers:
                 continue
         return self._drawings.still(file)
 
-    def _kept_or(self, key: tuple[str, ...], make: Callable[[], bytes]) -> bytes:
-        """Return what was made before, as far as memory may be used for it; the oldest goes first."""
-        if key not in self._kept:
-            self._kept[key] = make()
-        self._kept.move_to_end(key)
-        while len(self._kept) > 1 and (
-            len(self._kept) > _MAX_KEPT or sum(map(len, self._kept.values())) > _MAX_KEPT_BYTES
-        ):
-            self._kept.popitem(last=False)
-        return self._kept[key]
+
+def _each_tick_once(file: EpisodeFile) -> Iterator[State]:
+    newest = -1
+    for state in file.states():
+        if state.tick > newest:
+            newest = state.tick
+            yield state
 
 
-def _views(file: EpisodeFile, start_ns: int) -> list[RecordedView]:
-    """Return when the video of each arm begins that is in the file. start_ns: when the first state was there."""
+def _views(file: EpisodeFile) -> list[RecordedView]:
+    """Return when the video of each arm begins that is in the file, since the first state was there."""
+    first = next(file.states(), None)
+    if first is None:
+        return []
+    start_ns = first.stamps.stepped_ns
     cameras = {video_topic(arm): arm for arm in file.episode.arms}
     first_ns: dict[str, int] = {}
     for message in file.messages(*cameras):

@@ -14,6 +14,8 @@ from mart.protocol.vocabulary import EpisodeOutcome
 DEFAULT_COUNT = 50
 MAX_COUNT = 200
 MAX_OPERATORS = 200
+_MAX_ARMS = 16
+_MAX_TEXT_CHARACTERS = 2000
 
 
 def listing(
@@ -51,6 +53,10 @@ def filter_of(wanted: CatalogueRequest.List) -> EpisodeFilter:
     )
 
 
+def _cut(text: str) -> str:
+    return text if len(text) <= _MAX_TEXT_CHARACTERS else f"{text[: _MAX_TEXT_CHARACTERS - 1]}…"
+
+
 def names_of(row: LabelledEpisode) -> set[str]:
     """Return the names of the people and policies that drove."""
     return {shift.name for shift in row.shifts if shift.name}
@@ -67,8 +73,10 @@ def dataset_message(dataset: NamedDataSet) -> NamedDataSetMessage:
 
 
 def episode_message(row: LabelledEpisode) -> RecordedEpisode:
-    """Return an episode as it travels."""
+    """Return an episode as it travels; texts are cut, so that a page of strange files stays small."""
     known = row.model_dump(exclude_none=True)
+    known["operators"] = {arm: _cut(text) for arm, text in list(row.operators.items())[:_MAX_ARMS]}
+    known |= {name: _cut(text) for name, text in known.items() if isinstance(text, str) and name != "path"}
     return RecordedEpisode(**{name: known[name] for name in known if name in _FIELDS})
 
 

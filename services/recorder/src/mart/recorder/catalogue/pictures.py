@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import io
+from collections import deque
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain
+from typing import BinaryIO
 
 import av
 import numpy as np
@@ -14,9 +18,11 @@ from numpy.typing import NDArray
 
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.errors import Corrupt, NotFound
+from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.recording import video_topic
 
+MAX_VIDEO_BYTES = 1024 * 1024 * 1024
+_MAX_PICTURES = 500_000  # four hours at 30 a second
 _TIME_BASE = Fraction(1, 90_000)
 PICTURE_WIDTH_PX = 320
 _TICK_CODE_SHARE = Fraction(16, 496)  # the strip below the picture, docs/protocol.md
@@ -37,43 +43,53 @@ class RecordedFrame:
         return 0 <= start < len(self.data) - 3 and self.data[start + 3] & 0x1F == _SPS
 
 
-def frames_of(file: EpisodeFile, camera: str) -> list[RecordedFrame]:
-    """Return the pictures of a camera from the first key frame on. Raises NotFound where there is none."""
-    messages = file.messages(video_topic(camera))
-    videos = (codec.decode(CompressedVideo, message.payload) for message in messages)
-    frames = [RecordedFrame(video.timestamp.ToNanoseconds(), video.data) for video in videos]
-    first = next((index for index, frame in enumerate(frames) if frame.is_key), None)
-    if first is None:
+def frames_of(file: EpisodeFile, camera: str) -> Iterator[RecordedFrame]:
+    """Iterate over the pictures of a camera from the first key frame on. Raises NotFound where there is none."""
+    began = False
+    for message in file.messages(video_topic(camera)):
+        video = codec.decode(CompressedVideo, message.payload)
+        frame = RecordedFrame(_nanoseconds(video), video.data)
+        began = began or frame.is_key
+        if began:
+            yield frame
+    if not began:
         raise NotFound(f"{file.path.name} holds no picture of {camera!r}.")
-    return frames[first:]
 
 
-def as_mp4(frames: list[RecordedFrame]) -> bytes:
-    """Return an MP4 of the same pictures at the same times. Raises Corrupt where they cannot be read."""
-    video = io.BytesIO()
+def write_mp4(frames: Iterable[RecordedFrame], out: BinaryIO) -> None:
+    """Write an MP4 of the same pictures at the same times, one picture in memory at a time.
+
+    Raises Corrupt where they cannot be read and InvalidInput for a video beyond 1 GiB or 500,000 pictures.
+    """
+    left = iter(frames)
+    first = next(left)
     try:
         with (
-            av.open(io.BytesIO(frames[0].data), format="h264") as sample,
-            av.open(video, "w", format="mp4") as container,
+            av.open(io.BytesIO(first.data), format="h264") as sample,
+            av.open(out, "w", format="mp4") as container,
         ):
             stream = container.add_stream_from_template(sample.streams.video[0])
-            before = -1
-            for frame in frames:
-                seconds = (frame.image_ns - frames[0].image_ns) / 1e9
+            before, size_bytes = -1, 0
+            for number, frame in enumerate(chain([first], left)):
+                size_bytes += len(frame.data)
+                if size_bytes > MAX_VIDEO_BYTES or number >= _MAX_PICTURES:
+                    raise InvalidInput(
+                        "The recorded video is too long to be shown here; download the episode."
+                    )
+                seconds = (frame.image_ns - first.image_ns) / 1e9
                 before = max(before + 1, round(seconds / _TIME_BASE))
                 packet = av.Packet(frame.data)
                 packet.stream, packet.time_base = stream, _TIME_BASE
                 packet.pts = packet.dts = before
                 packet.is_keyframe = frame.is_key
                 container.mux(packet)
-    except (av.FFmpegError, IndexError) as error:
+    except (av.FFmpegError, IndexError, OverflowError) as error:
         raise Corrupt(f"The recorded pictures cannot be read: {error}.") from error
-    return video.getvalue()
 
 
-def last_picture(frames: list[RecordedFrame]) -> bytes:
+def last_picture(frames: Iterable[RecordedFrame]) -> bytes:
     """Return the newest key frame as a JPEG, without the tick's code. Raises Corrupt where it cannot be read."""
-    newest = next(frame for frame in reversed(frames) if frame.is_key)
+    (newest,) = deque((frame for frame in frames if frame.is_key), maxlen=1)
     try:
         decoder = VideoCodecContext.create("h264", "r")
         picture = [*decoder.decode(av.Packet(newest.data)), *decoder.decode(None)][0]
@@ -81,6 +97,10 @@ def last_picture(frames: list[RecordedFrame]) -> bytes:
         return as_jpeg(image[: round(picture.height * (1 - _TICK_CODE_SHARE))])
     except (av.FFmpegError, IndexError) as error:
         raise Corrupt(f"The recorded pictures cannot be read: {error}.") from error
+
+
+def _nanoseconds(video: CompressedVideo) -> int:
+    return video.timestamp.seconds * 1_000_000_000 + video.timestamp.nanos
 
 
 def as_jpeg(image: NDArray[np.uint8]) -> bytes:

@@ -1,89 +1,179 @@
-"""Tell what happened in an episode over time: who drove, what was done, for whom the world waited. Pure."""
+"""Tell what happened in an episode over time: who drove, what was done, for whom the world waited. Pure.
+
+States are taken one by one and not kept, so that a long episode costs little; what is told is bounded.
+"""
 
 from __future__ import annotations
 
+import math
+from array import array
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 
-from mart.protocol.messages import CatalogueReply, Event, Lane, Span, State, Trace, cue_word, operator_word
+from mart.protocol.messages import (
+    ArmState,
+    CatalogueReply,
+    Event,
+    Lane,
+    Span,
+    State,
+    Trace,
+    cue_word,
+    operator_word,
+)
 from mart.protocol.vocabulary import OperatorKind
 
 MAX_POINTS = 500
+MAX_SPANS = 2000  # of a lane; what comes later is not told
 WAITED_S = 0.25  # what people are told of as it happens: a stall
+_MAX_ARMS = 16
+_MAX_SUBTASKS = 64
+_MAX_TEXT_CHARACTERS = 500
 
 
 def timeline(
-    states: Sequence[State], events: Iterable[Event], control_hz: float | None = None
+    states: Iterable[State], events: Iterable[Event], control_hz: float | None = None
 ) -> CatalogueReply.Details:
     """Return `wall_s`, `lanes` and `traces`.
 
     Seconds are since the first state: simulated ones where `control_hz` is given, else the wall's.
     """
-    if not states:
+    told: _Timeline | None = None
+    for state in states:
+        told = told or _Timeline(state, control_hz)
+        told.add(state)
+    if told is None:
         return CatalogueReply.Details()
-    stepped_ns = [state.stamps.stepped_ns for state in states]
-    seconds = [(one_ns - stepped_ns[0]) / 1e9 for one_ns in stepped_ns]
-    if control_hz is not None:
-        seconds = [(state.tick - states[0].tick) / control_hz for state in states]
-
-    def second_of(wall_ns: int) -> float:
-        """Return when something was said; negative for what was said before."""
-        if control_hz is None or wall_ns < stepped_ns[0]:
-            return (wall_ns - stepped_ns[0]) / 1e9
-        return seconds[bisect_right(stepped_ns, wall_ns) - 1]
-
-    arms = range(len(states[0].arms))
     return CatalogueReply.Details(
-        wall_s=seconds[-1],
-        lanes=[
-            *_subtasks(states, seconds),
-            *(lane for arm in arms for lane in _of_arm(states, seconds, arm)),
-            *_waiting(states, seconds),
-            *_said(events, second_of),
-        ],
-        traces=[trace for arm in arms for trace in _traces(states, seconds, arm)],
+        wall_s=told.now_s,
+        lanes=[*told.lanes(), *_said(events, told)],
+        traces=told.traces(),
         simulated=control_hz is not None,
     )
 
 
-def runs(seconds: Sequence[float], values: Iterable[str]) -> list[Span]:
+def runs(seconds: Iterable[float], values: Iterable[str]) -> list[Span]:
     """Return where a value stays the same; each run ends where the next begins. An empty value is no run."""
-    found: list[Span] = []
+    found = _Runs()
     for now_s, value in zip(seconds, values, strict=True):
-        if found:
-            found[-1].end_s = now_s
-        if not found or found[-1].text != value:
-            found.append(Span(begin_s=now_s, end_s=now_s, text=value))
-    return [span for span in found if span.text]
+        found.add(now_s, value)
+    return found.spans
 
 
-def _subtasks(states: Sequence[State], seconds: Sequence[float]) -> Iterator[Lane]:
-    for index, subtask in enumerate(states[0].progress.subtasks):
-        done = ("done" if state.progress.subtasks[index].done else "" for state in states)
-        yield Lane(kind="subtask", name=subtask.name, spans=runs(seconds, done))
+class _Runs:
+    """Gather where a value stays the same."""
+
+    def __init__(self) -> None:
+        self.spans: list[Span] = []
+        self._value = ""
+
+    def add(self, now_s: float, value: str) -> None:
+        if self._value and self.spans:
+            self.spans[-1].end_s = now_s
+        if value != self._value and value and len(self.spans) < MAX_SPANS:
+            self.spans.append(Span(begin_s=now_s, end_s=now_s, text=value))
+        self._value = value if len(self.spans) < MAX_SPANS else ""
 
 
-def _of_arm(states: Sequence[State], seconds: Sequence[float], index: int) -> Iterator[Lane]:
-    """Tell who drove an arm, from the tick of their first command on, and where they moved it."""
-    arms = [state.arms[index] for state in states]
-    sources = [operator_word(arm.source) if arm.fresh else OperatorKind.HOLD.value for arm in arms]
-    sources[0] = sources[min(1, len(sources) - 1)]  # the first state has had no command yet
-    yield Lane(kind="driver", name=arms[0].arm, spans=runs(seconds, sources))
-    engaged = ("engaged" if arm.fresh and arm.engaged else "" for arm in arms)
-    yield Lane(kind="engaged", name=arms[0].arm, spans=runs(seconds, engaged))
+class _Arm:
+    """Gather who drove one arm, from the tick of their first command on, and where they moved it."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.driver, self.engaged = _Runs(), _Runs()
+        self.height_m, self.gripper = array("d"), array("d")
+        self._begin_s: float | None = None
+        self._first = ""
+
+    def add(self, now_s: float, arm: ArmState) -> None:
+        source = _driver(arm)
+        if not self.height_m:  # the first state has had no command yet
+            self._begin_s, self._first = now_s, source
+        else:
+            self.begin(source)
+            self.driver.add(now_s, source)
+        self.engaged.add(now_s, "engaged" if arm.fresh and arm.engaged else "")
+        self.height_m.append(_finite(arm.tool_in_base.z))
+        self.gripper.append(_finite(arm.gripper))
+
+    def begin(self, source: str = "") -> None:
+        """Let the first tick be whose the second is; whose it is itself where there is no second."""
+        if self._begin_s is not None:
+            self.driver.add(self._begin_s, source or self._first)
+            self._begin_s = None
 
 
-def _waiting(states: Sequence[State], seconds: Sequence[float]) -> Iterator[Lane]:
-    late: dict[str, list[Span]] = {}
-    for state, now_s in zip(states, seconds, strict=True):
-        if state.straggler and state.straggler_late_s >= WAITED_S:
+def _driver(arm: ArmState) -> str:
+    """Return who drove in this tick; nothing for a kind of operator that this version does not know."""
+    try:
+        return operator_word(arm.source) if arm.fresh else OperatorKind.HOLD.value
+    except ValueError:
+        return ""
+
+
+def _finite(number: float) -> float:
+    return number if math.isfinite(number) else 0.0
+
+
+class _Timeline:
+    """Gather one episode, state by state."""
+
+    def __init__(self, first: State, control_hz: float | None) -> None:
+        self.now_s = 0.0
+        self._start_ns, self._first_tick = first.stamps.stepped_ns, first.tick
+        self._control_hz = control_hz
+        self._stepped_ns = array("Q")
+        self._seconds = array("d")
+        self._subtasks = {one.name: _Runs() for one in first.progress.subtasks[:_MAX_SUBTASKS]}
+        self._arms = {one.arm: _Arm(one.arm) for one in first.arms[:_MAX_ARMS]}
+        self._waiting: dict[str, list[Span]] = {}
+
+    def add(self, state: State) -> None:
+        now_s = self.now_s = self._second(state)
+        self._seconds.append(now_s)
+        self._stepped_ns.append(state.stamps.stepped_ns)
+        done = {one.name for one in state.progress.subtasks if one.done}
+        for name, found in self._subtasks.items():
+            found.add(now_s, "done" if name in done else "")
+        seen = {one.arm: one for one in state.arms}
+        for name, arm in self._arms.items():
+            arm.add(now_s, seen.get(name) or ArmState())
+        if state.straggler in self._arms and state.straggler_late_s >= WAITED_S:
             begin_s = max(0.0, now_s - state.straggler_late_s)
-            late.setdefault(state.straggler, []).append(Span(begin_s=begin_s, end_s=now_s))
-    for arm, spans in late.items():
-        yield Lane(kind="waiting", name=arm, spans=spans)
+            spans = self._waiting.setdefault(state.straggler, [])
+            if len(spans) < MAX_SPANS:
+                spans.append(Span(begin_s=begin_s, end_s=now_s))
+
+    def _second(self, state: State) -> float:
+        if self._control_hz is not None:
+            return (state.tick - self._first_tick) / self._control_hz
+        return (state.stamps.stepped_ns - self._start_ns) / 1e9
+
+    def second_of(self, wall_ns: int) -> float:
+        """Return when something was said; negative for what was said before."""
+        if self._control_hz is None or wall_ns < self._start_ns:
+            return (wall_ns - self._start_ns) / 1e9
+        return self._seconds[max(0, bisect_right(self._stepped_ns, wall_ns) - 1)]
+
+    def lanes(self) -> Iterator[Lane]:
+        for name, done in self._subtasks.items():
+            yield Lane(kind="subtask", name=name, spans=done.spans)
+        for arm in self._arms.values():
+            arm.begin()
+            yield Lane(kind="driver", name=arm.name, spans=arm.driver.spans)
+            yield Lane(kind="engaged", name=arm.name, spans=arm.engaged.spans)
+        for name, spans in self._waiting.items():
+            yield Lane(kind="waiting", name=name, spans=spans)
+
+    def traces(self) -> Iterator[Trace]:
+        every = -(-len(self._seconds) // MAX_POINTS)
+        at_s = self._seconds[::every]
+        for arm in self._arms.values():
+            yield Trace(arm=arm.name, quantity="height", unit="m", seconds=at_s, values=arm.height_m[::every])
+            yield Trace(arm=arm.name, quantity="gripper", unit="", seconds=at_s, values=arm.gripper[::every])
 
 
-def _said(events: Iterable[Event], second_of: Callable[[int], float]) -> Iterator[Lane]:
+def _said(events: Iterable[Event], told: _Timeline) -> Iterator[Lane]:
     """Tell what partners said to each other, and what the services said."""
     said: dict[tuple[str, str], list[Span]] = {}
     for event in events:
@@ -91,19 +181,13 @@ def _said(events: Iterable[Event], second_of: Callable[[int], float]) -> Iterato
             case "cue_given":
                 lane, text = ("cue", event.cue_given.arm), cue_word(event.cue_given.cue)
             case "notice":
-                lane, text = ("notice", ""), event.notice.text
+                lane, text = ("notice", ""), event.notice.text[:_MAX_TEXT_CHARACTERS]
             case _:
                 continue
-        if (at_s := second_of(event.wall_ns)) >= 0.0:
-            said.setdefault(lane, []).append(Span(begin_s=at_s, end_s=at_s, text=text))
+        at_s = told.second_of(event.wall_ns)
+        spans = said.setdefault(lane, []) if lane in said or len(said) < _MAX_ARMS else []
+        if at_s >= 0.0 and len(spans) < MAX_SPANS:
+            spans.append(Span(begin_s=at_s, end_s=at_s, text=text))
     for kind, name in sorted(said):
-        yield Lane(kind=kind, name=name, spans=said[kind, name])
-
-
-def _traces(states: Sequence[State], seconds: Sequence[float], index: int) -> Iterator[Trace]:
-    every = -(-len(states) // MAX_POINTS)
-    kept, at_s = [state.arms[index] for state in states[::every]], seconds[::every]
-    name = states[0].arms[index].arm
-    heights_m = [arm.tool_in_base.z for arm in kept]
-    yield Trace(arm=name, quantity="height", unit="m", seconds=at_s, values=heights_m)
-    yield Trace(arm=name, quantity="gripper", unit="", seconds=at_s, values=[arm.gripper for arm in kept])
+        if said[kind, name]:
+            yield Lane(kind=kind, name=name, spans=said[kind, name])

@@ -63,7 +63,7 @@ def _write(selection: ExportSelection, folder: Path) -> int:
     columns["index"] = np.arange(frames)
     _write_table(folder / "data" / _FIRST, {name: _column(values) for name, values in columns.items()})
     lengths = [len(episode["index"]) for episode in episodes]
-    _write_table(folder / "meta/episodes" / _FIRST, _episodes(selection.task, lengths))
+    _write_table(folder / "meta/episodes" / _FIRST, _episodes(selection.task, lengths, columns))
     _write_tasks(folder / "meta/tasks.parquet", selection.task.instruction)
     stats = {name: _statistics(values) for name, values in columns.items()}
     (folder / "meta/stats.json").write_text(json.dumps(stats, indent=2))
@@ -84,6 +84,8 @@ def _frames(data: EpisodeData, selection: ExportSelection, number: int) -> Colum
     return {
         **seen,
         "action": data.actions.reshape(count, -1).astype(np.float32),
+        "source": data.sources.astype(np.int64),
+        "engaged": data.engaged,
         "next.reward": data.success[1:].astype(np.float32),
         "next.success": data.success[1:],
         "next.done": frame == count - 1,
@@ -102,11 +104,17 @@ def _parts(task: Task) -> dict[str, list[Observation]]:
 
 
 def _column(values: NDArray[Any]) -> pa.Array:
+    """Return a column; one number a row is a plain one, as LeRobot has it."""
     flat = pa.array(values.ravel())
-    return flat if values.ndim == 1 else pa.FixedSizeListArray.from_arrays(flat, values.shape[1])
+    return (
+        flat
+        if values.ndim == 1 or values.shape[1] == 1
+        else pa.FixedSizeListArray.from_arrays(flat, values.shape[1])
+    )
 
 
-def _episodes(task: Task, lengths: list[int]) -> Mapping[str, Any]:
+def _episodes(task: Task, lengths: list[int], columns: Columns) -> Mapping[str, Any]:
+    """Return a row for each episode, with its own statistics: LeRobot's tools make those of a data set from them."""
     ends = np.cumsum(lengths)
     zeros = [0] * len(lengths)
     return {
@@ -117,9 +125,21 @@ def _episodes(task: Task, lengths: list[int]) -> Mapping[str, Any]:
         "data/file_index": zeros,
         "dataset_from_index": ends - lengths,
         "dataset_to_index": ends,
+        **_statistics_of_episodes(columns, ends),
         "meta/episodes/chunk_index": zeros,
         "meta/episodes/file_index": zeros,
     }
+
+
+def _statistics_of_episodes(columns: Columns, ends: NDArray[np.int64]) -> dict[str, pa.Array]:
+    """Return by `stats/{feature}/{statistic}` a list for each episode, for the index columns too."""
+    found: dict[str, pa.Array] = {}
+    for feature, values in columns.items():
+        episodes = [_statistics(part) for part in np.split(values, ends[:-1])]
+        for name in episodes[0]:
+            kind = pa.list_(pa.int64() if name == "count" else pa.float64())
+            found[f"stats/{feature}/{name}"] = pa.array([one[name] for one in episodes], type=kind)
+    return found
 
 
 def _write_tasks(path: Path, instruction: str) -> None:
@@ -169,11 +189,11 @@ def _info(selection: ExportSelection, columns: Columns, episodes: int) -> dict[s
 
 
 def _feature(name: str, values: NDArray[Any], task: Task) -> dict[str, Any]:
-    names = (
-        [f"{arm}/action/{i}" for arm in task.arm_names for i in range(ACTION_SIZE)]
-        if name == "action"
-        else None
-    )
+    names: list[str] | None = None
+    if name == "action":
+        names = [f"{arm}/action/{i}" for arm in task.arm_names for i in range(ACTION_SIZE)]
+    elif name in ("source", "engaged"):
+        names = [f"{arm}/{name}" for arm in task.arm_names]
     for part, observations in _parts(task).items():
         if part == name:
             names = [f"{one.name}/{i}" for one in observations for i in range(int(np.prod(one.shape)))]

@@ -20,7 +20,7 @@ from mart.episodes.arrays import EpisodeData
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import Conflict
 from mart.protocol.tasks import Task
-from mart.recorder.export.selection import ExportSelection, read_data
+from mart.recorder.export.selection import SOURCES, ExportSelection, read_data
 
 # robomimic.envs.env_base.EnvType.GYM_TYPE. It knows four types, and none of them makes a world of MART: its rollouts
 # have to be off.
@@ -64,6 +64,7 @@ def _write(file: h5py.File, selection: ExportSelection) -> int:
             groups[key].append(demo)
     data.attrs["total"] = total
     data.attrs["env_args"] = json.dumps(_environment(selection))
+    data.attrs["source"] = json.dumps(SOURCES)
     data.attrs["observations"] = json.dumps(_observations(selection.task))
     for key, demos in groups.items():
         file[f"mask/{key}"] = np.array(demos, dtype="S")
@@ -76,6 +77,8 @@ def _write_demo(group: h5py.Group, data: EpisodeData, episode: LabelledEpisode) 
     group["actions"] = data.actions.reshape(len(data), -1)
     group["rewards"] = data.success[1:].astype(np.float64)
     group["dones"] = last.astype(np.int64)
+    group["source"] = data.sources
+    group["engaged"] = data.engaged.astype(np.uint8)
     for name, values in data.observations.items():
         group[f"obs/{key_of(name)}"] = values[:-1]
         group[f"next_obs/{key_of(name)}"] = values[1:]

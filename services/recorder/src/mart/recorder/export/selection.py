@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +11,14 @@ import numpy as np
 from mart.episodes.arrays import EpisodeData
 from mart.episodes.compatibility import require_alike
 from mart.episodes.filter import DROPPED, EpisodeFilter
-from mart.episodes.labelled_episode import LabelledEpisode, require_readable
-from mart.protocol.errors import InvalidInput
+from mart.episodes.labelled_episode import LabelledEpisode
+from mart.protocol.errors import Corrupt, InvalidInput, NotFound
+from mart.protocol.messages import operator_from_word
 from mart.protocol.tasks import Task, get_task
+from mart.protocol.vocabulary import OperatorKind
+
+# What the numbers in a column of sources mean, by tick and arm.
+SOURCES: Mapping[int, str] = {operator_from_word(kind): kind.value for kind in OperatorKind}
 
 
 @dataclass(frozen=True)
@@ -32,11 +37,9 @@ class ExportSelection:
 def choose(episodes: Iterable[LabelledEpisode], wanted: EpisodeFilter) -> ExportSelection:
     """Choose what the filter takes, each file once.
 
-    Raises Corrupt where a file cannot be read, and InvalidInput where nothing is left or where they do not belong
-    together.
+    Raises InvalidInput where nothing is left or where they do not belong together.
     """
     listed = list({episode.file_path.resolve(): episode for episode in episodes}.values())
-    require_readable(listed)
     taken = wanted.apply(listed)
     if not taken:
         raise InvalidInput(_why_none(listed))
@@ -46,6 +49,19 @@ def choose(episodes: Iterable[LabelledEpisode], wanted: EpisodeFilter) -> Export
     if first.task is None or first.control_hz is None:
         raise InvalidInput(f"{first.file_path} does not say its task and control rate; leave it out.")
     return ExportSelection(get_task(first.task, len(first.arms)), first.control_hz, tuple(taken))
+
+
+def sound(episodes: Iterable[LabelledEpisode]) -> list[LabelledEpisode]:
+    """Read every byte of these episodes, and return them; `error` says of one what is wrong with it."""
+    return [_checked(episode) for episode in episodes]
+
+
+def _checked(episode: LabelledEpisode) -> LabelledEpisode:
+    try:
+        episode.open().check()
+    except (Corrupt, NotFound) as error:
+        return episode.model_copy(update={"error": str(error)})
+    return episode
 
 
 def read_data(episode: LabelledEpisode, task: Task) -> EpisodeData:

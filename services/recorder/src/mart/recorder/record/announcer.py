@@ -60,6 +60,10 @@ class Announcer:
         if episode.outcome != EpisodeOutcome.UNSPECIFIED:
             told.outcome = outcome_from_word(episode.outcome)
         self._put(episode.room, Event(episode_saved=told, tick=episode.last_tick))
+        lacks = _lacks(saved)
+        if lacks:
+            text = f"Episode {episode.number} was saved, but {', '.join(lacks)} in its file."
+            self.notice(episode.room, "warning", text)
 
     def _put(self, room: str, event: Event) -> None:
         event.wall_ns = clock.wall_ns()
@@ -90,6 +94,9 @@ def _in_words(saved: SavedEpisode) -> str:
         f"{episode.outcome}{'' if episode.complete else ', incomplete'}",
         f"{saved.verification.verdict.value} ({saved.verification.detail})",
     ]
-    lacks = {"ticks": saved.cadence.missing_ticks, "commands": saved.cadence.missing_commands}
-    parts += [f"{count} {what} are missing" for what, count in lacks.items() if count]
-    return ", ".join(parts)
+    return ", ".join(parts + _lacks(saved))
+
+
+def _lacks(saved: SavedEpisode) -> list[str]:
+    missing = {"ticks": saved.cadence.missing_ticks, "commands": saved.cadence.missing_commands}
+    return [f"{count} {what} are missing" for what, count in missing.items() if count]

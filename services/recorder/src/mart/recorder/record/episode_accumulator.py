@@ -70,6 +70,11 @@ class EpisodeAccumulator:
         return self._first.stamps.sent_ns
 
     @property
+    def first_tick(self) -> int:
+        """The room's tick of the first state."""
+        return self._first.tick
+
+    @property
     def last_tick(self) -> int:
         """The room's tick of the newest state."""
         return self._last.tick

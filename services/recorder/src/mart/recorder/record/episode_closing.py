@@ -50,7 +50,11 @@ class OpenEpisode:
             return event.episode_started.number == self.episode.number
         if event.HasField("episode_ended"):
             return event.episode_ended.number == self.episode.number
-        return self.left is None or 0 < event.tick <= self.episode.last_tick
+        if self.left is None:
+            return (
+                not event.tick or event.tick >= self.episode.first_tick
+            )  # what was before is heard again, too
+        return self.episode.first_tick <= event.tick <= self.episode.last_tick
 
     def early_entries(self, state: State | None) -> list[McapEntry]:
         """Return, once, how the commands are written that came before its first state; see `EarlyCommands.take`."""

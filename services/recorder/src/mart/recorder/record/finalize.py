@@ -12,6 +12,7 @@ from importlib.metadata import distributions
 from pathlib import Path
 from types import MappingProxyType
 
+from mart.episodes import find_episodes
 from mart.episodes.reader import EpisodeFile
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol import clock
@@ -26,12 +27,14 @@ from mart.protocol.recording import (
     RoomRecord,
     VerificationRecord,
 )
+from mart.protocol.vocabulary import EpisodeOutcome
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.room_facts import RoomFacts
 
 VerifyFile = Callable[[EpisodeFile, RoomRecord], VerificationRecord]
 NameFile = Callable[[EpisodeWriter, EpisodeRecord], None]  # raises FileExistsError, and never overwrites
 
+_SLACK_NS = 1_000_000_000
 _LAST_DAY_S = 253402300799  # of the year 9999: a file's stamps are only what its bytes say
 _SAFE = re.compile(r"[a-z0-9][a-z0-9_-]*")
 _FOUND = ("arms", "started_ns", "ended_ns", "ticks", "first_tick", "last_tick", "repaired")
@@ -97,6 +100,20 @@ def complete(
     return SavedEpisode(file.path, record, cadence, verification, file.path.stat().st_size)
 
 
+def is_saved(root: Path, room: str, number: int, at_ns: int) -> bool:
+    """Tell whether a finished file with an outcome holds this moment (Unix time) of an episode.
+
+    A recorder that was started anew hears again what a room said before.
+    """
+    for found in find_episodes(root, room, number):
+        if found.error is None:
+            record = EpisodeFile.open(found.file_path).episode
+            is_of_it = record.started_ns - _SLACK_NS <= at_ns <= record.ended_ns + _SLACK_NS
+            if is_of_it and record.outcome != EpisodeOutcome.UNSPECIFIED:
+                return True
+    return False
+
+
 def below(root: Path) -> NameFile:
     """Return what moves a finished file to its name under `root`, which nothing had before."""
 
@@ -153,10 +170,12 @@ def versions() -> Mapping[str, str]:
 
 
 def describe_room(file: EpisodeWriter, facts: RoomFacts, model: Model | None) -> None:
-    """Write what is known about the room and its model into an open file, once each, as soon as it is known."""
+    """Write what is known about the room and its model into an open file, once, as soon as the model is known.
+
+    A record stands in a file once, and the model says what the room's numbers depend on.
+    """
     if model is not None and not file.has_model:
         facts.learn_model(model)
-    if facts.is_complete and (file.description is None or (model is not None and not file.has_model)):
-        file.describe(facts.record())
-    if model is not None and not file.has_model and file.description is not None:
-        file.attach_model(model, clock.wall_ns())
+        if facts.is_complete:
+            file.describe(facts.record())
+            file.attach_model(model, clock.wall_ns())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Callable, Iterable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 
 from mart.episodes.writer import EpisodeWriter
@@ -67,9 +67,9 @@ class FinalizeWorker:
             fetched = self._fetchers.submit(self._models.fetch, episode.room, episode.boot)
             fetched.add_done_callback(lambda done: go_on(None if done.exception() else done.result()))
 
-    def tidy(self) -> None:
-        """Make episodes of what an earlier run has left."""
-        self._work(self._workers, "Tidying the folder", self._tidy)
+    def tidy(self, wait_s: float = 0.0) -> None:
+        """Make episodes of what an earlier run has left; wait for it at most `wait_s`."""
+        wait([self._work(self._workers, "Tidying the folder", self._tidy)], wait_s)
 
     def close(self) -> None:
         """Wait until everything is done."""
@@ -118,13 +118,15 @@ class FinalizeWorker:
 
     def _work(
         self, workers: ThreadPoolExecutor, what: str, call: Callable[..., object], *arguments: object
-    ) -> None:
+    ) -> Future[object]:
         def report(done: Future[object]) -> None:
             error = done.exception()
             if error is not None:
                 _log.error("%s failed", what, exc_info=error)
 
-        workers.submit(call, *arguments).add_done_callback(report)
+        future = workers.submit(call, *arguments)
+        future.add_done_callback(report)
+        return future
 
 
 def in_words(error: Exception) -> str:

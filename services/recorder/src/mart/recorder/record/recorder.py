@@ -14,6 +14,7 @@ from mart.recorder.record.arrival_decoder import UnusableArrivals
 from mart.recorder.record.finalize import VerifyFile
 from mart.recorder.record.finalize_worker import FinalizeWorker, TidyFolder
 from mart.recorder.record.inbox import Inbox, InboxBatch
+from mart.recorder.record.room_claim import RoomClaim, claim_room
 from mart.recorder.record.room_models import RoomModels
 from mart.recorder.record.room_recording import RecordingTools, RoomRecording
 from mart.runtime.bus import Bus
@@ -22,6 +23,10 @@ from mart.runtime.rate_limit import KeyedRateLimit
 _STEP_S = 0.05
 _MAX_ROOMS = 64
 _TELL_AGAIN_S = 60.0
+_CLAIM_AGAIN_S = 1.0
+_TIDY_FIRST_S = (
+    5.0  # what a crash has left gets its name before what was missed is heard again; that waits in the inbox
+)
 
 _log = logging.getLogger(__name__)
 
@@ -54,11 +59,12 @@ class Recorder:
         self._rooms: dict[str, RoomRecording] = {}
         self._unusable = UnusableArrivals()
         self._tellings = KeyedRateLimit(1, _TELL_AGAIN_S)
+        self._claim_tries = KeyedRateLimit(1, _CLAIM_AGAIN_S)
 
     def run(self, stop: threading.Event) -> None:
         """Record until `stop` is set, then save what is open."""
         self._tools.root.mkdir(parents=True, exist_ok=True)
-        self._tools.finalizer.tidy()
+        self._tools.finalizer.tidy(wait_s=_TIDY_FIRST_S)
         try:
             while not stop.is_set():
                 self.step(_STEP_S)
@@ -86,6 +92,8 @@ class Recorder:
         for room in self._rooms.values():
             room.finish("the recorder was stopped")
         self._tools.finalizer.close()
+        for name in list(self._rooms):
+            self._leave(name)
 
     def _recording(self, name: str, now_s: float) -> RoomRecording:
         if name not in self._rooms:
@@ -94,8 +102,18 @@ class Recorder:
                 raise InvalidInput(f"Room {name!r} has no sim that is alive; it is not recorded.")
             if len(self._rooms) >= _MAX_ROOMS:
                 self._make_place(name, now_s)
-            self._rooms[name] = RoomRecording(name, self._tools)
+            self._rooms[name] = RoomRecording(name, self._tools, self._claim(name, now_s))
         return self._rooms[name]
+
+    def _claim(self, name: str, now_s: float) -> RoomClaim:
+        """Claim a room, trying once a second; raises InvalidInput where another recorder has it."""
+        claim = None
+        if not self._claim_tries.wait_s(name, now_s):
+            self._claim_tries.count(name, now_s)
+            claim = claim_room(self._tools.root, name)
+        if claim is None:
+            raise InvalidInput(f"Room {name!r} is recorded into {self._tools.root} by another recorder.")
+        return claim
 
     def _make_place(self, name: str, now_s: float) -> None:
         """Leave the room that was silent longest; raises InvalidInput, and tells the room, where all are recorded."""
@@ -106,14 +124,17 @@ class Recorder:
                 self._tellings.count(name, now_s)
                 self._tools.announcer.notice(name, "error", text)
             raise InvalidInput(f"Room {name!r}: {text}")
-        del self._rooms[min(quiet, key=lambda room: self._rooms[room].heard_s)]
+        self._leave(min(quiet, key=lambda room: self._rooms[room].heard_s))
 
     def _forget(self) -> None:
         """Leave rooms whose sim is gone; a file that is open is closed first, by silence at the latest."""
         idle = [name for name, room in self._rooms.items() if not room.is_writing]
         for name in idle:
             if name not in self._live_rooms:
-                del self._rooms[name]
+                self._leave(name)
+
+    def _leave(self, name: str) -> None:
+        self._rooms.pop(name).claim.release()
 
     def _report_losses(self, batch: InboxBatch) -> None:
         if not batch.lost_frames and not batch.lost_messages:

@@ -11,13 +11,15 @@ from pathlib import Path
 
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol import keys
+from mart.protocol.errors import MartError
 from mart.protocol.messages import Command, Event, RoomStatus, State
 from mart.recorder.record.announcer import Announcer
 from mart.recorder.record.arrival_decoder import ArrivedMessage, decode_arrival
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
-from mart.recorder.record.finalize import describe_room, part_path
+from mart.recorder.record.finalize import describe_room, is_saved, part_path
 from mart.recorder.record.finalize_worker import FinalizeWorker, in_words
 from mart.recorder.record.inbox import BusArrival
+from mart.recorder.record.room_claim import RoomClaim
 from mart.recorder.record.room_models import RoomModels
 from mart.recorder.record.room_tracker import CloseFile, FileAction, OpenFile, RoomTracker
 from mart.runtime.rate_limit import RateLimit
@@ -43,12 +45,14 @@ class RecordingTools:
 class RoomRecording:
     """Write the episodes of one room, one file after another. A full disk ends the file at hand, never the room."""
 
-    def __init__(self, room: str, tools: RecordingTools) -> None:
+    def __init__(self, room: str, tools: RecordingTools, claim: RoomClaim) -> None:
+        """Record a room that is claimed; whoever leaves the room releases `claim`."""
+        self.claim = claim
         self._files: dict[EpisodeAccumulator, EpisodeWriter] = {}
         self.heard_s = 0.0
         self._room = room
         self._tools = tools
-        self._tracker = RoomTracker(room)
+        self._tracker = RoomTracker(room, self._is_saved)
         self._boot = 0
         self._flushed_s = self._reported_s = 0.0
         self._tellings = RateLimit(1, _TELL_AGAIN_S)
@@ -112,6 +116,15 @@ class RoomRecording:
                 return self._tracker.command(keys.arm_of(arrival.key), message, payload, arrived_ns, now_s)
             case _:
                 return self._tracker.video(keys.camera_of(arrival.key), message, payload, arrived_ns)
+
+    def _is_saved(self, state: State) -> bool:
+        try:
+            return is_saved(self._tools.root, state.room, state.episode, state.stamps.sent_ns)
+        except (OSError, MartError) as error:  # a second file of it is better than none
+            _log.warning(
+                "Whether episode %d of %s is saved is not known: %s", state.episode, state.room, error
+            )
+            return False
 
     def _notice_boot(self, boot: int) -> None:
         if self._boot != boot:

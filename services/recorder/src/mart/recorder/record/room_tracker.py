@@ -12,6 +12,7 @@ frame, without which the first pictures could not be decoded.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
@@ -28,6 +29,7 @@ from mart.recorder.record.room_facts import RoomFacts
 
 _MAX_OPEN = 4
 _MAX_REMEMBERED = 32
+_OLD_NS = 2_000_000_000
 _STANDSTILL_S = 1.0  # between two steps of the recorder: it stood still itself
 
 
@@ -57,9 +59,13 @@ FileAction = OpenFile | WriteEntry | CloseFile
 
 
 class RoomTracker:
-    """Follow one room. Each method takes what has arrived and returns what to do to files, in this order."""
+    """Follow one room. Each method takes what has arrived and returns what to do to files, in this order.
 
-    def __init__(self, room: str) -> None:
+    is_saved: whether the episode that an old state is of has its file already; what was missed is heard again.
+    """
+
+    def __init__(self, room: str, is_saved: Callable[[State], bool] = lambda _state: False) -> None:
+        self._is_saved = is_saved
         self.facts = RoomFacts(room)
         self.unknown_task = ""  # what the room says it is for, where that is no task
         self._open: list[OpenEpisode] = []  # the newest last
@@ -215,6 +221,9 @@ class RoomTracker:
         self, state: State, arrived_ns: int, now_s: float
     ) -> tuple[list[FileAction], OpenEpisode | None]:
         if not state.episode or self.unknown_task or any(over.belongs(state) for over in self._over):
+            return [], None
+        if arrived_ns - state.stamps.sent_ns > _OLD_NS and self._is_saved(state):
+            self._over.append(EpisodeAccumulator(state))
             return [], None
         actions: list[FileAction] = []
         while len(self._open) >= _MAX_OPEN:

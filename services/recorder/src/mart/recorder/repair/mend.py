@@ -14,7 +14,7 @@ from mart.episodes.mcap_entries import McapEntry, state_entries
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput
-from mart.protocol.messages import Command, Event, Model, State
+from mart.protocol.messages import Command, Event, Model, Operator, State
 from mart.protocol.recording import (
     CHECKSUMS,
     MODEL_ATTACHMENT,
@@ -80,8 +80,12 @@ class _Mended:
         self._file = file
         self._early: list[Event | Command] = []  # before the first state
         self._metadata: dict[str, Mapping[str, str]] = {}
+        self._checksums: dict[str, str] = {}
+        self._room: Mapping[str, str] | None = None
 
     def add(self, found: SalvagedMessage | Attachment | Metadata) -> None:
+        if not isinstance(found, Metadata):
+            self._learn_room()
         if isinstance(found, SalvagedMessage):
             try:
                 self._add_message(found)
@@ -94,11 +98,10 @@ class _Mended:
 
     def recorded(self) -> RecordedFacts:
         """Return what the file says of the episode itself, as far as its own checksums vouch for it."""
-        checksums = self._metadata.get(CHECKSUMS, {})
         vouched = {
             name: strings
             for name, strings in self._metadata.items()
-            if checksums.get(name) == metadata_checksum(strings)
+            if self._checksums.get(name) == metadata_checksum(strings)
         }
         try:
             episode, operators = vouched.get(EpisodeRecord.NAME), vouched.get(OperatorsRecord.NAME)
@@ -113,11 +116,25 @@ class _Mended:
         return sha256(mjb).hexdigest() == self.facts.model_sha256
 
     def _add_metadata(self, metadata: Metadata) -> None:
-        self._metadata[metadata.name] = metadata.metadata
-        if metadata.name == RoomRecord.NAME:
-            record = RoomRecord.from_strings(metadata.metadata)
-            self.facts.room = record.room
-            self.facts.learn_record(record)
+        if metadata.name == CHECKSUMS:
+            self._checksums |= metadata.metadata
+        else:
+            self._metadata[metadata.name] = metadata.metadata
+
+    def _learn_room(self) -> None:
+        """Learn what the file says of its room by now; its checksum, where there is one, follows at once."""
+        said = self._metadata.get(RoomRecord.NAME)
+        if said is None or said == self._room:
+            return
+        self._room = said
+        if self._checksums.get(RoomRecord.NAME, metadata_checksum(said)) != metadata_checksum(said):
+            return
+        try:
+            record = RoomRecord.from_strings(said)
+        except Corrupt:  # without a checksum, in an older file: events say the same
+            return
+        self.facts.room = record.room
+        self.facts.learn_record(record)
 
     def _add_message(self, found: SalvagedMessage) -> None:
         kind = _KEPT.get(found.schema)
@@ -136,6 +153,8 @@ class _Mended:
 
     def _add_state(self, found: SalvagedMessage) -> None:
         state = codec.decode(State, found.payload)
+        if any(arm.source not in Operator.values() for arm in state.arms):
+            raise InvalidInput("A state names a kind of operator that this version does not know.")
         if self.episode is None:
             self.facts.room = state.room
             self.episode = EpisodeAccumulator(state)

@@ -6,8 +6,9 @@ one monotonic clock.
 A tick fires when every seat that is not `hold` has a command newer than the one used before and the pace allows it.
 The newest command wins by its sequence; nothing is queued. A seat without a command for `STALLED_AFTER_S` stalls the
 room (everyone is told who is being waited for); after `PAUSED_AFTER_S` the room is paused and no tick fires until that
-seat speaks again or changes; after `FREED_AFTER_S` a human's or policy's seat is given up. An emergency stop is held by
-level: while the newest command of any seat says so, no tick fires.
+seat speaks again or changes; after `FREED_AFTER_S` a human's or policy's seat is given up. An emergency stop latches:
+from the first command that says so after one that did not, no tick fires until somebody lets go, whatever becomes of
+that seat.
 
 A room whose seats are all `hold` has nobody to wait for: the rule is met by nobody's missing, and the world lives on
 at its pace, with its arms holding.
@@ -58,7 +59,7 @@ class TickInputs:
 class Decision:
     """Tell what holds now. Ask again at `next_s`, or when a command arrives, whichever is first.
 
-    waiting_for: (arm, for how many seconds); the arms without a command, or those that hold an emergency stop.
+    waiting_for: (arm, for how many seconds); the arms without a command, or the one whose emergency stop is on.
     silent: arms whose seat is to be given up.
     """
 
@@ -80,7 +81,6 @@ class _SeatState:
     last_sequence: int = -1  # of the newest accepted command
     unused: bool = False  # the newest command has not moved the world yet
     complete_s: float = 0.0  # when the first unused command arrived
-    stopped_since_s: float | None = None
 
     @property
     def driven(self) -> bool:
@@ -95,15 +95,21 @@ class Barrier:
         self.rejected: Counter[CommandRejection] = Counter()
         self._seats = {arm: _SeatState(OPERATOR_HOLD, 0, now_s) for arm in arms}
         self._driven: dict[str, _SeatState] = {}  # those of them that are not on hold
+        self._stop: tuple[str, float] | None = None  # arm, since when
 
     def seat(self, arm: str, operator: Operator, epoch: int, now_s: float) -> None:
         """Give a seat to a new holder: what the old one said no longer counts."""
         self._seats[arm] = _SeatState(operator, epoch, now_s)
         self._driven = {arm: seat for arm, seat in self._seats.items() if seat.driven}
 
-    def offer(self, received: ReceivedCommand) -> CommandRejection | None:
-        """Take a command, or return why not; rejections are counted in `rejected`."""
-        reason = self._objection(received)
+    def offer(self, received: ReceivedCommand, *, in_time: bool = True) -> CommandRejection | None:
+        """Take a command, or return why not; rejections are counted in `rejected`.
+
+        `in_time`: it was made from a state that is new enough. One that is not stops the room all the same.
+        """
+        reason = self._objection(received) or (None if in_time else CommandRejection.OLD_STATE)
+        if reason in (None, CommandRejection.OLD_STATE) and self._presses_stop(received):
+            self.stop(received.arm, received.at_s)
         if reason is not None:
             self.rejected[reason] += 1
             return reason
@@ -113,11 +119,21 @@ class Barrier:
         seat.newest, seat.unused = received, True
         seat.last_sequence = received.sequence
         seat.heard_s = received.at_s
-        if not received.emergency_stop:
-            seat.stopped_since_s = None
-        elif seat.stopped_since_s is None:
-            seat.stopped_since_s = received.at_s
         return None
+
+    @property
+    def stopped(self) -> bool:
+        """Whether an emergency stop is on."""
+        return self._stop is not None
+
+    def stop(self, arm: str, now_s: float) -> None:
+        """Let no tick fire until `let_go`. `arm`: where it was pressed, empty for nowhere in particular."""
+        if self._stop is None:
+            self._stop = (arm, now_s)
+
+    def let_go(self) -> None:
+        """Let ticks fire again: everybody's newest command counts."""
+        self._stop = None
 
     def newest(self, arm: str) -> ReceivedCommand | None:
         """Return the newest accepted command of the arm's present operator, used or not."""
@@ -161,13 +177,15 @@ class Barrier:
             return CommandRejection.LEAP
         return None
 
+    def _presses_stop(self, received: ReceivedCommand) -> bool:
+        before = self._seats[received.arm].newest
+        return received.emergency_stop and not (before is not None and before.emergency_stop)
+
     def _phase(self, now_s: float) -> tuple[BarrierPhase, tuple[tuple[str, float], ...]]:
+        if self._stop is not None:
+            arm, since_s = self._stop
+            return BARRIER_PHASE_STOPPED, ((arm, now_s - since_s),) if arm else ()
         driven = self._driven.items()
-        stops = tuple(
-            (arm, now_s - seat.stopped_since_s) for arm, seat in driven if seat.stopped_since_s is not None
-        )
-        if stops:
-            return BARRIER_PHASE_STOPPED, stops
         missing = tuple(
             (arm, now_s - seat.heard_s) for arm, seat in driven if now_s - seat.heard_s >= STALLED_AFTER_S
         )

@@ -31,6 +31,7 @@ class CommandRejection(StrEnum):
     NOT_FINITE = "number not finite"
     BAD_NORM = "quaternion not of unit norm"
     OUT_OF_BOUNDS = "out of bounds"
+    OLD_STATE = "made from an old state"
 
 
 class CommandRejected(InvalidInput):

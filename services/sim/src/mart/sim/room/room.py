@@ -28,7 +28,9 @@ from mart.protocol.messages import (
 )
 from mart.sim.room import room_messages
 from mart.sim.room.barrier import FREED_AFTER_S, Barrier, Decision, TickInputs
+from mart.sim.room.command_age import CommandAge
 from mart.sim.room.command_validation import CommandRejected, CommandRejection, validate_command
+from mart.sim.room.emergency_stop import StopLatch
 from mart.sim.room.episode_state_machine import (
     BeginEpisode,
     Effect,
@@ -40,7 +42,7 @@ from mart.sim.room.episode_state_machine import (
 )
 from mart.sim.room.recording_watch import RecordingWatch
 from mart.sim.room.room_publisher import REPEAT_S, RoomPublisher
-from mart.sim.room.saved_room import SavedRoom
+from mart.sim.room.saved_room import SavedRoom, SavedStop
 from mart.sim.room.seats import SeatHolder, SeatTable
 from mart.sim.room.ticker import Ticker
 from mart.sim.world import Diverged, World
@@ -74,6 +76,7 @@ class Room:
         self._barrier = Barrier(world.arms, world.control_period_s / pace, now_s)
         for seat in self._seats:
             self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
+        self._age = CommandAge(world.control_hz)
         self._terms = terms
         self._time_limit_s = terms.time_limit_s or world.task.time_limit_s
         horizon_ticks = round(self._time_limit_s / world.control_period_s)
@@ -83,8 +86,10 @@ class Room:
         self._recording_watch = RecordingWatch()
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
-        self._status_due_s = now_s
-        self._repeat_due_s = now_s
+        self._status_due_s = self._repeat_due_s = now_s
+        self._stop = StopLatch(
+            self._barrier, self._seats, record.stop, self._stop_changed, now_s, paced=not terms.lockstep
+        )
         self._remember(record)
         self._do([ResetWorld(self._episode.seed)], now_s)
 
@@ -109,9 +114,14 @@ class Room:
             received = validate_command(payload, arm, at_s, at_wall_ns)
         except CommandRejected as error:
             self._barrier.rejected[error.reason] += 1
-        else:
-            if self._barrier.offer(received) is None:
-                self._ticker.aim(received)
+            return
+        reason = self._barrier.offer(received, in_time=self._age.allows(received, self._ticker.tick))
+        if reason is None:
+            self._ticker.aim(received)
+        elif reason is CommandRejection.OLD_STATE and self._age.worth_telling(received, self._ticker.tick):
+            self._tell(room_messages.old_commands(self._seats[arm], self._age.limit_ticks))
+        if received.emergency_stop:
+            self._stop.heard(received.arm)
 
     def answer_seat(self, request: SeatRequest, now_s: float) -> RoomReply:
         """Do what a seat request asks; the reply holds the status, and the seat or an error."""
@@ -127,7 +137,13 @@ class Room:
     def answer_episode(self, request: EpisodeRequest, now_s: float) -> RoomReply:
         """Do what an episode request asks; the reply holds the status, and an error where it was refused."""
         try:
-            self._do(self._episode.answer(request, self._seats, now_s), now_s)
+            match request.WhichOneof("what"):
+                case "stop":
+                    self._stop.press(request.stop, now_s)
+                case "go_on":
+                    self._stop.let_go(request.go_on)
+                case _:
+                    self._do(self._episode.answer(request, self._seats, now_s), now_s)
         except MartError as error:
             return RoomReply(error=error_message(error), status=self.status(now_s))
         self._status_due_s = now_s
@@ -136,8 +152,7 @@ class Room:
     def episode_saved(self, saved: Event.EpisodeSaved) -> None:
         """Count an episode that the recorder has saved, once, however often it is told."""
         good = saved.verified and saved.outcome == OUTCOME_SUCCESS
-        counted = self._record.with_saved(saved.number, good)
-        if counted is not self._record:
+        if (counted := self._record.with_saved(saved.number, good)) is not self._record:
             self._remember(counted)
 
     def recording_reported(self, report: RecordingReport) -> None:
@@ -181,6 +196,7 @@ class Room:
             boot=self._boot_ns,
             rejected_commands=self.rejected.total(),
             plan=room_messages.plan(self._record),
+            stop=self._stop.message(),
             last_ended=self._last_ended,
             unrecorded=self._recording_watch.objection(now_s),
         )
@@ -194,17 +210,17 @@ class Room:
             self._do(self._episode.abandon(OUTCOME_FAILURE, "the physics diverged", ender, now_s), now_s)
             return
         self._tell_state(state, now_s)
-        progress = state.progress
-        self._do(self._episode.ticked(progress.success, progress.failed or None, now_s), now_s)
+        done, failed = state.progress.success, state.progress.failed or None
+        self._do(self._episode.ticked(done, failed, now_s), now_s)
 
     def _do(self, effects: Sequence[Effect], now_s: float) -> None:
         for effect in effects:
             match effect:
                 case ResetWorld():
-                    self._tell_state(
-                        self._ticker.reset(effect.seed, self._seats, self._episode, now_s), now_s
-                    )
+                    fresh = self._ticker.reset(effect.seed, self._seats, self._episode, now_s)
+                    self._tell_state(fresh, now_s)
                     self._barrier.restart(now_s)
+                    self._age.world_reset(self._ticker.tick)
                     self._tell(Event(world_reset=Event.WorldReset(seed=effect.seed)))
                 case BeginEpisode():
                     self._start(effect, now_s)
@@ -214,21 +230,9 @@ class Room:
 
     def _start(self, effect: BeginEpisode, now_s: float) -> None:
         self._remember(self._record.with_changes(episodes=effect.number))
-        self._tell(
-            Event(
-                episode_started=Event.EpisodeStarted(
-                    number=effect.number,
-                    seed=effect.seed,
-                    seats=[self._seat_message(seat) for seat in self._seats],
-                    task=self._world.task.name,
-                    control_hz=self._world.control_hz,
-                    model_sha256=self._world.model_sha256,
-                    lockstep=self._terms.lockstep,
-                    skill=self._terms.skill,
-                    time_limit_s=self._time_limit_s,
-                )
-            )
-        )
+        seats = [self._seat_message(seat) for seat in self._seats]
+        begun = room_messages.episode_started(effect, seats, self._world, self._terms, self._time_limit_s)
+        self._tell(begun)
         self._tell_state(self._ticker.standing(self._seats, self._episode, now_s), now_s)
         self._barrier.restart(now_s)
 
@@ -239,9 +243,8 @@ class Room:
     def _give_up(self, arm: str, now_s: float) -> None:
         name = self._seats[arm].driver.called
         self._seat_changed(self._seats.free(arm), now_s)
-        self._tell(
-            room_messages.notice("warning", f"{name} gave no command for {FREED_AFTER_S:g} s: {arm} is free.")
-        )
+        text = f"{name} gave no command for {FREED_AFTER_S:g} s: {arm} is free."
+        self._tell(room_messages.notice("warning", text))
 
     def _seat_changed(self, seat: SeatHolder, now_s: float) -> None:
         self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
@@ -249,6 +252,11 @@ class Room:
         self._tell(Event(seat_changed=self._seat_message(seat)))
         self._do(self._episode.seats_changed(self._seats, now_s), now_s)
         self._status_due_s = now_s
+
+    def _stop_changed(self, pressed: SavedStop | None, event: Event) -> None:
+        self._remember(self._record.with_changes(stop=pressed))
+        self._tell(event)
+        self._status_due_s = 0.0
 
     def _tell_barrier(self, decision: Decision) -> None:
         if decision.phase in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED):
@@ -273,15 +281,14 @@ class Room:
             self._publisher.repeat_state()
             self._repeat_due_s = now_s + REPEAT_S
         if now_s >= self._status_due_s:
-            news = self._recording_watch.news(now_s)
-            if news is not None:
+            if (news := self._recording_watch.news(now_s)) is not None:
                 self._tell(room_messages.notice(*news))
             self._publisher.status(self.status(now_s))
             self._status_due_s = now_s + REPEAT_S
 
     def _seat_message(self, seat: SeatHolder) -> Seat:
         newest = self._barrier.newest(seat.arm) if seat.operator != OPERATOR_HOLD else None
-        return room_messages.seat(seat, self._episode.is_ready(seat.arm), newest)
+        return room_messages.seat(seat, self._episode.is_ready(seat.arm), newest, f"{self._boot_ns:x}")
 
     def _remember(self, record: SavedRoom) -> None:
         """Keep the record over a restart; a disk that is full must not stop the world."""
@@ -289,6 +296,5 @@ class Room:
         try:
             self._keep(record)
         except OSError as error:
-            self._tell(
-                room_messages.notice("error", f"A restart would forget this change of the room: {error}.")
-            )
+            text = f"A restart would forget this change of the room: {error}."
+            self._tell(room_messages.notice("error", text))

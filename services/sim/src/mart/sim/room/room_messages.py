@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.protocol.holders import holder_tag
 from mart.protocol.messages import (
     BarrierPhase,
     Episode,
@@ -17,10 +18,10 @@ from mart.protocol.messages import (
     Waiting,
 )
 from mart.sim.room.command_validation import ReceivedCommand
-from mart.sim.room.episode_state_machine import EndEpisode, EpisodeStateMachine
+from mart.sim.room.episode_state_machine import BeginEpisode, EndEpisode, EpisodeStateMachine, Terms
 from mart.sim.room.saved_room import SavedRoom
 from mart.sim.room.seats import SeatHolder
-from mart.sim.world import TaskProgress
+from mart.sim.world import TaskProgress, World
 
 # What any operator sees, by name: see mart.protocol.tasks.
 Seen = Mapping[str, NDArray[np.float64]]
@@ -75,13 +76,13 @@ def progress(progress: TaskProgress) -> Fields:
     }
 
 
-def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None) -> Seat:
-    """Return the message of a seat; `newest`: the newest command of its operator."""
+def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None, salt: str) -> Seat:
+    """Return the message of a seat; `newest`: the newest command of its operator, `salt`: of its holder's tag."""
     return Seat(
         arm=holder.arm,
         operator=holder.operator,
         epoch=holder.epoch,
-        holder_id=holder.holder_id,
+        holder_tag=holder_tag(salt, holder.arm, holder.epoch, holder.holder_id),
         name=holder.name,
         ready=ready,
         engaged=newest is not None and newest.command.engaged,
@@ -147,3 +148,30 @@ def notice(level: str, text: str) -> Event:
     event.notice.level, event.notice.text = level, text
     setattr(event.notice, "from", "sim")  # a keyword in Python
     return event
+
+
+def episode_started(
+    effect: BeginEpisode, seats: Iterable[Seat], world: World, terms: Terms, time_limit_s: float
+) -> Event:
+    """Return the event of an episode that begins."""
+    started = Event.EpisodeStarted(
+        number=effect.number,
+        seed=effect.seed,
+        seats=seats,
+        task=world.task.name,
+        control_hz=world.control_hz,
+        model_sha256=world.model_sha256,
+        lockstep=terms.lockstep,
+        skill=terms.skill,
+        time_limit_s=time_limit_s,
+    )
+    return Event(episode_started=started)
+
+
+def old_commands(seat: SeatHolder, limit_ticks: int) -> Event:
+    """Return the event that tells people why a seat's commands are refused."""
+    return notice(
+        "warning",
+        f"{seat.driver.called} at {seat.arm} does not hear the room: commands made from a state more than "
+        f"{limit_ticks} ticks old are refused.",
+    )

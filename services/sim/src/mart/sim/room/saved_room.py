@@ -1,4 +1,4 @@
-"""Keep what a room knows over a restart, a crash included: seed, count of episodes, seats with their epochs."""
+"""Keep what a room knows over a restart, a crash included: seed, count of episodes, seats with their epochs, a stop."""
 
 from __future__ import annotations
 
@@ -63,6 +63,16 @@ class SavedPlan(BaseModel):
     good_before: int = Field(ge=0, le=MAX_NUMBER)
 
 
+class SavedStop(BaseModel):
+    """Store an emergency stop that is on: `name` pressed it, at `arm` where they held a seat."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    arm: str
+    name: str
+    wall_ns: int = Field(ge=0)
+
+
 class CountedEpisode(BaseModel):
     """Store that an episode was counted among the saved ones, and whether among the good ones."""
 
@@ -87,6 +97,7 @@ class SavedRoom(BaseModel):
     counted: tuple[CountedEpisode, ...] = ()
     seats: tuple[SavedSeat, ...] = ()
     plan: SavedPlan | None = None
+    stop: SavedStop | None = None
 
     def planned(self, task: str, episodes: int | None) -> SavedRoom:
         """Return it with so many good episodes of this task wanted: the same plan goes on, another begins anew."""

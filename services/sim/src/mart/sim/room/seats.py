@@ -138,7 +138,7 @@ class SeatTable:
         if operator not in _CLAIMING:
             raise InvalidInput("A seat is claimed for a human or a policy; assign it to set script or hold.")
         _require_text("holder_id", holder_id, MAX_HOLDER_ID_CHARACTERS)
-        _require_text("name", name, MAX_NAME_CHARACTERS)
+        require_name(name)
         if seat.holder_id == holder_id and seat.operator == operator:
             return seat
         takes_over = operator == OPERATOR_HUMAN and seat.driver.is_machine
@@ -201,6 +201,11 @@ class SeatTable:
         changed = SeatHolder(seat.arm, seat.epoch + 1, driver, relieved)
         self._seats[seat.arm] = changed
         return changed
+
+
+def require_name(name: str) -> None:
+    """Raise InvalidInput where a person's name cannot be shown to others."""
+    _require_text("name", name, MAX_NAME_CHARACTERS)
 
 
 def _require_text(what: str, value: str, limit: int) -> None:

@@ -7,14 +7,16 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 
 from mart.protocol.messages import OPERATOR_HUMAN, ArmState, Command, CommandStamps, pose_message
-from mart.protocol.pose import Pose
-from mart.teleop_gateway.input.frame_validator import FrameValidator, HandSample
+from mart.teleop_gateway.input.frame_validator import FrameRejection, FrameValidator, HandSample, LetGo
 from mart.teleop_gateway.input.grasp import GripperSample, holds
 from mart.teleop_gateway.input.phone_frame import Flag
+from mart.teleop_gateway.input.picture_watch import PictureWatch
 from mart.teleop_gateway.input.retarget import ArmTarget, Retarget
+from mart.teleop_gateway.input.tool_motion import ToolMotion
 
 LOST_AFTER_S = 0.25
 _REMEMBERED_COMMANDS = 512
+MAX_FRAME_AGE_NS = 1_000_000_000  # an older hand leads nothing
 _OLDEST_INPUT_NS = 10_000_000_000  # an older stamp is a wrong clock, not a slow network
 
 
@@ -31,16 +33,18 @@ class _Source:
 
     validator: FrameValidator
     grips: bool = False  # its gripper counts
+    started: bool = False  # it has known where it is
     last: HandSample | None = None
     clock_offset_ns: int | None = None
 
 
 @dataclass(frozen=True)
 class PhoneState:
-    """Tell how long ago the phone's last good frame came, and whether it knew where it was."""
+    """Tell how long ago the phone's last good frame came, whether it knew where it was, and whether it ever did."""
 
     age_s: float
     tracking: bool
+    started: bool
 
 
 @dataclass
@@ -48,17 +52,23 @@ class Driving:
     """Drive one arm for one holder of its seat (one epoch).
 
     `first_sequence` must be above every command's number of an earlier process for the same epoch: the sim takes only
-    newer ones. gripper_told: what the gripper was asked for in the newest tick, by whoever drove then; None: unknown.
-    holding: the gripper has taken hold of something.
+    newer ones. `picture` is what the holder sees: while it stands still, no hand counts. gripper_told: what the gripper
+    was asked for in the newest tick, by whoever drove then; None: unknown. holding: the gripper has taken hold of
+    something. stopped: an emergency stop is on. gripper_set: how often the gripper was set by other than the device in
+    use: by a reset of the world, or by the device before.
     """
 
     arm: str
     seat_epoch: int
     first_sequence: int
     retarget: Retarget
+    picture: PictureWatch = field(default_factory=PictureWatch)
     active: InputDevice = InputDevice.KEYBOARD
     gripper_told: float | None = None
     holding: bool = False
+    stopped: bool = False
+    gripper_set: int = 0
+    _tick: int = 0
     _grip: GripperSample | None = None
     _sources: dict[InputDevice, _Source] = field(default_factory=dict)
     _rejected: Counter[str] = field(default_factory=Counter)
@@ -72,6 +82,8 @@ class Driving:
         self._sources[source] = _Source(FrameValidator(self.seat_epoch))
         if source is InputDevice.PHONE:
             self.select(InputDevice.PHONE)
+        else:
+            self.picture.page_came()
 
     def disconnect(self, source: InputDevice) -> None:
         """Forget a peer that left for good; a phone that leaves gives the arm back to the keyboard."""
@@ -85,6 +97,7 @@ class Driving:
         if source is not self.active:
             self.active = source
             self.retarget.release()
+            self._set_gripper()
 
     def set_clock(self, source: InputDevice, offset_ns: int) -> None:
         """Take the gateway's clock minus the device's, nanoseconds."""
@@ -100,43 +113,68 @@ class Driving:
         self,
         source: InputDevice,
         payload: bytes,
-        measured_tool_in_base: Pose | None,
+        tool: ToolMotion | None,
         now_s: float,
         now_ns: int,
     ) -> Command | None:
         """Return the command that a frame asks for; None for a bad frame, an input not in use or an unseen arm.
 
-        now_s: monotonic; now_ns: wall clock, for the stamps.
+        tool: the newest that is known of the arm's tool. now_s: monotonic; now_ns: wall clock, for the stamps.
         """
         peer = self._sources.get(source)
         hand = peer.validator.validate(payload, now_s) if peer else None
         if peer is None or hand is None:
             return None
+        peer.started = peer.started or Flag.TRACKING in hand.frame.flags
         peer.grips = peer.grips or _means_its_gripper(hand, peer.last)
         peer.last = hand
-        if source is not self.active or measured_tool_in_base is None:
+        if source is not self.active or tool is None:
             return None
-        target = self.retarget.follow(hand, measured_tool_in_base)
+        sent_ns = _input_sent_ns(hand.frame.sent_us, peer.clock_offset_ns, now_ns)
+        hand = peer.last = self._unless_blind(peer.validator, hand, sent_ns, now_s, now_ns)
+        target = self.retarget.follow(hand, tool)
         gripper = target.gripper if peer.grips or self.gripper_told is None else self.gripper
         self._target = replace(target, gripper=gripper)
-        return self._command(hand, self._target, peer.clock_offset_ns, now_ns)
+        return self._command(hand, self._target, sent_ns, now_ns)
 
-    def see(self, arm: ArmState, sim_time_s: float) -> None:
+    def see(self, arm: ArmState, tick: int, sim_time_s: float, now_s: float) -> None:
         """Take how the arm is after the newest tick, whoever drove it."""
+        self._tick = tick
+        self.picture.on_state(tick, now_s)
         self.gripper_told = (arm.action[-1] + 1.0) / 2.0 if arm.action else arm.gripper
         grip = GripperSample(arm.gripper, self.gripper_told, sim_time_s)
         self.holding = bool(arm.action) and holds(self.holding, self._grip, grip)
         self._grip = grip
 
+    def _unless_blind(
+        self, validator: FrameValidator, hand: HandSample, sent_ns: int, now_s: float, now_ns: int
+    ) -> HandSample:
+        """Return the hand, let go where it is too old, its person sees nothing move, or everything is stopped."""
+        if hand.clutch and sent_ns and now_ns - sent_ns > MAX_FRAME_AGE_NS:
+            validator.rejected[FrameRejection.AGE] += 1
+            return validator.let_go(hand, LetGo.AGE)
+        if self.stopped:
+            return validator.let_go(hand, LetGo.STOP)
+        if hand.clutch and self.picture.stands_still(now_s):
+            return validator.let_go(hand, LetGo.PICTURE)
+        return hand
+
     def world_was_reset(self) -> None:
-        """Let go of everything: targets from before the reset mean nothing now."""
+        """Let go of everything: targets from before the reset mean nothing now. The gripper begins open."""
         self._target = None
         self.retarget.forget()
+        self.gripper_told = 0.0
+        self._set_gripper()
 
     def lost(self, now_s: float) -> bool:
         """Tell whether the input in use has been silent for too long."""
         peer = self._sources.get(self.active)
         return peer is None or now_s - peer.validator.last_good_s > LOST_AFTER_S
+
+    def let_go(self, now_s: float) -> LetGo | None:
+        """Return why the clutch that is held does not lead the arm; None where it does, or is not held."""
+        peer = self._sources.get(self.active)
+        return peer.last.let_go if peer and peer.last and not self.lost(now_s) else None
 
     def engaged(self, now_s: float) -> bool:
         """Tell whether the arm follows a hand now."""
@@ -152,7 +190,8 @@ class Driving:
         peer = self._sources.get(InputDevice.PHONE)
         if peer is None or peer.last is None:
             return None
-        return PhoneState(now_s - peer.validator.last_good_s, Flag.TRACKING in peer.last.frame.flags)
+        tracking = Flag.TRACKING in peer.last.frame.flags
+        return PhoneState(now_s - peer.validator.last_good_s, tracking, peer.started)
 
     def rejected(self) -> Counter[str]:
         """Return how many frames were dropped since this holder came, by reason."""
@@ -162,13 +201,17 @@ class Driving:
         """Return the number of the frame that became this command; None where it was not this process's."""
         return self._frame_numbers.get(sequence)
 
+    def _set_gripper(self) -> None:
+        """Tell that the gripper is not where a device left it: devices follow, and count once they say otherwise."""
+        self.gripper_set += 1
+        for peer in self._sources.values():
+            peer.grips = False
+
     def _keep_counts(self, source: InputDevice) -> None:
         if source in self._sources:
             self._rejected += _counts(self._sources[source].validator)
 
-    def _command(
-        self, hand: HandSample, target: ArmTarget, clock_offset_ns: int | None, now_ns: int
-    ) -> Command:
+    def _command(self, hand: HandSample, target: ArmTarget, input_sent_ns: int, now_ns: int) -> Command:
         sequence = self.first_sequence + self._sent
         self._sent += 1
         self._frame_numbers[sequence] = hand.frame.sequence
@@ -182,17 +225,23 @@ class Driving:
             engaged=target.engaged,
             source=OPERATOR_HUMAN,
             stamps=CommandStamps(
-                input_sent_ns=_input_sent_ns(hand.frame.sent_us, clock_offset_ns, now_ns),
+                input_sent_ns=input_sent_ns,
                 gateway_received_ns=now_ns,
             ),
             seen_tick=hand.frame.seen_tick,
+            state_tick=self._tick,
             emergency_stop=Flag.EMERGENCY_STOP in hand.frame.flags,
         )
 
 
 def _means_its_gripper(hand: HandSample, before: HandSample | None) -> bool:
-    """Tell whether a hand's gripper counts: who has just come does not know what it holds, and must drop nothing."""
-    return hand.clutch or (before is not None and hand.frame.gripper != before.frame.gripper)
+    """Tell whether a hand's gripper counts: who does not know what it holds must drop nothing.
+
+    It is meant where it changes, and where the clutch is pressed.
+    """
+    if before is None:
+        return hand.clutch
+    return (hand.clutch and not before.clutch) or hand.frame.gripper != before.frame.gripper
 
 
 def _counts(validator: FrameValidator) -> Counter[str]:
@@ -204,4 +253,4 @@ def _input_sent_ns(sent_us: int, clock_offset_ns: int | None, now_ns: int) -> in
     if clock_offset_ns is None:
         return 0
     sent_ns = sent_us * 1000 + clock_offset_ns
-    return sent_ns if now_ns - _OLDEST_INPUT_NS < sent_ns <= now_ns + _OLDEST_INPUT_NS else 0
+    return sent_ns if max(now_ns - _OLDEST_INPUT_NS, 0) < sent_ns <= now_ns + _OLDEST_INPUT_NS else 0

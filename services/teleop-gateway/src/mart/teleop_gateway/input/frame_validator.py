@@ -37,6 +37,19 @@ class FrameRejection(enum.StrEnum):
     NORM = "norm"
     GRIPPER = "gripper"
     POSITION = "position"
+    AGE = "age"
+
+
+class LetGo(enum.StrEnum):
+    """Name why a clutch that is held does not count."""
+
+    NEW = "new"  # held since before this peer came
+    TRACKING = "tracking"  # the phone did not know where it was
+    GAP = "gap"  # frames were missing
+    JUMP = "jump"  # it was somewhere else at once
+    AGE = "age"  # the frame was on its way for too long
+    PICTURE = "picture"  # what the person drives by stood still
+    STOP = "stop"  # an emergency stop was on
 
 
 class _Rejected(Exception):
@@ -47,11 +60,12 @@ class _Rejected(Exception):
 
 @dataclass(frozen=True)
 class HandSample:
-    """Hold a good frame. `clutch` tells that it is held and nothing speaks against it."""
+    """Hold a good frame. `clutch`: held, and nothing speaks against it; `let_go`: what speaks against a held one."""
 
     frame: PhoneFrame
     pose_phone_in_session: Pose
     clutch: bool
+    let_go: LetGo | None = None
 
 
 class FrameValidator:
@@ -63,7 +77,7 @@ class FrameValidator:
         self._rate = RateLimit(MAX_FRAMES_PER_S)
         self._last: HandSample | None = None
         self._last_s = -math.inf
-        self._must_let_go = True  # a clutch held since before this peer came does not count
+        self._let_go: LetGo | None = LetGo.NEW  # until the clutch is open
 
     @property
     def last_good_s(self) -> float:
@@ -103,14 +117,33 @@ class FrameValidator:
 
     def _accept(self, frame: PhoneFrame, now_s: float) -> HandSample:
         pose = Pose(np.array(frame.position), np.array(frame.quaternion_wxyz))
-        pressed, tracking = Flag.CLUTCH in frame.flags, Flag.TRACKING in frame.flags
-        if not tracking or (pressed and (now_s - self._last_s > GAP_S or self._jumped(frame, pose))):
-            self._must_let_go = True
+        pressed = Flag.CLUTCH in frame.flags
+        doubt = self._doubt(frame, pose, now_s)
+        if doubt is not None:
+            self._let_go = self._let_go or doubt
         elif not pressed:
-            self._must_let_go = False
-        hand = HandSample(frame, pose, clutch=pressed and not self._must_let_go)
+            self._let_go = None
+        hand = HandSample(frame, pose, pressed and not self._let_go, self._let_go if pressed else None)
         self._last, self._last_s = hand, now_s
         return hand
+
+    def let_go(self, hand: HandSample, reason: LetGo) -> HandSample:
+        """Return the hand with an open clutch; it counts as open until it is, and is pressed anew."""
+        if not hand.clutch:
+            return hand
+        self._let_go = reason
+        self._last = HandSample(hand.frame, hand.pose_phone_in_session, False, reason)
+        return self._last
+
+    def _doubt(self, frame: PhoneFrame, pose: Pose, now_s: float) -> LetGo | None:
+        """Return what speaks against this hand; a gap or a jump matters only while the clutch is held."""
+        if Flag.TRACKING not in frame.flags:
+            return LetGo.TRACKING
+        if Flag.CLUTCH not in frame.flags:
+            return None
+        if now_s - self._last_s > GAP_S:
+            return LetGo.GAP
+        return LetGo.JUMP if self._jumped(frame, pose) else None
 
     def _jumped(self, frame: PhoneFrame, pose: Pose) -> bool:
         if self._last is None or (frame.sent_us - self._last.frame.sent_us) * 1e-6 >= JUMP_WITHIN_S:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from mart.protocol.pose import Pose, quaternion_conjugate, quaternion_multiply, rotate
 from mart.teleop_gateway.input.frame_validator import HandSample
 from mart.teleop_gateway.input.phone_frame import Flag
+from mart.teleop_gateway.input.tool_motion import Stopping, ToolMotion
 
 Array = NDArray[np.float64]
 
@@ -56,41 +57,41 @@ class Retarget:
         self._azimuth_rad = azimuth_rad
         self._scale = scale
         self._grip: _ClutchReference | None = None
-        self._held: Pose | None = None
+        self._stopping: Stopping | None = None
 
-    def follow(self, hand: HandSample, measured_tool_in_base: Pose) -> ArmTarget:
+    def follow(self, hand: HandSample, tool: ToolMotion) -> ArmTarget:
         """Return the target after this frame.
 
-        A press takes both poses as references and asks for the measured pose: nothing moves. An open clutch holds the
-        last target.
+        A press takes both poses as references and asks for the pose in which the tool comes to rest: nothing moves. An
+        open clutch stops the tool where it is, plus its stopping distance, and holds it there.
         """
         if not hand.clutch:
             self._grip = None
-        elif self._grip is None:
-            self._grip = self._take(hand, measured_tool_in_base)
-            self._held = measured_tool_in_base
-        else:
-            self._held = self._moved(self._grip, hand.pose_phone_in_session)
-        if self._held is None:
-            self._held = measured_tool_in_base
-        return ArmTarget(self._held, hand.frame.gripper, engaged=hand.clutch)
+            self._stopping = self._stopping or Stopping(tool)
+            return ArmTarget(self._stopping.see(tool), hand.frame.gripper, engaged=False)
+        self._stopping = None
+        if self._grip is None:
+            self._grip = self._take(hand, tool.stopping_pose())
+        return ArmTarget(
+            self._moved(self._grip, hand.pose_phone_in_session), hand.frame.gripper, engaged=True
+        )
 
     def release(self) -> None:
-        """Let another hand take over: the next frame with a held clutch takes its references anew."""
+        """Let another hand take over: the tool stops, and a held clutch takes its references anew."""
         self._grip = None
 
     def forget(self) -> None:
-        """Do as `release` and forget the last target: the world was reset, and it means nothing now."""
+        """Do as `release` and forget where the tool was to stop: the world was reset, and it means nothing now."""
         self._grip = None
-        self._held = None
+        self._stopping = None
 
-    def _take(self, hand: HandSample, measured_tool_in_base: Pose) -> _ClutchReference:
+    def _take(self, hand: HandSample, tool_in_base: Pose) -> _ClutchReference:
         flags = hand.frame.flags
         aligned = session_to_base(0.0, self._azimuth_rad)
         turned = session_to_base(heading_rad(hand.pose_phone_in_session), self._azimuth_rad)
         return _ClutchReference(
             hand.pose_phone_in_session,
-            measured_tool_in_base,
+            tool_in_base,
             position_turn=aligned if flags & (Flag.SCREEN_ALIGNED | Flag.ORIENTATION_ONLY) else turned,
             orientation_turn=aligned if Flag.SCREEN_ALIGNED in flags else turned,
         )

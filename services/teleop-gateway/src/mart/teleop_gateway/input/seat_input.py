@@ -8,12 +8,13 @@ from collections.abc import Callable
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import Unavailable
-from mart.protocol.messages import ArmState, Command, RoomStatus
+from mart.protocol.messages import BARRIER_PHASE_STOPPED, ArmState, Command, RoomStatus
 from mart.protocol.pose import Pose
 from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.change_signal import ChangeSignal
 from mart.teleop_gateway.input.driving import Driving, InputDevice
 from mart.teleop_gateway.input.retarget import Retarget
+from mart.teleop_gateway.input.tool_motion import ToolMotion
 from mart.teleop_gateway.served_seats import SeatAddress, served_epochs
 
 
@@ -38,7 +39,7 @@ class SeatInput:
         self._changed = ChangeSignal()
         self._epoch: int | None = None
         self._azimuth_rad: float | None = None
-        self._measured: Pose | None = None
+        self._tool: ToolMotion | None = None
 
     def close(self) -> None:
         """Publish no command any more."""
@@ -63,9 +64,11 @@ class SeatInput:
     # What the room says
 
     def on_status(self, status: RoomStatus) -> None:
-        """Take who holds the seat."""
+        """Take who holds the seat, and whether everything is stopped."""
         self._epoch = served_epochs(status).get(self._seat)
         self._renew()
+        if self.driving is not None:
+            self.driving.stopped = status.barrier == BARRIER_PHASE_STOPPED
 
     def on_camera_azimuth(self, azimuth_rad: float) -> None:
         """Take where the seat's camera looks: a hand's motion is turned by it."""
@@ -74,13 +77,28 @@ class SeatInput:
             self.driving.retarget = Retarget(azimuth_rad, self._hand_scale)
         self._renew()
 
-    def on_state(self, arm: ArmState, tool_in_base: Pose, sim_time_s: float, was_reset: bool) -> None:
+    def on_state(
+        self, arm: ArmState, tool_in_base: Pose, tick: int, sim_time_s: float, was_reset: bool
+    ) -> None:
         """Take where the arm is after the newest tick."""
-        self._measured = tool_in_base
+        known = None if was_reset else self._tool
+        self._tool = known.after(tool_in_base, sim_time_s) if known else ToolMotion(tool_in_base, sim_time_s)
         if self.driving is not None:
-            self.driving.see(arm, sim_time_s)
+            self.driving.see(arm, tick, sim_time_s, clock.monotonic_s())
             if was_reset:
                 self.driving.world_was_reset()
+
+    # What is drawn, and what of it the holder's page shows
+
+    def on_drawn(self, tick: int) -> None:
+        """Take that a picture of this tick is on its way to the holder."""
+        if self.driving is not None:
+            self.driving.picture.on_drawn(tick, clock.monotonic_s())
+
+    def on_displayed(self, tick: int) -> None:
+        """Take that the holder's page has displayed this tick."""
+        if self.driving is not None:
+            self.driving.picture.on_displayed(tick, clock.monotonic_s())
 
     def _renew(self) -> None:
         """Begin anew for a new holder: with an empty record, and no peer of the one before."""
@@ -124,7 +142,7 @@ class SeatInput:
         if self.driving is None:
             return
         now_s, now_ns = clock.monotonic_s(), clock.wall_ns()
-        command = self.driving.receive(device, payload, self._measured, now_s, now_ns)
+        command = self.driving.receive(device, payload, self._tool, now_s, now_ns)
         if command is not None:
             command.stamps.sent_ns = clock.wall_ns()
             self._commands.put(codec.encode(command))

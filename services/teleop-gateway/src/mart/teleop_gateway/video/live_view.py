@@ -104,6 +104,7 @@ class LiveView:
         self._keyframe_s = dict.fromkeys(Codec, -KEYFRAME_EVERY_S)
         self._log_limit = RateLimit(1)
         self._times_s: deque[float] = deque(maxlen=_RATE_WINDOW)
+        self.failure = ""  # why nothing can be drawn, in a sentence
         self._end = end
         self._thread: threading.Thread | None = None
 
@@ -144,6 +145,7 @@ class LiveView:
             )
         except MartError as error:
             _log.error("%s gets no picture: %s", self._camera, error)  # the sentence says it all
+            self.failure = str(error)
             return
         try:
             self._draw_until_closed(pipeline)

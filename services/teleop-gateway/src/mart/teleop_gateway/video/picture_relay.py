@@ -21,9 +21,11 @@ class PictureRelay:
         to_peers: Callable[[EncodedPicture], None],
         publisher: VideoPublisher,
         latency: MotionToPhoton,
+        on_drawn: Callable[[int], None],
     ) -> None:
-        """Relay pictures; `to_peers` is called on the loop."""
+        """Relay pictures. `to_peers`, and `on_drawn` with the picture's tick, are called on the loop."""
         self._loop, self._to_peers, self._publisher, self._latency = loop, to_peers, publisher, latency
+        self._on_drawn = on_drawn
 
     def put(self, made: SeatPicture | Thumbnail) -> None:
         """Hand on what was made. Call it on the view's thread."""
@@ -35,3 +37,4 @@ class PictureRelay:
         self._to_peers(picture.encoded)
         if picture.encoded.codec is Codec.H264:
             self._latency.on_picture(picture.tick, picture.stamps)
+            self._on_drawn(picture.tick)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from aiortc import RTCRtpSender, RTCRtpTransceiver, RTCSctpTransport, rtp
+from aiortc import RTCPeerConnection, RTCRtpSender, RTCRtpTransceiver, RTCSctpTransport, rtp
 from aiortc.codecs import HEADER_EXTENSIONS
 from aiortc.rtcrtpparameters import RTCRtpHeaderExtensionParameters, RTCRtpParameters
 
@@ -48,6 +48,15 @@ def on_unreadable(sctp: RTCSctpTransport, handler: Callable[[Exception], None]) 
             handler(error)
 
     sctp._handle_data = receive_all  # type: ignore[method-assign]  # noqa: SLF001
+
+
+async def close_connection(connection: RTCPeerConnection) -> None:
+    """End a connection, also one whose offer was refused halfway: aiortc then fails, and leaves its sockets open."""
+    try:
+        await connection.close()
+    except AttributeError:  # of a transport that it never got to
+        for transport in connection._RTCPeerConnection__iceTransports:  # type: ignore[attr-defined]  # noqa: SLF001
+            await transport.stop()
 
 
 def sent_codec(transceiver: RTCRtpTransceiver) -> str:

@@ -23,6 +23,7 @@ from mart.runtime.ice_servers import IceServer
 from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.webrtc.aiortc_hooks import (
+    close_connection,
     offer_playout_delay,
     on_keyframe_request,
     on_unreadable,
@@ -105,7 +106,7 @@ class Peer:
         """Return when the connection has ended."""
         if self.track is not None:
             self.track.stop()
-        await self._connection.close()
+        await close_connection(self._connection)
 
     async def _negotiate(self, offer_sdp: str) -> None:
         sender = self._add_video() if self.role is not Role.PHONE else None

@@ -87,6 +87,8 @@ class PeerMessages:
         match message:
             case status_channel.ClockMessage(offset_ns):
                 self._input.set_clock(device, offset_ns)
+            case status_channel.SeenMessage(tick) if device is InputDevice.KEYBOARD:
+                self._input.on_displayed(tick)
             case status_channel.SelectInputMessage(chosen):
                 self._input.select(chosen)
                 self._broadcaster.tell_changes()

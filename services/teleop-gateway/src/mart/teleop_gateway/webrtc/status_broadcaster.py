@@ -50,10 +50,17 @@ class StatusBroadcaster:
         latency, frames_per_s = self._latency.summary(), self._views.frames_per_s()
         self._peers.tell(
             status_channel.tick(
-                self.state, self.status, driving, now_s, latency=latency, frames_per_s=frames_per_s
+                self.state,
+                self.status,
+                driving,
+                now_s,
+                latency=latency,
+                frames_per_s=frames_per_s,
+                no_picture=self._views.failure(),
             )
         )
 
     def _worth_telling(self, driving: Driving, now_s: float) -> tuple[object, ...]:
         waiting = tuple(waiting.arm for waiting in self.status.waiting_for)
-        return driving.engaged(now_s), driving.holding, driving.active, self.status.barrier, waiting
+        engaged = driving.engaged(now_s), driving.let_go(now_s)
+        return engaged, driving.holding, driving.active, self.status.barrier, waiting

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from mart.protocol.errors import InvalidInput
-from mart.protocol.messages import Cue, RoomStatus, State, barrier_word, cue_from_word
-from mart.teleop_gateway.input.driving import Driving, InputDevice
+from mart.protocol.messages import Cue, RoomStatus, State, barrier_word, cue_from_word, phase_word
+from mart.teleop_gateway.input.driving import Driving, InputDevice, PhoneState
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 
 MAX_CHARACTERS = 1100  # one SCTP packet
 _LARGEST = 2**63 - 1
+_NAME_CHARACTERS = 24
+_REASON_CHARACTERS = 100
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,7 @@ def tick(
     *,
     frames_per_s: float,
     latency: LatencySummary | None,
+    no_picture: str = "",
 ) -> str:
     """Return what a page shows, at most MAX_CHARACTERS long."""
     sequence = next((arm.sequence for arm in state.arms if arm.arm == driving.arm), 0)
@@ -118,17 +121,27 @@ def tick(
             "sequence": driving.frame_number(sequence) or 0,
             "rtf": round(state.real_time_factor, 3),
             "engaged": driving.engaged(now_s),
+            "let_go": driving.let_go(now_s) or "",
             "gripper": round(driving.gripper, 3),
+            "gripper_set": driving.gripper_set,
             "holding": driving.holding,
+            "phase": phase_word(room.episode.phase),
+            "ready": any(seat.ready for seat in room.seats if seat.arm == driving.arm),
             "barrier": barrier_word(room.barrier),
+            "stopped_by": room.stop.name[:_NAME_CHARACTERS],
             "waiting": [{"arm": w.arm, "since_s": round(w.since_s, 2)} for w in room.waiting_for],
             "input": driving.active.value,
-            "phone": phone and {"age_ms": round(1e3 * phone.age_s), "tracking": phone.tracking},
+            "phone": phone and _phone(phone),
             "rejected": dict(driving.rejected()),
+            "no_picture": no_picture[:_REASON_CHARACTERS],
             "fps": round(frames_per_s, 1),
             "latency": latency and _latency(latency),
         }
     )
+
+
+def _phone(phone: PhoneState) -> dict[str, Any]:
+    return {"age_ms": round(1e3 * phone.age_s), "tracking": phone.tracking, "started": phone.started}
 
 
 def _latency(summary: LatencySummary) -> dict[str, Any]:

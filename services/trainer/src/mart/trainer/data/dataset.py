@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import logging
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,13 +14,15 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
 from mart.episodes.labelled_episode import LabelledEpisode
-from mart.protocol.errors import InvalidInput
+from mart.protocol.errors import Corrupt, InvalidInput
 from mart.trainer.data.cache import read_cached, sha256_of
 from mart.trainer.data.data_spec import DataSetName, Selection
 from mart.trainer.data.episode import EpisodeArrays
 from mart.trainer.data.layout import ObservationLayout
 from mart.trainer.data.named_dataset import NamedData, account
 from mart.trainer.data.selection import candidates, select
+
+_log = logging.getLogger(__name__)
 
 S = TypeVar("S", bound=np.generic)
 
@@ -83,8 +86,9 @@ def load_dataset(
 
     cache: a folder of episodes that were read before; None reads every file.
     dataset: whose files `paths` are; what of it is dropped, discarded or missing is left out and said.
-    Raises NotFound, Corrupt or InvalidInput: missing paths, damaged files, several tasks, rates or numbers of arms,
-    missing arms or observations, NaN, or nothing left to learn from.
+    A file that cannot be read is left out, and the log says so.
+    Raises NotFound, Corrupt or InvalidInput: missing paths, nothing but damaged files, several tasks, rates or numbers
+    of arms, missing arms or observations, NaN, or nothing left to learn from.
     """
     given = tuple(paths)
     found = candidates(path for path in given if dataset is None or path.exists())
@@ -95,10 +99,8 @@ def load_dataset(
     chosen = select(found, selection)
     task, rate, arms = _facts(chosen[0])
     layout = ObservationLayout.of_arms(task, len(arms))
-    hashes = [sha256_of(one.file_path) for one in chosen]
-    episodes = [
-        read_cached(one.open(), layout, sha256, cache) for one, sha256 in zip(chosen, hashes, strict=True)
-    ]
+    read = _read(chosen, layout, cache)
+    chosen, hashes, episodes = [one for one, _, _ in read], [h for _, h, _ in read], [e for _, _, e in read]
     digest = DataDigest(
         task=task,
         control_hz=rate,
@@ -110,6 +112,27 @@ def load_dataset(
         dataset=account(dataset, given, found, chosen, selection) if dataset else None,
     )
     return join(digest, layout, episodes)
+
+
+def _read(
+    chosen: Iterable[LabelledEpisode], layout: ObservationLayout, cache: Path | None
+) -> list[tuple[LabelledEpisode, str, EpisodeArrays]]:
+    """Read episodes, each with the hash of its file. One that turns out to be damaged is left out, and the log says so.
+
+    Raises Corrupt where none is left.
+    """
+    read: list[tuple[LabelledEpisode, str, EpisodeArrays]] = []
+    damaged: list[Corrupt] = []
+    for one in chosen:
+        sha256 = sha256_of(one.file_path)
+        try:
+            read.append((one, sha256, read_cached(one.open(), layout, sha256, cache)))
+        except Corrupt as error:
+            _log.warning("Left out: %s", error)
+            damaged.append(error)
+    if not read:
+        raise damaged[0]
+    return read
 
 
 def join(digest: DataDigest, layout: ObservationLayout, episodes: Iterable[EpisodeArrays]) -> Dataset:

@@ -8,20 +8,23 @@ from pathlib import Path
 
 from mart.episodes.compatibility import require_alike
 from mart.episodes.filter import EpisodeFilter
-from mart.episodes.folder import episode_files, list_episodes
-from mart.episodes.labelled_episode import LabelledEpisode, require_readable
-from mart.protocol.errors import InvalidInput
+from mart.episodes.folder import episode_files, list_episodes, readable
+from mart.episodes.labelled_episode import LabelledEpisode
+from mart.protocol.errors import Corrupt, InvalidInput
 from mart.trainer.data.data_spec import Selection
 
 
 def candidates(paths: Iterable[Path]) -> list[LabelledEpisode]:
     """List what can be chosen from, the oldest first, each file once, by its resolved path.
 
-    Raises NotFound for a path that is not there and Corrupt for a damaged file.
+    A file that cannot be read is left out, and the log says so. Raises NotFound for a path that is not there and
+    Corrupt where every file is such a one.
     """
     found = list_episodes(path.resolve() for path in episode_files(paths))
-    require_readable(found)
-    return found
+    left = readable(found, ())
+    if found and not left:
+        raise Corrupt(found[0].error or "")
+    return left
 
 
 def select(found: list[LabelledEpisode], selection: Selection) -> list[LabelledEpisode]:

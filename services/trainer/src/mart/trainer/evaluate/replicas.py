@@ -52,9 +52,14 @@ def _private() -> Iterator[tuple[Bus, Sequence[str]]]:
             "No sim can be reached for rollouts: none is installed here; name running replicas with --replicas."
         )
     endpoint = f"tcp/127.0.0.1:{free_port()}"
-    environment = {"MART_ROUTER": endpoint, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        environment = {
+            "MART_ROUTER": endpoint,
+            "MART_BUS_SECRET_FILE": str(folder / "bus"),
+            "OMP_NUM_THREADS": "1",
+            "OPENBLAS_NUM_THREADS": "1",
+        }
         log = stack.enter_context((folder / "log").open("wb"))
 
         def start(*command: str) -> subprocess.Popen[bytes]:

@@ -4,6 +4,9 @@ queued ─► running ─► done
    ▲         ├─────► failed      what was given cannot be trained, or it was tried three times
    └─────────┤                   tried again: the process was killed, no sim was there, the cluster's head was lost
              └─────► cancelled   asked for; also while queued
+
+A setback (no sim, a lost cluster or trainer) costs no attempt: the job waits, the longer the more setbacks came without
+ten minutes of work between them, and fails after twenty.
 """
 
 from __future__ import annotations
@@ -18,6 +21,10 @@ from mart.trainer.evaluate.config import EvaluationSpec
 from mart.trainer.train.spec import TrainingSpec
 
 MAX_ATTEMPTS = 3
+MAX_SETBACKS = 20  # by then, over two hours have gone by
+_SECOND_NS = 1_000_000_000
+_FIRST_WAIT_S, _LONGEST_WAIT_S = 10, 600
+_LONG_RUN_S = 600
 
 
 class JobState(StrEnum):
@@ -51,7 +58,10 @@ class JobSpec(BaseModel):
 
 @dataclass(frozen=True)
 class Job:
-    """One job of the queue. run: its folder, below the trainer's data folder. Stamps are Unix time; 0: not yet."""
+    """One job of the queue. run: its folder, below the trainer's data folder. Stamps are Unix time; 0: not yet.
+
+    setbacks: how often it could not be gone on with, in a row. retry_ns: it is not started before.
+    """
 
     number: int
     sweep: int
@@ -64,6 +74,8 @@ class Job:
     submitted_ns: int = 0
     started_ns: int = 0
     ended_ns: int = 0
+    setbacks: int = 0
+    retry_ns: int = 0
 
     @property
     def id(self) -> str:
@@ -90,11 +102,29 @@ class Job:
             return self
         if code == ExitCode.DONE:
             return replace(self, state=JobState.DONE, ended_ns=now_ns, detail="")
-        if code == ExitCode.LOST:
-            return replace(self, state=JobState.QUEUED, attempt=self.attempt - 1, detail=why)
+        if code in (ExitCode.LOST, ExitCode.AWAY):
+            return self._set_back(code, why, now_ns)
         if code == ExitCode.REFUSED or self.attempt >= MAX_ATTEMPTS:
             return replace(self, state=JobState.FAILED, ended_ns=now_ns, detail=why)
         return replace(self, state=JobState.QUEUED, detail=f"tried again, because {why}")
+
+    def _set_back(self, code: int, why: str, now_ns: int) -> Job:
+        """Queue it again after a while. Whoever was only lost waits for nothing the first time."""
+        has_worked = now_ns - self.started_ns >= _LONG_RUN_S * _SECOND_NS
+        setbacks = 1 if has_worked else self.setbacks + 1
+        if setbacks > MAX_SETBACKS:
+            detail = f"{why}; it was tried {MAX_SETBACKS} times: retry it when that is mended"
+            return replace(self, state=JobState.FAILED, ended_ns=now_ns, detail=detail)
+        doublings = setbacks - (2 if code == ExitCode.LOST else 1)
+        wait_s = 0 if doublings < 0 else min(_FIRST_WAIT_S * 2**doublings, _LONGEST_WAIT_S)
+        return replace(
+            self,
+            state=JobState.QUEUED,
+            attempt=self.attempt - 1,
+            setbacks=setbacks,
+            retry_ns=now_ns + wait_s * _SECOND_NS,
+            detail=f"tried again in {wait_s} s, because {why}" if wait_s else why,
+        )
 
     def cancelled(self, now_ns: int) -> Job:
         """Return the cancelled job. Raises Conflict where it is over."""
@@ -106,4 +136,4 @@ class Job:
         """Return the job as it is queued anew. Raises Conflict unless it failed or was cancelled."""
         if self.state not in (JobState.FAILED, JobState.CANCELLED):
             raise Conflict(f"{self.id} is {self.state}; only a failed or cancelled job can be tried again.")
-        return replace(self, state=JobState.QUEUED, attempt=0, ended_ns=0, detail="")
+        return replace(self, state=JobState.QUEUED, attempt=0, setbacks=0, retry_ns=0, ended_ns=0, detail="")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import signal
 from pathlib import Path
 
@@ -37,9 +38,11 @@ def say_why(run: Path, sentence: str) -> None:
 
 
 def why_ended(run: Path, code: int) -> str:
-    """Return in words why a job's process ended with this exit code, which is not 0."""
+    """Return in words why a job's process ended with this exit code, which is not 0. Raises nothing."""
     if code < 0:
-        return f"its process was killed ({signal.Signals(-code).name})"
-    path = run / _WHY
-    said = path.read_text() if path.is_file() else ""
+        known = -code in set(signal.Signals)
+        return f"its process was killed ({signal.Signals(-code).name if known else f'signal {-code}'})"
+    said = ""
+    with contextlib.suppress(OSError):  # it left no word, or one that cannot be read
+        said = (run / _WHY).read_text(errors="replace")
     return said or f"its process ended with exit status {code}; its log says more"

@@ -6,7 +6,6 @@ import itertools
 import logging
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from mart.protocol.errors import Conflict, NotFound
@@ -26,7 +25,9 @@ class JobQueue:
     data_dir: what the folders of runs are relative to. Stamps are Unix time.
     """
 
-    def __init__(self, table: JobTable, executors: Mapping[str, Executor], data_dir: Path) -> None:
+    def __init__(
+        self, table: JobTable, executors: Mapping[str, Executor], data_dir: Path, now_ns: int
+    ) -> None:
         self._table = table
         self._executors = executors
         self._data_dir = data_dir
@@ -34,7 +35,7 @@ class JobQueue:
         for job in table.in_state(
             JobState.RUNNING
         ):  # their processes died with the trainer that started them
-            self._put(job.ended(code=ExitCode.LOST, why="the trainer was stopped meanwhile", now_ns=0))
+            self._put(job.ended(code=ExitCode.LOST, why="the trainer was stopped meanwhile", now_ns=now_ns))
 
     def submit(self, specs: Sequence[JobSpec], executor: str, now_ns: int) -> list[Job]:
         """Accept one sweep, a job for each spec, and return its jobs.
@@ -43,7 +44,7 @@ class JobQueue:
         """
         if executor not in self._executors:
             raise NotFound.named("executor", executor, self._executors)
-        waiting = len(self._table.in_state(JobState.QUEUED))
+        waiting = len(self._table.queued())
         if waiting + len(specs) > MAX_WAITING:
             raise Conflict(
                 f"{len(specs)} jobs were submitted, but {waiting} of at most {MAX_WAITING} wait already; "
@@ -56,15 +57,15 @@ class JobQueue:
         return jobs
 
     def advance(self, now_ns: int) -> None:
-        """Start what can be started, the oldest first."""
-        for job in self._table.in_state(JobState.QUEUED):
+        """Start what can be started and need not wait any longer, the oldest first."""
+        for job in self._table.queued():
             executor = self._executors.get(job.executor)
-            if executor is None or job.number in self._busy:
+            if executor is None or job.number in self._busy or job.retry_ns > now_ns:
                 continue
             if Counter(self._busy.values())[job.executor] < executor.slots:
-                self._start(job, executor, now_ns)
+                self._start(self._table.get(job.number), executor, now_ns)
             elif executor.trouble and not job.detail:
-                self._put(replace(job, detail=executor.trouble))
+                self._table.set_detail(job.number, executor.trouble)
 
     def end(self, ended: JobEnded, now_ns: int) -> None:
         """Take note that a job's process has ended. One that was cancelled meanwhile stays cancelled."""

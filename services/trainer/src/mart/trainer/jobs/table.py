@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from mart.trainer.evaluate.config import EvaluationSpec
 from mart.trainer.jobs.job import Job, JobSpec, JobState
 from mart.trainer.train.spec import TrainingSpec
 
-_VERSION = 1
+_VERSION = 2
 _SCHEMA = """
 CREATE TABLE jobs (
     number INTEGER PRIMARY KEY,
@@ -26,16 +27,32 @@ CREATE TABLE jobs (
     detail TEXT NOT NULL,
     submitted_ns INTEGER NOT NULL,
     started_ns INTEGER NOT NULL,
-    ended_ns INTEGER NOT NULL
+    ended_ns INTEGER NOT NULL,
+    setbacks INTEGER NOT NULL DEFAULT 0,
+    retry_ns INTEGER NOT NULL DEFAULT 0
 ) STRICT;
 CREATE INDEX by_state ON jobs (state);
 """
+_FROM_VERSION_1 = """
+ALTER TABLE jobs ADD COLUMN setbacks INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN retry_ns INTEGER NOT NULL DEFAULT 0;
+"""
 _COLUMNS = (
     "number", "sweep", "request", "judging", "executor", "run", "state", "attempt", "detail", "submitted_ns",
-    "started_ns", "ended_ns",
+    "started_ns", "ended_ns", "setbacks", "retry_ns",
 )  # fmt: skip
 _NAMES, _PLACES = ", ".join(_COLUMNS), ", ".join("?" * len(_COLUMNS))
 _PUT = f"INSERT OR REPLACE INTO jobs ({_NAMES}) VALUES ({_PLACES})"  # noqa: S608 - our own names
+
+
+@dataclass(frozen=True)
+class QueuedJob:
+    """Hold what decides whether a job is started: its spec, which may name thousands of files, is not read for that."""
+
+    number: int
+    executor: str
+    detail: str
+    retry_ns: int
 
 
 class JobTable:
@@ -76,6 +93,19 @@ class JobTable:
         """Return the jobs in this state, the oldest first."""
         return self._select("WHERE state = ? ORDER BY number", state)
 
+    def queued(self) -> list[QueuedJob]:
+        """Return what waits, the oldest first."""
+        rows = self._connection.execute(
+            "SELECT number, executor, detail, retry_ns FROM jobs WHERE state = ? ORDER BY number",
+            (JobState.QUEUED,),
+        )
+        return [QueuedJob(*row) for row in rows]
+
+    def set_detail(self, number: int, detail: str) -> None:
+        """Say something of a job, and leave all else of it as it is."""
+        with self._connection:
+            self._connection.execute("UPDATE jobs SET detail = ? WHERE number = ?", (detail, number))
+
     def last(self) -> tuple[int, int]:
         """Return the highest numbers of a job and of a sweep so far; 0 before the first."""
         job, sweep = self._connection.execute("SELECT max(number), max(sweep) FROM jobs").fetchone()
@@ -88,12 +118,18 @@ class JobTable:
             self._connection.execute("PRAGMA synchronous = FULL")
             (version,) = self._connection.execute("PRAGMA user_version").fetchone()
             if version == 0:
-                self._connection.executescript(f"BEGIN; {_SCHEMA} PRAGMA user_version = {_VERSION}; COMMIT;")
-                version = _VERSION
+                self._become(_SCHEMA)
+            elif version == 1:
+                self._become(_FROM_VERSION_1)
+            (version,) = self._connection.execute("PRAGMA user_version").fetchone()
         except sqlite3.DatabaseError as error:
             raise Corrupt(f"{path} is no job table: {error}; move it away to begin a new one.") from error
         if version != _VERSION:
             raise Corrupt(f"{path} is of version {version}; this trainer reads {_VERSION}: move it away.")
+
+    def _become(self, script: str) -> None:
+        """Make this version's tables by a script, wholly or not at all."""
+        self._connection.executescript(f"BEGIN; {script} PRAGMA user_version = {_VERSION}; COMMIT;")
 
     def _select(self, clause: str, *values: int | str) -> list[Job]:
         rows = self._connection.execute(f"SELECT {_NAMES} FROM jobs {clause}", values)  # noqa: S608

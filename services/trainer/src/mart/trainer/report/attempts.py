@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import logging
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from mart.episodes.filter import COUNTED
-from mart.episodes.folder import list_episodes
-from mart.episodes.labelled_episode import require_readable
+from mart.episodes.folder import list_episodes, readable
 from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, NotFound
 from mart.protocol.tasks import Task, get_task
 from mart.protocol.vocabulary import EpisodeOutcome
 from mart.trainer.report.coordination import Attempt
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -30,15 +32,19 @@ def read_attempts(folder: Path) -> list[Attempts]:
 
     Failures count; episodes that were discarded or dropped don't.
 
-    Raises NotFound where there is no episode and Corrupt where a file cannot be read.
+    A file that cannot be read is left out, and the log says so. Raises NotFound where there is no episode.
     """
-    listed = list_episodes(folder)
-    require_readable(listed)
+    listed = readable(list_episodes(folder), [folder])
     found: defaultdict[tuple[str, int], list[Attempt]] = defaultdict(list)
     for episode in COUNTED.apply(listed):
         if episode.task is None:
-            raise Corrupt(f"{episode.file_path} does not say of which task it is; leave it out.")
-        attempt = Attempt(_done(episode.open()), episode.outcome == EpisodeOutcome.SUCCESS)
+            _log.warning("Left out: %s does not say of which task it is.", episode.file_path)
+            continue
+        try:
+            attempt = Attempt(_done(episode.open()), episode.outcome == EpisodeOutcome.SUCCESS)
+        except Corrupt as error:
+            _log.warning("Left out: %s", error)
+            continue
         found[episode.task, len(episode.arms)].append(attempt)
     if not found:
         raise NotFound(f"There are no episodes in {folder}; `mart collect` records some.")

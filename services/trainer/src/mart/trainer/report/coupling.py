@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,9 +14,9 @@ from numpy.typing import NDArray
 
 from mart.episodes.arrays import EpisodeData
 from mart.episodes.filter import EpisodeFilter
-from mart.episodes.folder import list_episodes
-from mart.episodes.labelled_episode import LabelledEpisode, require_readable
-from mart.protocol.errors import InvalidInput, NotFound
+from mart.episodes.folder import list_episodes, readable
+from mart.episodes.labelled_episode import LabelledEpisode
+from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.tasks import Arm, Task, get_task
 from mart.protocol.vocabulary import EpisodeOutcome
 from mart.trainer.data.layout import ObservationLayout
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from mart.trainer.models.policies.policy import Policy
 
 Array = NDArray[np.float64]
+_log = logging.getLogger(__name__)
+
 _POLICY_SEED = 0
 _SUCCESSFUL = EpisodeFilter(outcomes=(EpisodeOutcome.SUCCESS,))
 
@@ -64,10 +67,10 @@ def read_couplings(folder: Path, policies: Sequence[Policy] = ()) -> list[Coupli
     """Read every task with successful episodes in a folder, as labelled since; dropped ones don't count.
 
     policies: of each task the one among these is looked at.
-    Raises NotFound where there are none, InvalidInput where there are too few, Corrupt where one cannot be read.
+    A file that cannot be read is left out, and the log says so. Raises NotFound where there are none, and InvalidInput
+    where there are too few.
     """
-    listed = list_episodes(folder)
-    require_readable(listed)
+    listed = readable(list_episodes(folder), [folder])
     by_task: defaultdict[tuple[str, int], list[LabelledEpisode]] = defaultdict(list)
     for episode in _SUCCESSFUL.apply(listed):
         if episode.task is not None:
@@ -88,7 +91,12 @@ def read_couplings(folder: Path, policies: Sequence[Policy] = ()) -> list[Coupli
 
 def _coupling(task: Task, episodes: Sequence[LabelledEpisode], policy: Policy | None) -> Coupling:
     layout = ObservationLayout.of(task)
-    data = [episode.open().arrays(task) for episode in episodes]
+    data = list(_arrays(task, episodes))
+    if len(data) < MIN_EPISODES:
+        raise InvalidInput(
+            f"{len(data)} successful episodes of {task.name} can be read; at least {MIN_EPISODES} tell something "
+            "about dependence: `mart episodes repair` may save more."
+        )
     observed = [_observed(layout, one) for one in data]
     return Coupling(
         task=task,
@@ -100,6 +108,15 @@ def _coupling(task: Task, episodes: Sequence[LabelledEpisode], policy: Policy | 
         reached=_reached(task, data),
         reliance={} if policy is None else _reliance(task, policy, [_before_actions(one) for one in data]),
     )
+
+
+def _arrays(task: Task, episodes: Sequence[LabelledEpisode]) -> Iterator[EpisodeData]:
+    """Read episodes; one that turns out to be damaged is left out, and the log says so."""
+    for episode in episodes:
+        try:
+            yield episode.open().arrays(task)
+        except Corrupt as error:
+            _log.warning("Left out: %s", error)
 
 
 def _observed(layout: ObservationLayout, data: EpisodeData) -> ObservedEpisode:

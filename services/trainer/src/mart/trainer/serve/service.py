@@ -65,9 +65,10 @@ def operate(
     policy = load(settings.checkpoint)
     arms = _arms(policy, settings.arms)
     name = settings.name or settings.checkpoint.name
-    holder_id = f"operate-{secrets.token_hex(8)}"
+    holder_id = secrets.token_hex(16)
+    called = f"operate-{secrets.token_hex(8)}"  # everybody sees it: another one
     with (
-        running(settings, ServiceKind.OPERATE, holder_id) as service,
+        running(settings, ServiceKind.OPERATE, called) as service,
         claimed_seats(RoomClient(service.bus, settings.room), arms, holder_id, name) as seats,
     ):
         program = ProgramSeats(seats, name, lambda status: policy_commanders(policy, status))

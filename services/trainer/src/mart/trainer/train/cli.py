@@ -151,11 +151,16 @@ def _spec(options: dict[str, Any]) -> TrainingSpec:
 def _data(
     paths: tuple[Path, ...], name: str | None
 ) -> tuple[DataSetName | None, tuple[Path, ...], Selection]:
-    """Return the data set, the files or folders to read, and what is taken of them where nothing is said."""
+    """Return the data set, the files or folders to read, and what is taken of them where nothing is said.
+
+    Raises Corrupt for a file that was named itself and cannot be read.
+    """
+    from mart.episodes.folder import described, readable
     from mart.runtime.settings import Settings
     from mart.trainer.data.named_dataset import WHOLE, find_dataset
 
     if not name:
+        readable(described(path for path in paths if not path.is_dir()), paths)
         return None, tuple(path.resolve() for path in paths), Selection()
     if len(paths) > 1:
         raise InvalidInput(

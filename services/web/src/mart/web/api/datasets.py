@@ -24,9 +24,11 @@ class DatasetEditRequest(BaseModel):
     paths: list[FilePath] = Field(default_factory=list, max_length=200)
     all: CatalogueFilter | None = None
 
-    def request(self, dataset: str) -> CatalogueRequest:
-        """Return the catalogue's request for the data set `dataset`."""
-        curate = CatalogueRequest.Curate(dataset=dataset, take_out=self.action == "remove", paths=self.paths)
+    def request(self, dataset: str, by: str) -> CatalogueRequest:
+        """Return the catalogue's request for the data set `dataset`, said by somebody of that name."""
+        curate = CatalogueRequest.Curate(
+            dataset=dataset, take_out=self.action == "remove", paths=self.paths, by=by
+        )
         if self.all is not None:
             curate.all.CopyFrom(CatalogueRequest.List(**self.all.model_dump()))
         return CatalogueRequest(curate=curate)
@@ -39,13 +41,13 @@ class UndoRequest(BaseModel):
 
 
 @router.post("/{dataset}")
-async def curate(dataset: str, body: DatasetEditRequest, app: App, _user: WritingUser) -> Json:
+async def curate(dataset: str, body: DatasetEditRequest, app: App, user: WritingUser) -> Json:
     """Put episodes into a data set, or take them out."""
-    return {"curated": as_json((await app.catalogue.ask(body.request(dataset))).curated)}
+    return {"curated": as_json((await app.catalogue.ask(body.request(dataset, user.name))).curated)}
 
 
 @router.post("/{dataset}/undo")
-async def undo(dataset: str, body: UndoRequest, app: App, _user: WritingUser) -> Json:
+async def undo(dataset: str, body: UndoRequest, app: App, user: WritingUser) -> Json:
     """Undo an act of `curate`."""
-    request = CatalogueRequest(undo=CatalogueRequest.Undo(dataset=dataset, act_ns=body.act_ns))
+    request = CatalogueRequest(undo=CatalogueRequest.Undo(dataset=dataset, act_ns=body.act_ns, by=user.name))
     return {"curated": as_json((await app.catalogue.ask(request)).curated)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from dataclasses import asdict
 
@@ -11,7 +12,7 @@ from mart.protocol import clock
 from mart.protocol.vocabulary import ServiceKind
 from mart.web.access.certificate import days_left
 from mart.web.api.dependencies import App, JoinedUser, now_unix_s
-from mart.web.lobby.health_findings import delays, machine, relays, rooms, services
+from mart.web.lobby.health_findings import delays, machine, pictures, relays, rooms, services
 from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api/health")
@@ -32,7 +33,8 @@ async def findings(app: App, _user: JoinedUser) -> Json:
     known = (
         *services(app.lobby.services.by_kind()),
         *rooms(app.lobby.rooms_json("", clock.monotonic_s())),
-        *delays(app.lobby.latencies.fresh(clock.monotonic_s())),
+        *delays(app.lobby.latencies.fresh(clock.monotonic_s()), os.getloadavg()[0] / (os.cpu_count() or 1)),
+        *pictures(app.lobby.missing_pictures.fresh(clock.monotonic_s())),
         *machine(shutil.disk_usage(app.data_dir).free, days_left(app.certificate, now_unix_s())),
         *relays(app.relays),
     )

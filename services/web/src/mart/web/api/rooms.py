@@ -127,6 +127,20 @@ async def act(room: str, body: EpisodeActionRequest, app: App, user: JoinedUser)
     return {"room": app.lobby.room_json(room, user.holder_id, clock.monotonic_s())}
 
 
+@router.post("/rooms/{room}/stop")
+async def stop(room: str, app: App, user: JoinedUser) -> Json:
+    """Stop everything in the room, until somebody lets go, and send the room."""
+    await app.rooms.stop(room, user.holder_id, user.name)
+    return {"room": app.lobby.room_json(room, user.holder_id, clock.monotonic_s())}
+
+
+@router.delete("/rooms/{room}/stop")
+async def let_go_of_stop(room: str, app: App, user: JoinedUser) -> Json:
+    """Let everything go on, whoever stopped it, and send the room."""
+    await app.rooms.let_go_of_stop(room, user.name)
+    return {"room": app.lobby.room_json(room, user.holder_id, clock.monotonic_s())}
+
+
 def _task_json(name: str) -> Json:
     task = get_task(name)
     return {

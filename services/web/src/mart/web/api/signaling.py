@@ -11,6 +11,7 @@ from pydantic import BaseModel, Field
 
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, Forbidden
+from mart.protocol.holders import is_held_by
 from mart.protocol.messages import OPERATOR_HOLD, Seat
 from mart.protocol.queryables import MAX_SDP_CHARACTERS
 from mart.protocol.tokens import Role, SeatToken, sign, verify
@@ -50,7 +51,7 @@ class SdpOffer(BaseModel):
 async def token(room: str, arm: str, app: App, user: JoinedUser) -> Json:
     """Send a token for a seat: its holder's drives, anybody else's watches."""
     seat = _seat(app, room, arm)
-    role = Role.BROWSER if seat.holder_id == user.holder_id else Role.VIEWER
+    role = Role.BROWSER if is_held_by(seat, user.holder_id) else Role.VIEWER
     signed = _sign(
         app, SeatToken(room, arm, seat.epoch, role, user.holder_id, now_unix_s() + _BROWSER_TOKEN_S)
     )
@@ -98,11 +99,11 @@ async def phone_token(room: str, arm: str, app: App, authorization: Authorizatio
 
     It stays with the user who paired it: its token is renewed while, and whenever, they hold the seat.
     """
-    paired = _claims(app, room, arm, authorization)
+    paired = claims_of(app, room, arm, authorization)
     if paired.role is not Role.PHONE:
         raise Forbidden(f"The token of a {paired.role} was given; only a phone's is renewed here.")
     seat = _seat(app, room, arm)
-    if seat.holder_id != paired.holder_id:
+    if not is_held_by(seat, paired.holder_id):
         driver = "Nobody" if seat.operator == OPERATOR_HOLD else seat.name or "A script"
         raise Conflict(
             f"{driver} drives {arm} now; this phone goes on when the person who paired it takes the seat again."
@@ -116,7 +117,7 @@ async def offer(
     room: str, arm: str, body: SdpOffer, *, app: App, address: Address, authorization: Authorization = ""
 ) -> Json:
     """Have the seat's gateway answer an offer and send the answer."""
-    seat_token = _claims(app, room, arm, authorization)
+    seat_token = claims_of(app, room, arm, authorization)
     if seat_token.epoch != _seat(app, room, arm).epoch:
         raise Forbidden(
             "This seat has changed hands since you got your token; take a seat in the lobby again."
@@ -135,8 +136,8 @@ def _bearer(authorization: str) -> str:
     return authorization.removeprefix("Bearer ")
 
 
-def _claims(app: AppState, room: str, arm: str, authorization: str) -> SeatToken:
-    """What the sent token says; raises Forbidden where it is not good for this seat."""
+def claims_of(app: AppState, room: str, arm: str, authorization: str) -> SeatToken:
+    """Return what the sent token says; raises Forbidden where it is not good for this seat."""
     claims = verify(_bearer(authorization), app.secret)
     if (claims.room, claims.arm) != (room, arm):
         raise Forbidden(f"This seat token is for {claims.arm} in {claims.room}, not for {arm} in {room}.")
@@ -149,7 +150,7 @@ def _seat(app: AppState, room: str, arm: str) -> Seat:
 
 def _own_seat(app: AppState, room: str, arm: str, user: User) -> Seat:
     seat = _seat(app, room, arm)
-    if seat.holder_id != user.holder_id:
+    if not is_held_by(seat, user.holder_id):
         raise Forbidden(f"{arm} in {room} is not your seat; only its holder can pair a phone with it.")
     return seat
 

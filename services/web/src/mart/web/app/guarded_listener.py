@@ -16,7 +16,7 @@ import socket
 from collections.abc import Callable
 from typing import Any
 
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from mart.protocol import clock
 from mart.runtime.rate_limit import RateLimit
@@ -24,6 +24,7 @@ from mart.web.access.connection_table import ConnectionTable, Peer
 
 _log = logging.getLogger(__name__)
 
+TAKEN_WITHIN_S = 30.0  # a piece of an answer, by whoever asked
 _LOOK_EVERY_S = 1.0
 _MAX_FILES = 65_536
 _KEPT_FILES = 256  # descriptors for everything but connections
@@ -89,15 +90,23 @@ class _Accepted(socket.socket):
 
 
 class ConnectionMiddleware:
-    """ASGI middleware, the outermost: it tells the table which connections ask."""
+    """ASGI middleware, the outermost: it tells the table which connections ask, and gives up who does not listen."""
 
     def __init__(self, app: ASGIApp, table: ConnectionTable) -> None:
         self._app, self._table = app, table
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         address, port = scope.get("client") or ("", 0)
+
+        async def send_in_time(message: Message) -> None:
+            async with asyncio.timeout(TAKEN_WITHIN_S):
+                await send(message)
+
         with self._table.asking((address, port), clock.monotonic_s):
-            await self._app(scope, receive, send)
+            try:
+                await self._app(scope, receive, send_in_time if scope["type"] == "http" else send)
+            except TimeoutError:
+                _log.info("%s takes nothing of its answer; the connection is ended", address)
 
 
 def raise_file_limit() -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mart.protocol import clock, keys
+from mart.protocol.holders import is_held_by
 from mart.protocol.messages import (
     OPERATOR_HUMAN,
     EpisodeRequest,
@@ -68,10 +69,20 @@ class RoomRequester:
         request = EpisodeRequest.Reset(holder_id=self._speaker(room, user))
         await self._ask_episode(room, EpisodeRequest(reset=request))
 
+    async def stop(self, room: str, holder_id: str, name: str) -> None:
+        """Stop everything in the room, as `name`; once is enough."""
+        await self._ask_episode(
+            room, EpisodeRequest(stop=EpisodeRequest.Stop(holder_id=holder_id, name=name))
+        )
+
+    async def let_go_of_stop(self, room: str, name: str) -> None:
+        """Let everything go on in the room, as `name`."""
+        await self._ask_episode(room, EpisodeRequest(go_on=EpisodeRequest.GoOn(name=name)))
+
     def _speaker(self, room: str, user: User) -> str:
         """Whoever holds no seat speaks as anybody: the sim hears them where no human drives."""
         seats = self._lobby.rooms.status(room, clock.monotonic_s()).seats
-        return user.holder_id if any(seat.holder_id == user.holder_id for seat in seats) else ""
+        return user.holder_id if any(is_held_by(seat, user.holder_id) for seat in seats) else ""
 
     async def _ask_seat(self, room: str, arm: str, request: SeatRequest) -> Seat:
         self._lobby.rooms.seat(room, arm, clock.monotonic_s())

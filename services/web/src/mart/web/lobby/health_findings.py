@@ -11,6 +11,10 @@ from mart.web.lobby.room_json import Json
 
 SLOW = 0.95  # of real time: below it, people feel it
 LATE_MS = 200.0  # from hand to picture: above it, people lose speed
+LATE_P95_MS = 400.0
+BUSY_LOAD = 1.0  # programs that want to run, for each core of this machine
+_ON_THE_NETWORK = ("input → gateway", "send → displayed")  # the stages that a cable makes shorter
+_BUSY = "This machine is busy: close a room, other windows or other programs."
 LOW_SPACE_BYTES = 1_000_000_000
 CERTIFICATE_DAYS = 7.0  # one that this site made itself is renewed long before
 
@@ -75,6 +79,9 @@ def rooms(seen: Iterable[Json]) -> Iterator[HealthFinding]:
         if room["stale"]:
             found = "does not answer"
             mend = "It comes back by itself when its simulation runs again; its log says what happened."
+        elif room["stop"]:
+            found = f"stopped by {room['stop']['name']}"
+            mend = "Anybody lets it go on: press Go on twice, in the lobby or in the room."
         elif room["waiting_for"]:
             late = ", ".join(one["name"] or one["arm"] for one in room["waiting_for"])
             found, mend = (
@@ -82,19 +89,36 @@ def rooms(seen: Iterable[Json]) -> Iterator[HealthFinding]:
                 "Ask them, or set their seat to script or hold once it is free.",
             )
         elif room["tick"] and room["real_time_factor"] < SLOW and room["barrier"] == "running":
-            mend = "This machine is busy: close a room, fewer windows, or fewer ticks a second."
+            mend = _BUSY
         yield HealthFinding("rooms", room["room"], found, mend)
 
 
-def delays(newest: Iterable[tuple[str, Event.Latency]]) -> Iterator[HealthFinding]:
-    """Yield what is known of each seat's delay; `newest`: its last report, with its room."""
+def delays(newest: Iterable[tuple[str, Event.Latency]], load: float = 0.0) -> Iterator[HealthFinding]:
+    """Yield what is known of each seat's delay; `newest`: its last report, with its room.
+
+    `load`: how many programs want to run for each core of this machine. Where it is busy, that comes first: a browser
+    that shows pictures late looks like a network.
+    """
     for room, latency in newest:
         found = f"{latency.p50_ms:.0f} ms typical, 95 % under {latency.p95_ms:.0f} ms"
-        stage = max(latency.stages, key=lambda one: one.p50_ms, default=None)
-        worst = f" Most of it: {stage.name.replace('_', ' ')}." if stage else ""
-        late = latency.p50_ms > LATE_MS
-        mend = f"Use a cable, or move nearer to the access point.{worst}" if late else ""
+        late = latency.p50_ms > LATE_MS or latency.p95_ms > LATE_P95_MS
+        mend = _mend_of_delay(latency, load) if late else ""
         yield HealthFinding("delays", f"{latency.arm} in {room}, hand to picture", found, mend)
+
+
+def _mend_of_delay(latency: Event.Latency, load: float) -> str:
+    stage = max(latency.stages, key=lambda one: one.p50_ms, default=None)
+    worst = f" Most of it: {stage.name.replace('_', ' ')}." if stage else ""
+    if load > BUSY_LOAD or (stage is not None and stage.name not in _ON_THE_NETWORK):
+        return f"{_BUSY}{worst}"
+    return f"Use a cable, or move nearer to the access point.{worst}"
+
+
+def pictures(missing: Iterable[tuple[str, Event.NoPicture]]) -> Iterator[HealthFinding]:
+    """Yield each seat that gets no picture; `missing`: what it said last, with its room."""
+    for room, report in missing:
+        mend = "Try `mart doctor` on the machine where the gateway runs: it opens what drawing needs."
+        yield HealthFinding("rooms", f"{report.arm} in {room}, picture", report.reason, mend)
 
 
 def machine(free_bytes: int, certificate_days: float | None) -> Iterator[HealthFinding]:

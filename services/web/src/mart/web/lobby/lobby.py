@@ -14,7 +14,7 @@ from mart.web.lobby.listeners import LobbyListeners
 from mart.web.lobby.live_services import LiveServices, service_of
 from mart.web.lobby.room_json import Json, event_json, status_json
 from mart.web.lobby.room_table import RoomTable
-from mart.web.lobby.seat_latencies import SeatLatencies
+from mart.web.lobby.seat_reports import SeatReports
 from mart.web.lobby.thumbnails import Thumbnails
 
 _NOBODY = ""
@@ -27,7 +27,8 @@ class Lobby:
         self.services = LiveServices()
         self.rooms = RoomTable()
         self.thumbnails = Thumbnails()
-        self.latencies = SeatLatencies()
+        self.latencies = SeatReports[Event.Latency]()
+        self.missing_pictures = SeatReports[Event.NoPicture]()
         self.awaited_saves = AwaitedSaves()
         self.last_episodes = LastEpisodes()
         self.listeners = LobbyListeners()
@@ -49,7 +50,9 @@ class Lobby:
             raise InvalidInput(f"An event was given that cannot be told: {error}.") from error
         match event.WhichOneof("what"):
             case "latency":
-                self.latencies.see(event.room, event.latency, now_s)
+                self.latencies.see(event.room, event.latency.arm, event.latency, now_s)
+            case "no_picture":
+                self.missing_pictures.see(event.room, event.no_picture.arm, event.no_picture, now_s)
             case "episode_saved":
                 self.awaited_saves.see_saved(event.room, event.episode_saved.number)
                 seats = self.rooms.seats(event.room)

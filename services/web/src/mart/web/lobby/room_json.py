@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mart.protocol.errors import InvalidInput, NotFound
+from mart.protocol.holders import is_held_by
 from mart.protocol.messages import (
     Event,
     RoomStatus,
@@ -23,12 +24,12 @@ Json = dict[str, Any]
 
 def seat_json(seat: Seat, holder_id: str) -> Json:
     """Return a seat as the user with `holder_id` sees it; the id is a secret between the sim and the seat's holder."""
-    mine = seat.holder_id != "" and seat.holder_id == holder_id
+    mine = is_held_by(seat, holder_id)
     return {
         "arm": seat.arm,
         "operator": operator_word(seat.operator),
         "epoch": seat.epoch,
-        "holder_id": seat.holder_id if mine else "",
+        "holder_id": holder_id if mine else "",
         "name": seat.name,
         "ready": seat.ready,
         "engaged": seat.engaged,
@@ -86,6 +87,7 @@ def status_json(status: RoomStatus, holder_id: str) -> Json:
         "episodes_saved": status.episodes_saved,
         "episodes_good": status.episodes_good,
         "plan": _plan_json(status),
+        "stop": _stop_json(status),
         "unrecorded": status.unrecorded,
     }
 
@@ -93,6 +95,11 @@ def status_json(status: RoomStatus, holder_id: str) -> Json:
 def _plan_json(status: RoomStatus) -> Json | None:
     plan = status.plan
     return {"episodes": plan.episodes, "good": plan.good} if status.HasField("plan") else None
+
+
+def _stop_json(status: RoomStatus) -> Json | None:
+    stop = status.stop
+    return {"arm": stop.arm, "name": stop.name} if status.HasField("stop") else None
 
 
 def _task_json(status: RoomStatus) -> Json:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from mart.protocol.errors import NotFound
+from mart.protocol.holders import is_held_by
 from mart.protocol.messages import RoomStatus, Seat
 
 STALE_AFTER_S = 1.0  # a sim speaks five times a second
@@ -78,7 +79,7 @@ class RoomTable:
             (name, seat.arm)
             for name, room in sorted(self._rooms.items())
             for seat in room.status.seats
-            if holder_id and seat.holder_id == holder_id
+            if is_held_by(seat, holder_id)
         ]
 
     def seats(self, room: str) -> tuple[Seat, ...]:

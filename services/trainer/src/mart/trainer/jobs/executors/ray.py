@@ -13,12 +13,14 @@ import socket
 import subprocess
 import sys
 import threading
+from functools import partial
 from pathlib import Path
 from typing import IO
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
 from mart.runtime.child_process import start_child, stop_child
+from mart.runtime.watchdog import start_vital_thread
 from mart.trainer.jobs.executors.executor import JobEnded, OnEnded
 from mart.trainer.jobs.job import ExitCode
 from mart.trainer.jobs.job_files import why_ended
@@ -94,7 +96,7 @@ class RayExecutor:
             (self._listen, (self._driver, self._driver.stdout)),
             (self._look, (self._driver,)),
         ):
-            threading.Thread(target=target, args=arguments, daemon=True).start()
+            start_vital_thread(partial(target, *arguments), "ray")
 
     def _say(self, **fields: int | str) -> None:
         """A driver that is gone is told of by `_listen`, together with its jobs."""

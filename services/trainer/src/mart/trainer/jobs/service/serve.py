@@ -32,7 +32,7 @@ def serve_trainer(settings: TrainerSettings) -> None:
         stack.enter_context(_claimed(settings))
         table = stack.enter_context(contextlib.closing(JobTable(settings.jobs_path)))
         executors = stack.enter_context(_executors(settings, inbox.put_always))
-        jobs = JobQueue(table, executors, settings.data_dir)
+        jobs = JobQueue(table, executors, settings.data_dir, clock.wall_ns())
         videos = stack.enter_context(contextlib.closing(Videos(settings.data_dir / "logs" / "render.log")))
         handlers = TrainerHandlers(
             settings, table, jobs, videos, executors=list(executors), now_ns=clock.wall_ns

@@ -67,6 +67,9 @@ export const join = (code, name) => request("POST", "/join", { code, name });
 /** Who one is here; fails with 401 where one has not joined. @type {() => Promise<Api.Person>} */
 export const me = () => request("GET", "/me");
 
+/** Ends one's visit, and leaves one's seats. @type {() => Promise<Api.Person>} */
+export const leave = () => request("DELETE", "/me");
+
 /** How every part does. @type {() => Promise<{ findings: Api.Finding[] }>} */
 export const findings = () => request("GET", "/health/findings");
 
@@ -93,6 +96,12 @@ export const closeRoom = (room) => request("DELETE", roomPath(room));
  */
 export const actOnEpisode = (room, action, arm) => request("POST", `${roomPath(room)}/episode`, { action, arm });
 
+/** Stops everything in a room, until somebody lets go. @type {(room: string) => Promise<{ room: Api.Room }>} */
+export const stopRoom = (room) => request("POST", `${roomPath(room)}/stop`);
+
+/** Lets everything go on, whoever stopped it. @type {(room: string) => Promise<{ room: Api.Room }>} */
+export const letGoOfStop = (room) => request("DELETE", `${roomPath(room)}/stop`);
+
 // Seats
 
 /** @typedef {Promise<{ seat: Api.Seat }>} SeatAnswer */
@@ -118,6 +127,21 @@ export const seatToken = (room, arm) => request("GET", `${seatPath(room, arm)}/t
 
 /** A code that makes a phone the hand of one's seat. @type {(room: string, arm: string) => Promise<Api.Pairing>} */
 export const pairPhone = (room, arm) => request("POST", `${seatPath(room, arm)}/pair`);
+
+/** Stops everything, from a paired phone. @type {(room: string, arm: string, token: string) => Promise<unknown>} */
+export const stopByPhone = (room, arm, token) =>
+  request("POST", `${seatPath(room, arm)}/stop`, undefined, bearer(token));
+
+/**
+ * Says how an episode goes on, from a paired phone.
+ * @type {(room: string, arm: string, token: string, action: "ready" | "unready" | "discard") => Promise<unknown>}
+ */
+export const actByPhone = (room, arm, token, action) =>
+  request("POST", `${seatPath(room, arm)}/episode`, { action }, bearer(token));
+
+/** Lets everything go on, from a phone. @type {(room: string, arm: string, token: string) => Promise<unknown>} */
+export const letGoByPhone = (room, arm, token) =>
+  request("DELETE", `${seatPath(room, arm)}/stop`, undefined, bearer(token));
 
 /** What a phone gets for a pairing code, once. @type {(code: string) => Promise<Api.PairedPhone>} */
 export const redeemPairing = (code) => request("POST", "/pair", { code });

@@ -1,6 +1,6 @@
 // What the pages say: states in the words of the people who use them. Pure.
 
-import { lateName } from "./arms.js";
+import { armName, lateName } from "./arms.js";
 
 /** 2.34 → "2.3 s" @type {(value: number) => string} */
 export const seconds = (value) => `${value.toFixed(1)} s`;
@@ -61,9 +61,18 @@ export function planText(plan) {
   return episodes === 1 ? "Planned episode recorded" : `All ${episodes} episodes recorded`;
 }
 
+/**
+ * "Stopped by Ana, blue arm": who pressed the emergency stop of a room.
+ * @param {Api.Room["stop"]} stop
+ */
+export function stoppedText(stop) {
+  if (!stop) return "Stopped";
+  return `Stopped by ${stop.name}${stop.arm && `, ${armName(stop.arm).toLowerCase()}`}`;
+}
+
 /** "Waiting for Ana, 0.8 s", or nothing. @type {(room: Api.Room) => string} */
 export function waitingText(room) {
-  if (room.barrier === "stopped") return "Emergency stop";
+  if (room.barrier === "stopped") return stoppedText(room.stop);
   if (!["stalled", "paused"].includes(room.barrier) || room.waiting_for.length === 0) return "";
   const names = room.waiting_for.map((late) => lateName(room.seats, late)).join(" and ");
   const longest = Math.max(...room.waiting_for.map((late) => late.since_s));

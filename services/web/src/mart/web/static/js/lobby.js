@@ -43,6 +43,7 @@ async function start() {
     submit(event.submitter instanceof HTMLButtonElement && event.submitter.value === "try");
   });
   tryButton.addEventListener("click", () => attempt(tryIt));
+  byId("leave").addEventListener("click", () => attempt(signOut));
   const person = localStorage.getItem(NAME_KEY) && (await api.me().catch(() => null));
   if (person) enter(person);
   else askToJoin();
@@ -55,6 +56,7 @@ function askToJoin(why = "") {
   setShown(form, true);
   setShown(byId("front-picture"), true);
   setShown(byId("me"), false);
+  setShown(byId("leave"), false);
   setShown(byId("go"), false);
   setShown(byId("rooms-section"), false);
   setShown(byId("pages"), false);
@@ -89,10 +91,16 @@ function enter(person) {
   setShown(byId("pages"), true);
   setText(byId("me"), person.name);
   setShown(byId("me"), true);
+  setShown(byId("leave"), true);
   setShown(byId("front-picture"), false);
   followRooms({ onRooms: show, onEnded: () => askToJoin(ENDED), onConnection: showConnection });
   followPolicies();
   offerRooms();
+}
+
+async function signOut() {
+  await api.leave();
+  location.reload();
 }
 
 /** Rooms can be opened and closed where a platform runs them; elsewhere the page says why not, and how. */

@@ -3,14 +3,16 @@
 import * as api from "./api.js";
 import { armName, badge, hasPicture } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
+import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
 import { CUES } from "./facts.js";
 import { waitingText } from "./formatting.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
 import { InputPanel } from "./hud/input-panel.js";
-import { showLatency } from "./hud/latency.js";
+import { showHealth } from "./hud/health-figure.js";
 import { showPartners } from "./hud/partners.js";
+import { showPicture } from "./hud/picture.js";
 import { StatusBar } from "./hud/status-bar.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { watchTicks } from "./link/tickcode.js";
@@ -22,6 +24,9 @@ import { inPlainWords } from "./plain-words.js";
 /** @import { ActionCommand } from "./hud/status-bar-view.js" */
 
 const NOTICE_MS = 6000;
+const AGE_MS = 500;
+const NO_NEWS_MS = 2500; // rooms are told once a second at least
+const STILL_MS = 1000;
 const RECORDED_KEY = "mart.recorded";
 const FINGERS = matchMedia("(hover: none) and (pointer: coarse)");
 const [, , roomName = "", , armId = ""] = location.pathname.split("/").map(decodeURIComponent);
@@ -33,6 +38,8 @@ let room = null;
 let status = null;
 let noticeTimer = 0;
 let followed = 0; // the seat epoch that the connection is for
+let heardMs = -Infinity; // when the rooms were last told
+let displayedMs = -Infinity; // when a newer picture was last displayed
 
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
@@ -45,6 +52,13 @@ const link = new SeatLink({
   onStatus,
   onTrack: (stream) => (video.srcObject = stream),
 });
+const stop = emergencyStop({
+  label: roomName,
+  id: "stop",
+  key: "P",
+  onStop: () => run("stop"),
+  onLetGo: () => run("goOn"),
+});
 const cues = new Cues(armId, (message) => link.send(message), () => render());
 
 begin();
@@ -56,7 +70,7 @@ function begin() {
   setText(byId("page-title"), `${armName(armId)} in ${roomName}`);
   setText(byId("arm"), armName(armId));
   setText(byId("room"), roomName);
-  for (const command of /** @type {const} */ (["gripper", "stop", "leave"])) {
+  for (const command of /** @type {const} */ (["gripper", "leave"])) {
     byId(command).addEventListener("click", () => run(command));
   }
   byId("toggle").addEventListener("click", () => {
@@ -65,13 +79,16 @@ function begin() {
   byId("switch").addEventListener("click", () => {
     link.send({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" });
   });
+  byId("emergency").append(stop.node);
   byId("health").addEventListener("toggle", () => render());
   video.addEventListener("resize", () => render());
   document.addEventListener("click", letGoOfButton);
-  watchTicks(video, (tick, displayedMs) => {
-    input.seenTick = Math.max(input.seenTick, tick);
-    link.send({ type: "seen", tick, t_us: displayedMs * 1000 });
+  watchTicks(video, (tick, nowMs) => {
+    if (tick !== input.seenTick) displayedMs = nowMs;
+    input.seenTick = tick; // a smaller one than before is of another run of the simulation
+    link.send({ type: "seen", tick, t_us: nowMs * 1000 });
   });
+  setInterval(render, AGE_MS); // what grows old says so without any news
   input.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));
   followRooms({ onRooms, onEvent, onEnded: toLobby });
 }
@@ -91,6 +108,7 @@ const drives = () => link.role === "browser" && status !== null;
 /** @param {Api.Room[]} rooms */
 function onRooms(rooms) {
   // A room that was there and is gone is being restarted, or will be missed: the page stays.
+  heardMs = performance.now();
   room = rooms.find((one) => one.room === roomName) ?? (room && { ...room, stale: true });
   follow(ownSeat());
   render();
@@ -118,10 +136,19 @@ function onEvent(event) {
 
 /** @param {StatusChannel.Tick} tick */
 function onStatus(tick) {
-  if (status === null) input.adoptGripper(tick.gripper);
+  input.adoptGripper(tick, status);
   status = tick;
   if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
   render();
+}
+
+/** Whether the room is heard now. */
+const isTold = () => performance.now() - heardMs < NO_NEWS_MS && room !== null && !room.stale;
+
+/** Whether the world has gone on for a while and nothing newer was displayed. */
+function standsStill() {
+  const due = input.seenTick > 0 && (status?.tick ?? 0) > input.seenTick;
+  return due && performance.now() - displayedMs > STILL_MS;
 }
 
 function render() {
@@ -129,11 +156,18 @@ function render() {
   const mine = seat?.mine ?? false;
   const isNew = !localStorage.getItem(RECORDED_KEY);
   statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches });
-  showLatency(status, room);
+  const told = isTold();
+  showHealth({ told, live: link.state === LinkState.LIVE, still: standsStill(), status, room }, video);
+  stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
-  if (room) showRoom(room);
-  showPicture(seat);
+  if (room) showRoom({ ...room, stale: !told });
+  showPicture(seat, status, link.state === LinkState.LIVE);
+  showHolder(mine);
+}
+
+/** @param {boolean} mine */
+function showHolder(mine) {
   document.body.classList.toggle("engaged", status?.engaged ?? false);
   document.body.classList.toggle("can-drive", mine);
   setShown(byId("hand"), mine && link.state !== LinkState.REPLACED);
@@ -149,16 +183,6 @@ function showRoom(shown) {
   setShown(byId("waiting"), waiting !== "");
 }
 
-/** @param {Api.Seat | undefined} seat */
-function showPicture(seat) {
-  const seen = video.videoWidth > 0;
-  const empty = (seat && NO_PICTURE[seat.operator]) ?? "Connecting to the scene…";
-  setText(byId("no-picture"), empty);
-  setShown(video, !seat || hasPicture(seat)); // its last picture would be an old one
-  setShown(byId("no-picture"), seat !== undefined && (!seen || !hasPicture(seat)));
-  byId("picture").classList.toggle("live", seen && link.state === LinkState.LIVE);
-}
-
 /**
  * A key was pressed; R discards a recording and resets a practice.
  * @param {Command} command
@@ -166,7 +190,8 @@ function showPicture(seat) {
 function onKey(command) {
   const wanted = command === "next" ? statusBar.next() : command;
   if (!wanted) return;
-  if (wanted === "discard" && statusBar.offers("reset")) press("reset");
+  if (wanted === "stop") stop.press();
+  else if (wanted === "discard" && statusBar.offers("reset")) press("reset");
   else if (!isOffered(wanted) || statusBar.offers(wanted)) press(wanted);
 }
 
@@ -181,18 +206,13 @@ function press(command) {
   if (confirm.press(command)) run(command);
 }
 
-/** @type {Partial<Record<Messages.Operator, string>>} */
-const NO_PICTURE = {
-  hold: "Nobody drives this arm, so there is no picture.",
-  script: "A script drives this arm, so there is no picture until you take over.",
-};
-
-/** @typedef {Exclude<Command | ActionCommand, Messages.Cue | Api.EpisodeAction | "next">} PageCommand */
+/** @typedef {Exclude<Command | ActionCommand | "goOn", Messages.Cue | Api.EpisodeAction | "next">} PageCommand */
 
 /** @type {Record<PageCommand, () => unknown>} */
 const ACTIONS = {
   gripper: () => input.switchGripper(),
-  stop: () => input.switchStop(),
+  stop: pressStop,
+  goOn: () => api.letGoOfStop(roomName),
   help: () => panel.toggleHelp(),
   lobby: toLobby,
   here: () => link.connect(),
@@ -205,19 +225,29 @@ const ACTIONS = {
   },
 };
 
+/** Two ways at once, because one may be lost: with the frames of a hand, and over HTTP. */
+async function pressStop() {
+  input.pressStop();
+  try {
+    await api.stopRoom(roomName);
+  } catch (error) {
+    if (status?.barrier !== "stopped") throw error;
+  }
+}
+
 /** The last episode was discarded, and is to be there all the same. */
 async function keepDiscarded() {
   const saved = room?.last_episode?.saved;
   if (saved) await api.labelEpisode(saved.path.replace(/^episodes\//, ""), { outcome: "failure" });
 }
 
-/** @param {Exclude<Command, "next"> | ActionCommand} command */
+/** @param {Exclude<Command, "next"> | ActionCommand | "goOn"} command */
 async function run(command) {
   await attempt(() => perform(command));
   render();
 }
 
-/** @param {Exclude<Command, "next"> | ActionCommand} command */
+/** @param {Exclude<Command, "next"> | ActionCommand | "goOn"} command */
 function perform(command) {
   if (isCue(command)) return cues.give(command);
   if (isPageCommand(command)) return ACTIONS[command]();

@@ -1,13 +1,15 @@
 // The phone: a hand that is usable without looking.
 
-import { messageOf, phoneToken, redeemPairing } from "./api.js";
+import { actByPhone, letGoByPhone, messageOf, phoneToken, redeemPairing, stopByPhone } from "./api.js";
 import { armName, theArm } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
+import { letGoText } from "./drive/let-go.js";
 import { IDENTITY } from "./drive/quaternion.js";
 import { everyFrame } from "./drive/ticker.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { ClutchPad, GripperBar, StopButton } from "./phone/controls.js";
+import { EpisodeButton, episodeText } from "./phone/episode-button.js";
 import { keepScreenOn, vibrate, vibrationsFor } from "./phone/feedback.js";
 import { TouchTracker } from "./phone/touch-tracker.js";
 import { Tutorial } from "./phone/tutorial.js";
@@ -16,12 +18,18 @@ import { canTrack, XrTracker } from "./phone/xr.js";
 /** @import { Hand, Mode } from "./phone/tutorial.js" */
 /** @import { Sample } from "./phone/xr.js" */
 
+const STOP_TOLD_MS = 1000;
+const PROBLEM_MS = 4000;
 const PAIRING_KEY = "mart.pairing";
 const TUTORIAL_DONE_KEY = "mart.coached";
 
 const gripper = new GripperBar(byId("gripper"));
 const clutch = new ClutchPad(byId("hold"), byId("height"), (held) => held && vibrate("engaged"));
-const stop = new StopButton(byId("stop"), byId("stop-text"), (stopped) => stopped && vibrate("stopped"));
+const stop = new StopButton(byId("stop"), byId("stop-text"), { onStop: pressStop, onLetGo: letGoOfStop });
+
+const episode = new EpisodeButton(byId("episode"), (action) =>
+  ask((room, seat, token) => actByPhone(room, seat, token, action)),
+);
 
 /** @type {XrTracker | TouchTracker | null} */
 let tracker = null;
@@ -32,6 +40,11 @@ let status = null;
 let sequence = 0;
 let tracking = false;
 let arm = "";
+/** @type {Api.PairedPhone | null} */
+let paired = null;
+let stopPressedMs = -Infinity;
+let problem = ""; // of the last press of a button
+let problemUntilMs = 0;
 
 begin();
 
@@ -47,6 +60,7 @@ async function begin() {
     say("Not paired", "Press “Pair a phone” on the operator's page and scan the code with this phone.");
     return;
   }
+  paired = pairing;
   arm = pairing.arm;
   document.body.dataset.arm = arm;
   document.title = `${armName(arm)} · Phone · MART`;
@@ -92,7 +106,8 @@ function connect(pairing) {
     fetchToken: async () => {
       const renewed = await phoneToken(pairing.room, pairing.arm, pairing.token);
       if (renewed.epoch !== link.epoch) status = null; // somebody else drove meanwhile: the gripper is as they left it
-      return { ...pairing, ...renewed };
+      paired = { ...pairing, ...renewed };
+      return paired;
     },
     wantsVideo: false,
     onState: () => onLinkState(link),
@@ -168,13 +183,36 @@ function sendFrame(link, nowMs) {
   if (tracker) guide({ ...hand, held: clutch.held }, link, nowMs);
 }
 
+/** Two ways at once, because one may be lost: with the frames of the hand, and over HTTP. */
+async function pressStop() {
+  stopPressedMs = performance.now();
+  clutch.release();
+  vibrate("stopped");
+  await ask(stopByPhone);
+}
+
+async function letGoOfStop() {
+  await ask(letGoByPhone);
+}
+
+/** @param {typeof stopByPhone} request */
+async function ask(request) {
+  problem = "";
+  try {
+    if (paired) await request(paired.room, paired.arm, paired.token);
+  } catch (error) {
+    problem = messageOf(error);
+    problemUntilMs = performance.now() + PROBLEM_MS;
+  }
+}
+
 /** @param {Sample} pose */
 function flagsOf(pose) {
   return (
     pose.flags |
     (pose.tracking ? Flag.TRACKING : 0) |
     (clutch.held ? Flag.CLUTCH : 0) |
-    (stop.stopped ? Flag.EMERGENCY_STOP : 0)
+    (performance.now() - stopPressedMs < STOP_TOLD_MS ? Flag.EMERGENCY_STOP : 0)
   );
 }
 
@@ -195,7 +233,8 @@ function guide(hand, link, nowMs) {
  * @param {SeatLink} link
  */
 function onStatus(tick, link) {
-  if (status === null) gripper.set(tick.gripper);
+  const set = status === null || status.gripper_set !== tick.gripper_set;
+  if (set || tick.input !== "phone") gripper.set(tick.gripper);
   vibrationsFor(tick, status, arm).forEach(vibrate);
   status = tick;
   showLink(link);
@@ -203,9 +242,29 @@ function onStatus(tick, link) {
 
 /** @param {SeatLink} link */
 function showLink(link) {
-  setText(byId("link"), linkText(link));
-  setText(byId("hold-text"), tutorial?.tip || (status?.engaged ? "Moving" : "Hold to move"));
+  const live = link.state === LinkState.LIVE && status !== null;
+  const stopped = live && status?.barrier === "stopped";
+  if (live) stop.update(stopped);
+  episode.update(live ? status : null);
+  if (performance.now() > problemUntilMs) problem = "";
+  byId("app").classList.toggle("stopped", stopped);
+  setText(byId("link"), problem || linkText(link));
+  setText(byId("hold-text"), holdText(live));
 }
+
+/**
+ * What the large area says: why nothing moves, what to do next, or that it moves.
+ * @param {boolean} live
+ */
+function holdText(live) {
+  if (!live || !status) return "No connection. The arm holds still.";
+  if (status.barrier === "stopped") return "Stopped. Hold Go on to let everything go on.";
+  if (tracker && !tracking) return "Tracking lost. Let the camera see more of the room.";
+  return (clutch.held && letGoText(status.let_go)) || tutorial?.tip || movingText(status);
+}
+
+/** @param {StatusChannel.Tick} tick */
+const movingText = ({ engaged }) => (engaged ? "Moving" : "Hold to move");
 
 /** @param {SeatLink} link */
 function linkText(link) {
@@ -215,11 +274,17 @@ function linkText(link) {
 }
 
 /** @param {StatusChannel.Tick} tick */
-function statusText({ barrier, input, waiting, latency }) {
-  if (barrier === "stopped") return stop.stopped ? "Everything is stopped; hold Go on" : "Everything is stopped";
-  if (input !== "phone") return "The keyboard drives";
-  const other = waiting.find((one) => one.arm !== arm);
+function statusText(tick) {
+  if (tick.barrier === "stopped") return tick.stopped_by ? `Stopped by ${tick.stopped_by}` : "Everything is stopped";
+  if (tick.input !== "phone") return "The keyboard drives";
+  const other = tick.waiting.find((one) => one.arm !== arm);
   if (other) return `Waiting for ${theArm(other.arm)}`;
-  const delay = latency ? `${Math.round(latency.p50_ms)} ms` : "connected";
-  return tracker ? `${delay}, tracking ${tracking ? "good" : "lost"}` : delay;
+  const delay = tick.latency ? `${Math.round(tick.latency.p50_ms)} ms` : "connected";
+  return `${episodeText(tick)}${delay}${tracker ? `, ${trackingText()}` : ". Press Start to drive."}`;
+}
+
+function trackingText() {
+  const off = tracker instanceof TouchTracker ? tracker.problem(performance.now()) : "";
+  if (off) tutorial?.leaveOutTurning();
+  return `tracking ${tracking ? "good" : "lost"}${off && `. ${off}`}`;
 }

@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { armName, badge, hasPicture, holderName, isMachine, theArm } from "./arms.js";
 import { element, keepChildren, setShown, setText } from "./dom.js";
+import { emergencyStop } from "./emergency-stop.js";
 import { phaseText, plural, planText, waitingText } from "./formatting.js";
 import { machineSelect } from "./machine-select.js";
 
@@ -27,6 +28,12 @@ export function roomCard(attempt, onClosed) {
   const phase = element("span", { class: "soft" });
   const instruction = element("p");
   const seats = element("ul", { class: "seats" });
+  let name = "";
+  const stop = emergencyStop({
+    label: "this room",
+    onStop: () => attempt(() => api.stopRoom(name)),
+    onLetGo: () => attempt(() => api.letGoOfStop(name)),
+  });
   const facts = { id: element("span"), rate: element("span"), plan: element("strong"), saved: element("span") };
   const about = element("div", {}, element("header", {}, title, phase), instruction);
   const node = element(
@@ -34,6 +41,7 @@ export function roomCard(attempt, onClosed) {
     { class: "room card" },
     element("div", { class: "about" }, scene.node, about),
     seats,
+    stop.node,
     element("p", { class: "room-facts figures" }, ...Object.values(facts), close.node),
   );
   /** @type {Map<string, Part<[SeatNews]>>} */
@@ -44,7 +52,9 @@ export function roomCard(attempt, onClosed) {
    * @param {Messages.Policy[]} policies
    */
   function update(room, policies) {
+    name = room.room;
     setText(title, room.title);
+    stop.update(room.stop);
     scene.update(room);
     close.update(room);
     setText(phase, room.stale ? "Not answering" : waitingText(room) || phaseText(room.episode));

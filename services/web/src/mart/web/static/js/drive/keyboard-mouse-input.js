@@ -8,7 +8,10 @@ import { VirtualPhone } from "./virtual-phone.js";
 
 /** @import { Command } from "./keys.js" */
 
+/** @typedef {{ gripper: number, engaged: boolean, letGo: StatusChannel.LetGo }} HandView */
+
 const LONGEST_STEP_S = 0.1;
+const STOP_TOLD_MS = 1000;
 const CLOSED_ABOVE = 0.15; // a gripper that holds something is neither open nor shut
 
 /** Turns keys and pointer into phone frames. `seenTick`: the newest tick that was seen in the picture. */
@@ -18,7 +21,7 @@ export class KeyboardMouseInput {
   #keyboard;
   #pointer;
   #gripper = 0;
-  #stopped = false;
+  #stopPressedMs = -Infinity;
   #sequence = 0;
   #lastMs = 0;
 
@@ -48,11 +51,13 @@ export class KeyboardMouseInput {
   }
 
   /**
-   * Takes over a gripper as it is: after a reload the hand must not drop what it holds.
-   * @param {number} measured 0 open … 1 closed
+   * Takes over the gripper as the gateway has it, where this page is not the one that set it last.
+   * @param {StatusChannel.Tick} status
+   * @param {StatusChannel.Tick | null} before
    */
-  adoptGripper(measured) {
-    this.#gripper = measured > CLOSED_ABOVE ? 1 : 0;
+  adoptGripper(status, before) {
+    const set = before === null || before.gripper_set !== status.gripper_set;
+    if (set || status.input !== "keyboard") this.#gripper = status.gripper > CLOSED_ABOVE ? 1 : 0;
   }
 
   /** Closes an open gripper and opens a closed one. */
@@ -60,9 +65,9 @@ export class KeyboardMouseInput {
     this.#gripper = 1 - this.#gripper;
   }
 
-  /** Stops everything, or lets it go on. */
-  switchStop() {
-    this.#stopped = !this.#stopped;
+  /** Says so in every frame for a while: the first that arrives stops everything. */
+  pressStop() {
+    this.#stopPressedMs = performance.now();
   }
 
   /** Space switches the clutch instead of holding it, or back; returns whether it does now. */
@@ -75,9 +80,11 @@ export class KeyboardMouseInput {
   /**
    * What the input panel shows.
    * @param {StatusChannel.Tick | null} status
+   * @returns {HandView}
    */
   view(status) {
-    return { gripper: this.#gripper, stopped: this.#stopped, engaged: status?.engaged ?? false };
+    const { engaged = false, let_go: letGo = "" } = status ?? {};
+    return { gripper: this.#gripper, engaged, letGo };
   }
 
   /**
@@ -90,7 +97,7 @@ export class KeyboardMouseInput {
       Flag.TRACKING |
       Flag.SCREEN_ALIGNED |
       (engaged ? Flag.CLUTCH : 0) |
-      (this.#stopped ? Flag.EMERGENCY_STOP : 0);
+      (performance.now() - this.#stopPressedMs < STOP_TOLD_MS ? Flag.EMERGENCY_STOP : 0);
     this.#sequence += 1;
     const { position, quaternionWxyz } = this.#phone;
     const [sequence, seenTick, gripper] = [this.#sequence, this.seenTick, this.#gripper];

@@ -1,9 +1,13 @@
 // The right edge: what one drives with, and the phone's pairing code.
 
-import { pairPhone } from "../api.js";
+import { messageOf, pairPhone } from "../api.js";
 import { cueText } from "../cues.js";
 import { byId, element, setShown, setText } from "../dom.js";
+import { letGoText } from "../drive/let-go.js";
 import { CUES } from "../facts.js";
+import { seconds } from "../formatting.js";
+
+/** @import { HandView } from "../drive/keyboard-mouse-input.js" */
 
 /** @type {[keys: string, text: string][]} */
 const KEYS = [
@@ -20,7 +24,7 @@ const KEYS = [
   ["R", "In practice: reset the scene"],
   ["S F R", "While it records, with space let go, twice: success, failed, discard"],
   ["B", "Hand the arm back to the policy or script"],
-  ["P", "Stop everything, and go on"],
+  ["P", "Stop everything; once it is stopped, twice: go on"],
   ["Q", "With space let go, twice: leave the seat"],
   [CUES.map((_, index) => index + 1).join(" "), `To your partners: ${CUES.map(cueText).join(", ")}`],
   ["?", "These keys"],
@@ -33,6 +37,8 @@ const HOW_TO_MOVE = {
   touch: "Drag the picture; with two fingers up and down: away and towards you, sideways: turn.",
 };
 
+const PHONE_GONE_MS = 1000; // it speaks 60 times a second
+const COPY = "Copy the address";
 const MARK = "The mark on the table in your colour says whose side it is. Nothing has to go there.";
 
 /** Shows the input of one's own arm, pairs phones, and lists the keys. */
@@ -52,6 +58,7 @@ export class InputPanel {
     this.#arm = arm;
     this.#onFailure = onFailure;
     byId("pair").addEventListener("click", () => this.#pair());
+    byId("pairing-copy").addEventListener("click", () => this.#copy());
     byId("pairing-close").addEventListener("click", () => this.#closePairing());
     byId("help").addEventListener("click", () => this.toggleHelp());
     const rows = KEYS.flatMap(([keys, text]) => [element("dt", {}, ...caps(keys)), element("dd", {}, text)]);
@@ -61,7 +68,7 @@ export class InputPanel {
   /**
    * Shows the newest status, and what keyboard and mouse ask for now.
    * @param {StatusChannel.Tick | null} status
-   * @param {{ gripper: number, stopped: boolean, engaged: boolean }} hand
+   * @param {HandView} hand
    */
   update(status, hand) {
     const phone = status?.phone ?? null;
@@ -84,6 +91,9 @@ export class InputPanel {
       const image = byId("qr", HTMLImageElement);
       image.src = `data:image/svg+xml,${encodeURIComponent(withNamespace(svg))}`;
       image.title = url;
+      image.classList.toggle("small", hint !== ""); // a phone could not get there
+      setText(byId("pairing-address"), url);
+      setText(byId("pairing-copy"), COPY);
       setText(byId("pairing-hint"), hint);
       setShown(byId("pairing"), true);
       byId("health", HTMLDetailsElement).open = false; // it would cover the code
@@ -91,6 +101,15 @@ export class InputPanel {
       this.#countDown(performance.now() + 1000 * expiresS);
     } catch (error) {
       this.#onFailure(error);
+    }
+  }
+
+  async #copy() {
+    try {
+      await navigator.clipboard.writeText(byId("pairing-address").textContent ?? "");
+      setText(byId("pairing-copy"), "Copied");
+    } catch (error) {
+      this.#onFailure(new Error(`The address could not be copied; select it instead. ${messageOf(error)}`));
     }
   }
 
@@ -129,19 +148,22 @@ function showInput(phone, byPhone) {
 
 /**
  * What the hand does, and what it can be told.
- * @param {{ gripper: number, stopped: boolean, engaged: boolean }} hand
+ * @param {HandView} hand
  * @param {boolean} byPhone
  */
-function showHand({ gripper, stopped, engaged }, byPhone) {
+function showHand({ gripper, engaged, letGo }, byPhone) {
   const how = byPhone ? "Hold the phone's lower part to move." : HOW_TO_MOVE[FINGERS.matches ? "touch" : "mouse"];
-  setText(byId("clutch"), engaged ? "Moving" : how);
+  setText(byId("clutch"), engaged ? "Moving" : letGoText(letGo) || how);
   setText(byId("gripper"), `${gripper > 0.5 ? "Open" : "Close"} gripper`);
-  setText(byId("stop"), stopped ? "Go on" : "Stop everything");
-  byId("stop").setAttribute("aria-pressed", String(stopped));
 }
 
 /** @param {StatusChannel.Tick["phone"]} phone */
-const phoneText = (phone) => (phone ? `Phone, tracking ${phone.tracking ? "good" : "lost"}` : "Phone, not connected");
+function phoneText(phone) {
+  if (!phone) return "Phone, not connected";
+  if (phone.age_ms > PHONE_GONE_MS) return `Phone, silent for ${seconds(phone.age_ms / 1000)}`;
+  if (!phone.started) return "Phone paired: press Start on it";
+  return `Phone, tracking ${phone.tracking ? "good" : "lost"}`;
+}
 
 /** @param {string} keys */
 const caps = (keys) => keys.split(" ").flatMap((key) => [element("kbd", {}, key), " "]);

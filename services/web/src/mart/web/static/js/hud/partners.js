@@ -13,6 +13,8 @@ import { seconds } from "../formatting.js";
  * @property {Api.Waiting | undefined} late
  * @property {Messages.EpisodePhase} phase
  * @property {string} said
+ * @property {boolean} stopped
+ * @property {boolean} told whether anything is known of now
  */
 
 /** @type {Map<string, Part<[Partner]>>} */
@@ -30,9 +32,10 @@ export function showPartners(room, ownArm, onScript, cues) {
   const arms = others.map((seat) => seat.arm);
   const { phase } = room.episode;
   keepChildren(byId("partners"), arms, rows, (arm) => partnerRow(arm, onScript));
+  const stopped = room.barrier === "stopped";
   for (const seat of others) {
     const late = room.waiting_for.find((one) => one.arm === seat.arm);
-    rows.get(seat.arm)?.update({ seat, late, phase, said: cues.of(seat.arm) });
+    rows.get(seat.arm)?.update({ seat, late, phase, said: cues.of(seat.arm), told: !room.stale, stopped });
   }
 }
 
@@ -51,9 +54,11 @@ function partnerRow(arm, onScript) {
   const node = element("li", { class: "partner glass", dataset: { arm } }, badge(arm), who, script);
 
   /** @param {Partner} partner */
-  function update({ seat, late, phase, said }) {
+  function update({ seat, late, phase, said, told, stopped }) {
     setText(name, holderName(seat));
-    setText(state, said || stateText(seat, late, phase));
+    const stands = stopped ? "Stopped" : stateText(seat, late, phase);
+    setText(state, told ? said || stands : "No news");
+    node.classList.toggle("untold", !told);
     node.classList.toggle("says", said !== "");
     node.classList.toggle("late", late !== undefined);
     setShown(script, seat.operator === "hold" && phase === "practice");

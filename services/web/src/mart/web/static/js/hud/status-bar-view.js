@@ -80,7 +80,7 @@ function whatHappens(known) {
     return view("Driven elsewhere", "Another window of yours drives this arm.", [ACTIONS.here]);
   }
   if (link.state !== LinkState.LIVE) return offline(link);
-  if (room.barrier === "stopped") return view("Stopped", "An emergency stop is on; whoever pressed it lets go.");
+  if (room.barrier === "stopped") return view("Stopped", "Anybody may let everything go on: press Go on twice.");
   const shown = PHASES[room.episode.phase](room, seat, known);
   return seat.relieved ? { ...shown, actions: [...shown.actions, ACTIONS.back] } : shown;
 }

@@ -144,23 +144,25 @@ const STEPS = new Map([
   ["ArrowDown", -GRIPPER_STEP],
 ]);
 
-/** Held for half a second it stops everything; held again it lets go on. */
+/** Held for half a second it stops everything; held again, once everything is stopped, it lets go on. */
 export class StopButton {
-  stopped = false;
+  #stopped = false;
   #node;
   #text;
-  #onChange;
+  #onStop;
+  #onLetGo;
   #timer = 0;
 
   /**
    * @param {HTMLElement} node
    * @param {HTMLElement} text the part of it that says what it does
-   * @param {(stopped: boolean) => void} onChange
+   * @param {{ onStop: () => void, onLetGo: () => void }} listeners
    */
-  constructor(node, text, onChange) {
+  constructor(node, text, { onStop, onLetGo }) {
     this.#node = node;
     this.#text = text;
-    this.#onChange = onChange;
+    this.#onStop = onStop;
+    this.#onLetGo = onLetGo;
     node.addEventListener("pointerdown", (event) => this.#press(event));
     for (const type of ["pointerup", "pointercancel", "pointerleave"]) {
       node.addEventListener(type, () => this.#letGo());
@@ -181,11 +183,19 @@ export class StopButton {
     this.#node.classList.remove("pressing");
   }
 
+  /**
+   * Shows what the room says: whether everything is stopped.
+   * @param {boolean} stopped
+   */
+  update(stopped) {
+    this.#stopped = stopped;
+    this.#node.setAttribute("aria-pressed", String(stopped));
+    setText(this.#text, stopped ? "Go on" : "Stop");
+  }
+
   #switch() {
     this.#letGo();
-    this.stopped = !this.stopped;
-    this.#node.setAttribute("aria-pressed", String(this.stopped));
-    setText(this.#text, this.stopped ? "Go on" : "Stop");
-    this.#onChange(this.stopped);
+    if (this.#stopped) this.#onLetGo();
+    else this.#onStop();
   }
 }

@@ -22,8 +22,9 @@ export function fromDeviceAngles(alpha, beta, gamma) {
   return multiply(fromRotationVector([-Math.PI / 2, 0, 0]), inEarth);
 }
 
-/** The newest turn that the sensor told. */
+/** The newest turn that the sensor told. `permitted`: the person, or their phone, lets this page know. */
 export class Orientation {
+  permitted = true;
   /** @type {Quaternion | null} */
   #quaternionWxyz = null;
   #seenMs = -Infinity;
@@ -31,7 +32,8 @@ export class Orientation {
   /** Must be called from a press: iPhones ask for permission then. */
   static async start() {
     const orientation = new Orientation();
-    if (await isPermitted()) addEventListener("deviceorientation", (event) => orientation.#take(event));
+    orientation.permitted = await isPermitted();
+    if (orientation.permitted) addEventListener("deviceorientation", (event) => orientation.#take(event));
     return orientation;
   }
 

@@ -10,12 +10,14 @@ import { Orientation } from "./orientation.js";
 /** @import { Sample } from "./xr.js" */
 
 const METRES_PER_PX = 0.0012;
+const SENSOR_MS = 1500; // a sensor that is there has spoken by then
 /** @type {{ move: Vector, turn: Vector }} */
 const STILL = { move: [0, 0, 0], turn: [0, 0, 0] };
 
 /** A hand that is moved by drags on the clutch pad. */
 export class TouchTracker {
   #phone = new VirtualPhone();
+  #startedMs = performance.now();
   #lastMs = performance.now();
   #clutch;
   #orientation;
@@ -39,6 +41,18 @@ export class TouchTracker {
       const [x, y] = [right * METRES_PER_PX, down * METRES_PER_PX];
       this.#phone.drag(onHeightPad ? [0, -y, 0] : [x, 0, y]);
     };
+  }
+
+  /**
+   * Why tilting the phone does not turn the hand, in words; nothing where it does, or as long as it may.
+   * @param {number} nowMs
+   */
+  problem(nowMs) {
+    if (!this.#orientation.permitted) {
+      return "Turning is off: reload the page and allow motion.";
+    }
+    const silent = this.#orientation.sample(nowMs) === null && nowMs - this.#startedMs > SENSOR_MS;
+    return silent ? "Turning is off: no tilt sensor." : "";
   }
 
   /**

@@ -7,7 +7,7 @@ import { angleBetween } from "../drive/quaternion.js";
 /** @typedef {"xr" | "touch"} Mode how the phone is followed */
 /** @typedef {{ held: boolean, position: Vector, quaternionWxyz: Quaternion, gripper: number }} Hand */
 /** @typedef {{ heldMs: number, upM: number, turnedRad: number, gripper: number }} Done since the clutch was pressed */
-/** @typedef {{ tips: Record<Mode, string>, isDone: (done: Done) => boolean }} Step */
+/** @typedef {{ tips: Record<Mode, string>, isDone: (done: Done) => boolean, turns?: boolean }} Step */
 
 const HELD_MS = 500;
 const UP_M = 0.05;
@@ -33,6 +33,7 @@ const STEPS = [
   {
     tips: { xr: "Keep holding, and turn the phone.", touch: "Hold, and tilt the phone." },
     isDone: ({ heldMs, turnedRad }) => heldMs > 0 && turnedRad >= TURN_RAD,
+    turns: true,
   },
   {
     tips: { xr: "Slide the bar to close the gripper.", touch: "Slide the bar to close the gripper." },
@@ -43,7 +44,8 @@ const STEPS = [
 /** Which step comes next. */
 export class Tutorial {
   #mode;
-  #steps = 0; // that are done
+  #steps = STEPS;
+  #done = 0; // of them
   /** When and where the clutch was pressed. @type {{ atMs: number, y: number, quaternionWxyz: Quaternion } | null} */
   #press = null;
 
@@ -53,13 +55,20 @@ export class Tutorial {
   }
 
   get finished() {
-    return this.#steps >= STEPS.length;
+    return this.#done >= this.#steps.length;
   }
 
   /** "2 of 4: Keep holding …", or nothing when all is done. */
   get tip() {
-    const step = STEPS[this.#steps];
-    return step ? `${this.#steps + 1} of ${STEPS.length}: ${step.tips[this.#mode]}` : "";
+    const step = this.#steps[this.#done];
+    return step ? `${this.#done + 1} of ${this.#steps.length}: ${step.tips[this.#mode]}` : "";
+  }
+
+  /** Leaves out what this phone cannot do: it does not tell how it is turned. */
+  leaveOutTurning() {
+    const done = this.#steps.slice(0, this.#done).filter((step) => !step.turns);
+    this.#steps = STEPS.filter((step) => !step.turns);
+    this.#done = done.length;
   }
 
   /**
@@ -68,8 +77,8 @@ export class Tutorial {
    * @param {number} nowMs
    */
   see(hand, nowMs) {
-    if (!STEPS[this.#steps]?.isDone(this.#done(hand, nowMs))) return false;
-    this.#steps += 1;
+    if (!this.#steps[this.#done]?.isDone(this.#sincePress(hand, nowMs))) return false;
+    this.#done += 1;
     this.#press = null;
     return true;
   }
@@ -79,7 +88,7 @@ export class Tutorial {
    * @param {number} nowMs
    * @returns {Done}
    */
-  #done({ held, position, quaternionWxyz, gripper }, nowMs) {
+  #sincePress({ held, position, quaternionWxyz, gripper }, nowMs) {
     if (!held) this.#press = null;
     else this.#press ??= { atMs: nowMs, y: position[1], quaternionWxyz };
     const start = this.#press;
