@@ -115,9 +115,9 @@ def test_an_episode_without_video_is_drawn_when_somebody_asks(browser: Browser, 
                 page.reload()
             expect(page.get_by_role("heading", name="Episodes")).to_be_visible()
             expect(page.locator("#count")).to_have_text("Reading the episodes…")
-            page.unroute("**/api/episodes?*")
             for route in held:
                 route.continue_()
+            page.unroute("**/api/episodes?*")
             expect(page.locator(".episode")).to_have_count(EPISODES + 1)
             page.get_by_label("Driven by").select_option("Any script")
             expect(row.locator(".thumb img")).to_be_visible()
