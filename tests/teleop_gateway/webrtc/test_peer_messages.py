@@ -48,9 +48,6 @@ def driven(nobody: mock.MagicMock) -> tuple[SeatInput, Driving]:
     driving.connect(InputDevice.KEYBOARD)
     return seat_input, driving
 
-    def on_displayed(self, tick: int) -> None:
-        self.driving.picture.on_displayed(tick, 1.0)
-
 
 @fuzzing(examples=200)
 @given(said=st.lists(MESSAGES, max_size=6), now_ns=st.integers(0, 2**62))
