@@ -21,7 +21,7 @@ from mart.platform.run.plan import PlatformOptions
 from mart.platform.run.room_manager import HeardStatuses, RoomManager, rooms_answerer
 from mart.platform.run.supervisor import Supervisor
 from mart.protocol import clock, codec, keys
-from mart.protocol.messages import RoomStatus, State
+from mart.protocol.messages import EpisodeRequest, RoomStatus, State
 from mart.protocol.queryables import BROADCASTS, QUERYABLES, Broadcast, Queryable
 from mart.protocol.received import decode_received
 from mart.protocol.vocabulary import ServiceKind
@@ -84,7 +84,12 @@ class _Stand:
             self.bus.publisher(place).put(payload)
 
     def goes_on(self) -> bool:
-        """Whether its world ticks, at the latest when every seat that noise has taken is free again."""
+        """Whether its world ticks, at the latest when every seat that noise has taken is free again.
+
+        An emergency stop that noise has pressed stands until somebody lets it go, as any other.
+        """
+        let_go = EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Ana"))
+        self.bus.query(keys.episode(ROOM), codec.encode(let_go), 1.0)
         before = len(self.harness.publisher.states)
         until_s = self.harness.now_s + _FREED_S
         while self.harness.now_s < until_s:
