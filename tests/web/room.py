@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import threading
+from collections.abc import Iterator
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import MartError
@@ -28,6 +30,25 @@ from mart.sim.room.saved_room import SavedStop
 from mart.sim.room.seats import SeatHolder, SeatTable
 
 TASK = "two_arm_multi_cube_lifting"
+_SPEAK_EVERY_S = 0.2
+
+
+@contextlib.contextmanager
+def speaking(room: Room) -> Iterator[None]:
+    """Let a room say its status five times a second, as a sim does: a single one may arrive before its token."""
+    ended = threading.Event()
+
+    def speak() -> None:
+        while not ended.wait(_SPEAK_EVERY_S):
+            room.publish()
+
+    speaker = threading.Thread(target=speak, daemon=True)
+    speaker.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        speaker.join()
 
 
 class Room:

@@ -120,6 +120,7 @@ def test_an_episode_without_video_is_drawn_when_somebody_asks(browser: Browser, 
             page.unroute("**/api/episodes?*")
             expect(page.locator(".episode")).to_have_count(EPISODES + 1)
             page.get_by_label("Driven by").select_option("Any script")
+            expect(page.locator(".episode")).to_have_count(1)
             expect(row.locator(".thumb img")).to_be_visible()
             row.get_by_role("link").click()
             expect(page.locator(".controls .figures")).to_have_text("0.0 s / 3.3 s")

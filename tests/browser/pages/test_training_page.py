@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import threading
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -19,11 +18,10 @@ from mart.runtime.ports import free_port
 from tests.browser.pages.joined import joined
 from tests.browser.pages.visits import INSPECT, LOOKS
 from tests.support.processes import running_router, running_service
-from tests.web.room import Room
+from tests.web.room import Room, speaking
 from tests.web.trainer import OTHER_TASK, TASK, Trainer
 
 SCREENSHOTS = Path("test-output/browser/pages")
-SPEAK_S = 0.2
 
 
 @dataclass
@@ -37,25 +35,17 @@ class RunningSite:
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningSite]:
     """Pages and a room that speaks five times a second; no trainer yet."""
-    port, data_dir, done = free_port(), tmp_path_factory.mktemp("web"), threading.Event()
+    port, data_dir = free_port(), tmp_path_factory.mktemp("web")
     with (
         running_router() as endpoint,
         ZenohBus.connect(endpoint) as bus,
         contextlib.closing(Room(bus)) as room,
+        speaking(room),
         running_service(["web", "--port", str(port)], endpoint, data_dir, kind="web", id="web"),
     ):
-
-        def speak() -> None:
-            while not done.wait(SPEAK_S):
-                room.publish()
-
-        speaking = threading.Thread(target=speak)
-        speaking.start()
         yield RunningSite(
             f"https://localhost:{port}/", (data_dir / "join-code").read_text().strip(), bus, room
         )
-        done.set()
-        speaking.join()
 
 
 @pytest.fixture

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 
 from mart.web.lobby.listeners import LobbyListeners
@@ -35,6 +37,20 @@ async def test_ids_grow_whatever_the_clock_does() -> None:
         ids = [event["id"] for event in page.take_events()]
     assert ids == sorted(set(ids))
     assert ids[-1] < 2**53  # a number that JavaScript can hold
+
+
+async def test_who_leaves_as_something_changes_is_let_go() -> None:
+    listeners = LobbyListeners()
+    with listeners.listen() as page:
+        for turns in range(4):
+            waiting = asyncio.ensure_future(page.wait(10))
+            await asyncio.sleep(0)
+            listeners.tell_change()
+            for _ in range(turns):
+                await asyncio.sleep(0)
+            left = waiting.cancel()
+            await asyncio.gather(waiting, return_exceptions=True)
+            assert waiting.cancelled() == left
 
 
 async def test_memory_is_bounded() -> None:

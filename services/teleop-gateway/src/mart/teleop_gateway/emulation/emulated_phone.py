@@ -111,7 +111,8 @@ class EmulatedPhone:
         answer = await self._exchange(connection.localDescription.sdp)
         await connection.setRemoteDescription(RTCSessionDescription(answer, "answer"))
         try:
-            await asyncio.wait_for(opened.wait(), _CONNECT_TIMEOUT_S)
+            async with asyncio.timeout(_CONNECT_TIMEOUT_S):
+                await opened.wait()
         except TimeoutError as error:
             raise Unavailable(f"No connection came up within {_CONNECT_TIMEOUT_S:g} s.") from error
 

@@ -53,7 +53,8 @@ class SeatProcess:
         """End it: orderly if it will, by force if not."""
         self._stdin.close()
         try:
-            await asyncio.wait_for(self._process.wait(), _END_TIMEOUT_S)
+            async with asyncio.timeout(_END_TIMEOUT_S):
+                await self._process.wait()
         except TimeoutError:
             with contextlib.suppress(ProcessLookupError):  # it ended just now
                 self._process.kill()

@@ -30,7 +30,9 @@ class LobbyListener:
     async def wait(self, timeout_s: float) -> None:
         """Return when anything has changed since the last call, or after `timeout_s`."""
         with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self._changed.wait(), timeout_s)
+            # not `wait_for`: Python 3.11's swallows a cancellation that comes with the change
+            async with asyncio.timeout(timeout_s):
+                await self._changed.wait()
         self._changed.clear()
 
     def take_events(self) -> list[Json]:
