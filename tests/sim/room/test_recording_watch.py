@@ -45,3 +45,23 @@ def test_reports_of_another_episode_mean_nothing() -> None:
     watch.told(2, 7, 0.0)
     watch.reported(report(99, number=1))
     assert "nobody" in watch.objection(1.0)
+
+
+def test_a_recorder_whose_process_ended_keeps_nothing_from_then_on() -> None:
+    watch = RecordingWatch()
+    watch.told(1, 7, 0.0)
+    watch.reported(report(7))
+    watch.gone("recorder-1")
+    assert watch.objection(0.0) == ""  # everything that was told is kept
+    watch.told(1, 8, 0.05)
+    assert watch.news(0.05) == ("error", "This episode is not being recorded: recorder-1 is gone.")
+    watch.reported(report(8))
+    assert watch.news(0.1) == ("info", "recorder-1 records again.")
+
+
+def test_another_recorder_that_ended_was_not_the_one_that_keeps_it() -> None:
+    watch = RecordingWatch()
+    watch.told(1, 7, 0.0)
+    watch.reported(report(6))
+    watch.gone("recorder-2")
+    assert watch.objection(0.05) == ""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import Counter
 from collections.abc import Callable
 
 import pytest
 
 from mart.protocol import codec, keys
-from mart.protocol.messages import Event, Model, RoomReply
+from mart.protocol.messages import Event, Model, RecordingReport, RoomReply
+from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
 from mart.sim.room.room import Room
 from mart.sim.room.room_server import RoomServer
@@ -75,6 +77,23 @@ def test_what_the_room_fails_at_is_answered(
             assert codec.decode(RoomReply, bus.query(topic, b"", 1.0)).error.code == "ServiceFault"
     finally:
         server.close()
+
+
+def test_a_recorder_that_dies_while_it_records_is_named_at_once(world: World) -> None:
+    network = MemoryNetwork()
+    recorder, harness = network.connect(), RoomHarness(world)
+    with contextlib.closing(_server(network.connect(), harness.room, world, leave=_do)):
+        token = recorder.announce(keys.alive(ServiceKind.RECORDER, "recorder-1"))
+        harness.record()
+        harness.drive(10)
+        tick = harness.newest.tick
+        report = RecordingReport(
+            recorder="recorder-1", boot=harness.newest.boot, episode=1, last_tick=tick - 1
+        )
+        recorder.publisher(keys.recording("room-1")).put(codec.encode(report))
+        assert harness.status().unrecorded == ""
+        token.close()
+        assert harness.status().unrecorded == "This episode is not being recorded: recorder-1 is gone."
 
 
 def _do(work: Work) -> None:

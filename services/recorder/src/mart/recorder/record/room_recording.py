@@ -27,7 +27,7 @@ from mart.runtime.rate_limit import RateLimit
 _log = logging.getLogger(__name__)
 
 FLUSH_S = 0.5
-_REPORT_S = 0.2
+_REPORT_S = 0.1
 _TELL_AGAIN_S = 60.0
 _LOW_SPACE_BYTES = 1_000_000_000
 

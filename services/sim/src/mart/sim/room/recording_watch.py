@@ -9,7 +9,7 @@ from collections import deque
 
 from mart.protocol.messages import RecordingReport
 
-UNKEPT_AFTER_S = 0.8  # a recorder reports every 0.2 s
+UNKEPT_AFTER_S = 0.4  # a recorder reports every 0.1 s
 
 
 class RecordingWatch:
@@ -19,6 +19,7 @@ class RecordingWatch:
         self._number = 0
         self._unkept: deque[tuple[int, float]] = deque()  # tick and when it was told, the oldest first
         self._recorder = ""
+        self._is_gone = False
         self._objects = False
 
     def told(self, number: int, tick: int, now_s: float) -> None:
@@ -33,17 +34,25 @@ class RecordingWatch:
         """Take note of what a recorder has kept; what it says of another episode means nothing."""
         if report.episode != self._number:
             return
-        self._recorder = report.recorder
+        self._recorder, self._is_gone = report.recorder, False
         while self._unkept and self._unkept[0][0] <= report.last_tick:
             self._unkept.popleft()
 
+    def gone(self, recorder: str) -> None:
+        """Take note that a recorder's process ended; until one reports again, nothing more is kept."""
+        self._is_gone |= recorder == self._recorder
+
     def objection(self, now_s: float) -> str:
         """Say in words that nobody keeps the episode, since when, and whose turn it was; "" while somebody does."""
-        since_s = now_s - self._unkept[0][1] if self._unkept else 0.0
+        if not self._unkept:
+            return ""
+        if self._is_gone:
+            return f"This episode is not being recorded: {self._recorder} is gone."
+        since_s = now_s - self._unkept[0][1]
         if since_s < UNKEPT_AFTER_S:
             return ""
         who = f"{self._recorder} has kept nothing" if self._recorder else "nobody has kept anything"
-        return f"This episode is not being recorded: {who} for {since_s:.0f} s."
+        return f"This episode is not being recorded: {who} for {since_s:.1f} s."
 
     def news(self, now_s: float) -> tuple[str, str] | None:
         """Return, once, what people are to be told now: the level of a notice and its text."""

@@ -155,6 +155,10 @@ class Room:
         if (counted := self._record.with_saved(saved.number, good)) is not self._record:
             self._remember(counted)
 
+    def recorder_gone(self, recorder: str) -> None:
+        """Take note that the process of a recorder ended."""
+        self._recording_watch.gone(recorder)
+
     def recording_reported(self, report: RecordingReport) -> None:
         """Take note of what a recorder has kept of the episode."""
         if report.boot == self._boot_ns:
@@ -280,9 +284,10 @@ class Room:
         if now_s >= self._repeat_due_s:
             self._publisher.repeat_state()
             self._repeat_due_s = now_s + REPEAT_S
+        if (news := self._recording_watch.news(now_s)) is not None:
+            self._tell(room_messages.notice(*news))
+            self._status_due_s = now_s
         if now_s >= self._status_due_s:
-            if (news := self._recording_watch.news(now_s)) is not None:
-                self._tell(room_messages.notice(*news))
             self._publisher.status(self.status(now_s))
             self._status_due_s = now_s + REPEAT_S
 

@@ -11,6 +11,7 @@ from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import EpisodeRequest, Event, RecordingReport, RoomReply, SeatRequest
 from mart.protocol.queryables import EPISODE, SEAT
 from mart.protocol.received import decode_received
+from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Bus, Closable, Request, Sample
 from mart.runtime.serving import RequestAnswerer, send_reply
 from mart.sim.room.room import Room
@@ -53,6 +54,7 @@ class RoomServer:
         self._open: list[Closable] = [
             SaveFollower(bus, name, self._on_saved, garbled, room.unsaved),
             bus.subscribe(keys.recording(name).key, self._on_recording_report),
+            bus.watch(keys.alive_of(ServiceKind.RECORDER), self._on_recorder_alive),
             bus.serve(keys.seat(name), self._on_seat_request),
             bus.serve(keys.episode(name), self._on_episode_request),
             bus.serve(keys.model(name), self._on_model_request),
@@ -80,6 +82,10 @@ class RoomServer:
             self._garbled["recording report"] += 1
         else:
             self._leave(partial(self._room.recording_reported, report))
+
+    def _on_recorder_alive(self, key: str, alive: bool) -> None:
+        if not alive:
+            self._leave(partial(self._room.recorder_gone, keys.last_of(key)))
 
     def _on_saved(self, saved: Event.EpisodeSaved) -> None:
         self._leave(partial(self._room.episode_saved, saved))
