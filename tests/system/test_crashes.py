@@ -37,7 +37,9 @@ ARMS = ("arm0", "arm1")
 TICKS_PER_S = 20
 TOLD_WITHIN_S = 1.0
 BACK_WITHIN_S = 30.0
-SAVED_WITHIN_S = 90.0  # the episode goes on until its people are done, on a busy machine slower than the clock
+SAVED_WITHIN_S = (
+    90.0  # the episode goes on until its people are done, on a busy machine slower than the clock
+)
 
 
 class Witness:

@@ -27,7 +27,7 @@ class Process:
 
     @property
     def name(self) -> str:
-        return f"{self.kind}-{self.id}" if self.id != self.kind else self.kind
+        return f"{self.kind}-{self.id}" if self.id != self.kind else self.kind.value
 
 
 @dataclass(frozen=True)

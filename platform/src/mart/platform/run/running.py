@@ -138,9 +138,12 @@ def _supervised(
             raise _supervisor_died(supervisord, options)
     finally:
         stopping.set()
-        supervisord.terminate()
-        supervisord.wait()
-        end_processes(mark, _END_PATIENCE_S)
+        try:
+            supervisor.stop()
+        finally:
+            supervisord.terminate()
+            supervisord.wait()
+            end_processes(mark, _END_PATIENCE_S)
 
 
 def _supervisor_died(supervisord: subprocess.Popen[bytes], options: PlatformOptions) -> Unavailable:

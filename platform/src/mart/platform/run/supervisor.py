@@ -6,26 +6,40 @@ import contextlib
 import http.client
 import subprocess
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
-from xmlrpc.client import Error, ServerProxy
+from xmlrpc.client import Error, Fault, ServerProxy
 
+from supervisor.states import RUNNING_STATES, ProcessStates
 from supervisor.xmlrpc import SupervisorTransport
 
 from mart.platform.run.plan import (
     PlatformOptions,
     Process,
 )
+from mart.protocol import clock
 from mart.protocol.errors import MartError, Unavailable
+from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.atomic_file import write_atomically
 
 # A recorder that is verifying an episode gets time to close its file.
 _STOP_TIMEOUT_S = 30
 _TOLD_TIMEOUT_S = _STOP_TIMEOUT_S + 10  # it answers when what was to stop has stopped
+_LOOK_EVERY_S = 0.05
+_ALIVE = (*RUNNING_STATES, ProcessStates.STOPPING)
 _BIN = Path(sys.executable).parent
 _LOG_TAIL_BYTES = 16 * 1024
 _REFUSAL = "mart: "  # how a command begins the sentence with which it ends
+
+
+# Who is needed until the others have ended; all others end first. A recorder verifies what it has closed.
+_STOPPED_LATER = (
+    {ServiceKind.SIM},
+    {ServiceKind.RECORDER, ServiceKind.CATALOGUE},
+    {ServiceKind.REPLICA},
+    {ServiceKind.ROUTER},
+)
 
 
 class Supervisor:
@@ -55,15 +69,28 @@ class Supervisor:
         """Stops it for good. The others keep their order: what supervisord finds changed it would start anew."""
         self._change({other: program for other, program in self._programs.items() if other != name})
 
+    def stop(self) -> None:
+        """Stop all and wait for it: together, who does not need each other. Supervisord itself takes one by one."""
+        later = set().union(*_STOPPED_LATER)
+        with self._remote() as remote:
+            for kinds in (set(ServiceKind) - later, *_STOPPED_LATER):
+                _stop_together(remote, {one.name for one in self.processes if one.kind in kinds})
+
     def refusals(self) -> dict[str, str]:
         """Return the sentence with which each process ended that has ended since it was first started, by its name."""
-        transport: Any = SupervisorTransport(None, None, f"unix://{self._socket}")
         told: list[dict[str, Any]] = []
-        with contextlib.closing(transport), contextlib.suppress(OSError, Error, http.client.HTTPException):
-            remote: Any = ServerProxy("http://127.0.0.1", transport=transport)
-            told = remote.supervisor.getAllProcessInfo()
+        with self._remote() as remote:
+            told = remote.getAllProcessInfo()
         names = [info["name"] for info in told if info["stop"] and info["name"] in self._programs]
         return {name: sentence for name in names if (sentence := self._last_refusal(name))}
+
+    @contextlib.contextmanager
+    def _remote(self) -> Iterator[Any]:
+        """Talk to supervisord (http://supervisord.org/api.html); where it does not answer, the block ends there."""
+        transport: Any = SupervisorTransport(None, None, f"unix://{self._socket}")
+        with contextlib.closing(transport), contextlib.suppress(OSError, Error, http.client.HTTPException):
+            proxy: Any = ServerProxy("http://127.0.0.1", transport=transport)
+            yield proxy.supervisor
 
     def _last_refusal(self, name: str) -> str:
         with contextlib.suppress(OSError):
@@ -108,6 +135,15 @@ class Supervisor:
     def _write(self) -> None:
         text = configuration(self._options, self._programs.values(), self._socket)
         write_atomically(self.config, text.encode())
+
+
+def _stop_together(remote: Any, names: set[str]) -> None:
+    """Returns when none of these processes runs; supervisord kills one that takes longer than its time."""
+    for name in names:
+        with contextlib.suppress(Fault):  # it is not running, or was taken away meanwhile
+            remote.stopProcess(name, False)
+    while any(info["name"] in names and info["state"] in _ALIVE for info in remote.getAllProcessInfo()):
+        clock.sleep_s(_LOOK_EVERY_S)
 
 
 def configuration(options: PlatformOptions, programs: Iterable[tuple[int, Process]], socket: Path) -> str:
