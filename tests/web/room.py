@@ -30,12 +30,12 @@ from mart.sim.room.saved_room import SavedStop
 from mart.sim.room.seats import SeatHolder, SeatTable
 
 TASK = "two_arm_multi_cube_lifting"
-_SPEAK_EVERY_S = 0.2
+_SPEAK_EVERY_S = 0.1
 
 
 @contextlib.contextmanager
 def speaking(room: Room) -> Iterator[None]:
-    """Let a room say its status five times a second, as a sim does: a single one may arrive before its token."""
+    """Let a room say its status ten times a second, as a sim does: a single one may arrive before its token."""
     ended = threading.Event()
 
     def speak() -> None:

@@ -34,7 +34,7 @@ class RunningSite:
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningSite]:
-    """Pages and a room that speaks five times a second; no trainer yet."""
+    """Pages and a room that speaks as a sim does; no trainer yet."""
     port, data_dir = free_port(), tmp_path_factory.mktemp("web")
     with (
         running_router() as endpoint,

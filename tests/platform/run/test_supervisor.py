@@ -63,7 +63,12 @@ def test_all_are_stopped_and_who_is_needed_by_others_later(tmp_path: Path) -> No
         awaited = {keys.alive(one.kind, one.id) for one in plan if one.kind != ServiceKind.SIM}
         assert await_alive(bus, keys.EVERY_ALIVE, awaited, 60.0) >= awaited
         gone: list[str] = []
-        with contextlib.closing(bus.watch(keys.EVERY_ALIVE, lambda key, alive: alive or gone.append(key))):
+
+        def on_token(key: str, alive: bool) -> None:
+            if not alive:
+                gone.append(key)
+
+        with contextlib.closing(bus.watch(keys.EVERY_ALIVE, on_token)):
             supervisor.stop()
             supervisor.stop()  # again, for nothing
         assert [key.split("/")[2] for key in gone][:2] == ["experts", "recorder"]

@@ -26,7 +26,7 @@ from mart.protocol.messages import (
 )
 from mart.sim.room.command_validation import CommandRejection
 from mart.sim.room.room import Room
-from mart.sim.room.room_publisher import REPEAT_S
+from mart.sim.room.room_publisher import REPEAT_S, STATUS_S
 from mart.sim.room.saved_room import SavedRoom
 from mart.sim.world import World, divergence
 from mart.sim.world.divergence import DivergenceArchive
@@ -158,9 +158,9 @@ def test_latecomers_hear_the_newest_state_again_while_nothing_ticks(harness: Roo
     assert harness.publisher.repeats == pytest.approx(1.0 / REPEAT_S, abs=1)
 
 
-def test_status_comes_five_times_a_second(harness: RoomHarness) -> None:
+def test_status_comes_ten_times_a_second(harness: RoomHarness) -> None:
     harness.pass_time(2.0)
-    assert len(harness.publisher.statuses) == pytest.approx(2.0 / REPEAT_S, abs=2)
+    assert len(harness.publisher.statuses) == pytest.approx(2.0 / STATUS_S, abs=2)
 
 
 def test_a_seat_that_is_taken_stays_taken(harness: RoomHarness) -> None:

@@ -21,7 +21,7 @@ from mart.protocol.messages import (
 from mart.protocol.vocabulary import ServiceKind
 from mart.web.lobby.lobby import Lobby
 from mart.web.lobby.room_json import event_json
-from mart.web.lobby.room_table import GONE_AFTER_S, STALE_AFTER_S
+from mart.web.lobby.room_table import GONE_AFTER_S, SILENT_AFTER_S
 
 
 def status(room: str = "room-1", task: str = "two_arm_multi_cube_lifting") -> RoomStatus:
@@ -85,9 +85,24 @@ def test_a_plan_is_told() -> None:
 
 def test_a_silent_room_is_stale() -> None:
     lobby = lobby_with("room-1")
-    assert not lobby.room_json("room-1", "", STALE_AFTER_S)["stale"]
-    assert lobby.room_json("room-1", "", STALE_AFTER_S + 0.1)["stale"]
+    assert not lobby.room_json("room-1", "", SILENT_AFTER_S)["stale"]
+    assert lobby.room_json("room-1", "", SILENT_AFTER_S + 0.1)["stale"]
     assert lobby.rooms_json("", 1000.0) != []
+
+
+def test_a_silence_is_told_once() -> None:
+    lobby = lobby_with("room-1", "room-2")
+    changes = lobby.listeners.changes
+    lobby.see_silence(SILENT_AFTER_S)
+    assert lobby.listeners.changes == changes
+    for _ in range(2):
+        lobby.see_silence(SILENT_AFTER_S + 0.1)
+        assert lobby.listeners.changes == changes + 1
+    lobby.see_status(status("room-1"), 1.0)
+    lobby.see_silence(1.0)
+    changes = lobby.listeners.changes
+    lobby.see_silence(1.1 + SILENT_AFTER_S)
+    assert lobby.listeners.changes == changes + 1
 
 
 def test_a_room_whose_sim_has_gone_is_stale_at_once_and_disappears() -> None:

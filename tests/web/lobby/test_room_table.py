@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, Operator, RoomStatus, Seat
-from mart.web.lobby.room_table import STALE_AFTER_S, RoomTable
+from mart.web.lobby.room_table import OVERTAKEN_WITHIN_S, RoomTable
 
 
 def alive() -> RoomTable:
@@ -50,6 +50,6 @@ def test_a_sim_that_was_started_anew_is_believed_whatever_its_clock_says() -> No
 def test_a_clock_that_was_set_back_costs_a_second() -> None:
     table = alive()
     table.see(status(OPERATOR_HUMAN, wall_ns=20), 1.0)
-    late_s = 1.01 + STALE_AFTER_S
+    late_s = 1.01 + OVERTAKEN_WITHIN_S
     assert table.see(status(OPERATOR_HOLD, wall_ns=10), late_s)
     assert operator_in(table, late_s) == OPERATOR_HOLD

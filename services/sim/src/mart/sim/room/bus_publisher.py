@@ -5,7 +5,7 @@ from __future__ import annotations
 from mart.protocol import clock, codec, keys
 from mart.protocol.messages import Event, RoomStatus, State
 from mart.runtime.bus import Bus
-from mart.sim.room.room_publisher import REPEAT_S as STATUS_S
+from mart.sim.room.room_publisher import STATUS_S
 
 
 class BusPublisher:

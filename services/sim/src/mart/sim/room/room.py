@@ -41,7 +41,7 @@ from mart.sim.room.episode_state_machine import (
     Terms,
 )
 from mart.sim.room.recording_watch import RecordingWatch
-from mart.sim.room.room_publisher import REPEAT_S, RoomPublisher
+from mart.sim.room.room_publisher import REPEAT_S, STATUS_S, RoomPublisher
 from mart.sim.room.saved_room import SavedRoom, SavedStop
 from mart.sim.room.seats import SeatHolder, SeatTable
 from mart.sim.room.ticker import Ticker
@@ -289,7 +289,7 @@ class Room:
             self._status_due_s = now_s
         if now_s >= self._status_due_s:
             self._publisher.status(self.status(now_s))
-            self._status_due_s = now_s + REPEAT_S
+            self._status_due_s = now_s + STATUS_S
 
     def _seat_message(self, seat: SeatHolder) -> Seat:
         newest = self._barrier.newest(seat.arm) if seat.operator != OPERATOR_HOLD else None

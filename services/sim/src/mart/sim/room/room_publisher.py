@@ -6,7 +6,8 @@ from typing import Protocol
 
 from mart.protocol.messages import Event, RoomStatus, State
 
-REPEAT_S = 0.2  # status always; the newest state while no tick fires, for those who came late
+STATUS_S = 0.1  # whoever hears nothing for a few of these says that the room does not answer
+REPEAT_S = 0.2  # the newest state while no tick fires, for those who came late
 
 
 class RoomPublisher(Protocol):

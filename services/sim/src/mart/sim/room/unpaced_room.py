@@ -22,7 +22,7 @@ from mart.runtime.throttled_log import ThrottledLog
 from mart.sim.experts import ScriptedOperator, Skill
 from mart.sim.room.bus_publisher import OrderedPublisher
 from mart.sim.room.room import Room
-from mart.sim.room.room_publisher import REPEAT_S as STATUS_S
+from mart.sim.room.room_publisher import STATUS_S
 from mart.sim.room.work_queue import WorkQueue
 
 _log = logging.getLogger(__name__)

@@ -83,6 +83,7 @@ async def serve(
         config, background = _configured(settings, state, table)
         background += [
             feed.keep_asking(),
+            feed.keep_looking(),
             guarded.keep_ending(),
             _missed(state),
             keep_checking(settings, state.relays),

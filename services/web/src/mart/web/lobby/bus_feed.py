@@ -25,6 +25,7 @@ _MAX_MESSAGE_BYTES = 64 * 1024
 _MAX_THUMBNAIL_BYTES = thumbnails.MAX_BYTES + 1024
 _SETTLE_S = 2.0
 _ASK_EVERY_S = 2.0
+_LOOK_EVERY_S = 0.05
 
 
 class LobbyFeed:
@@ -50,7 +51,7 @@ class LobbyFeed:
     async def settled(self) -> None:
         """Wait until every room that is open now has been heard of, so that the first page shows them all.
 
-        A room speaks five times a second; one that is silent for 2 s is not waited for.
+        A room speaks ten times a second; one that is silent for 2 s is not waited for.
         """
         deadline_s = clock.monotonic_s() + _SETTLE_S
         with self._lobby.listeners.listen() as listener:
@@ -63,6 +64,12 @@ class LobbyFeed:
         while True:
             await self.ask_who_is_alive()
             await asyncio.sleep(_ASK_EVERY_S)
+
+    async def keep_looking(self) -> None:
+        """Notice rooms that have fallen silent, until cancelled."""
+        while True:
+            self._lobby.see_silence(clock.monotonic_s())
+            await asyncio.sleep(_LOOK_EVERY_S)
 
     async def ask_who_is_alive(self) -> None:
         """Take in the list of all liveliness tokens; a router that does not answer is asked again later."""

@@ -60,6 +60,11 @@ class Lobby:
         if told is not None:
             self.listeners.tell_event(told, wall_ns)
 
+    def see_silence(self, now_s: float) -> None:
+        """Take in that time has passed: a room of which nothing was heard meanwhile is shown as such."""
+        if self.rooms.have_fallen_silent(now_s):
+            self.listeners.tell_change()
+
     def see_label(self, path: str, outcome: str) -> None:
         """Take in that somebody has said how the episode at `path`, below the folder of episodes, ended."""
         self.last_episodes.see_label(path, outcome)

@@ -8,7 +8,8 @@ from mart.protocol.errors import NotFound
 from mart.protocol.holders import is_held_by
 from mart.protocol.messages import RoomStatus, Seat
 
-STALE_AFTER_S = 1.0  # a sim speaks five times a second
+SILENT_AFTER_S = 0.35  # a sim speaks ten times a second
+OVERTAKEN_WITHIN_S = 1.0  # by the answer to a request
 GONE_AFTER_S = 3.0  # without its liveliness token; a router's restart takes every token for about 2 s
 
 
@@ -25,6 +26,7 @@ class RoomTable:
     def __init__(self) -> None:
         self._rooms: dict[str, _Room] = {}
         self._alive: set[str] = set()
+        self._stale: set[str] = set()  # as last asked
 
     def see(self, status: RoomStatus, now_s: float) -> bool:
         """Keep `status` as its room's newest; return whether it is.
@@ -36,7 +38,11 @@ class RoomTable:
         if status.room not in self._alive and status.room not in self._rooms:
             return False
         known = self._rooms.get(status.room)
-        if known is not None and now_s - known.seen_s <= STALE_AFTER_S and _is_older(status, known.status):
+        if (
+            known is not None
+            and now_s - known.seen_s <= OVERTAKEN_WITHIN_S
+            and _is_older(status, known.status)
+        ):
             return False
         self._rooms[status.room] = _Room(status, now_s, status.room in self._alive)
         return True
@@ -90,7 +96,13 @@ class RoomTable:
     def is_stale(self, room: str, now_s: float) -> bool:
         """Whether `room` is silent, or its sim is gone."""
         known = self._rooms[room]
-        return not known.alive or now_s - known.seen_s > STALE_AFTER_S
+        return not known.alive or now_s - known.seen_s > SILENT_AFTER_S
+
+    def have_fallen_silent(self, now_s: float) -> bool:
+        """Return whether any room has become stale since this was last asked."""
+        before = self._stale
+        self._stale = {room for room in self._rooms if self.is_stale(room, now_s)}
+        return bool(self._stale - before)
 
     def _forget(self, now_s: float) -> None:
         self._rooms = {
