@@ -9,11 +9,13 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 
 from mart.episodes.writer import EpisodeWriter
+from mart.protocol import clock
 from mart.protocol.errors import MartError
 from mart.protocol.messages import Model
 from mart.recorder.record.announcer import Announcer
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.finalize import SavedEpisode, VerifyFile, describe_room, finalize
+from mart.recorder.record.pieces import drop_pieces
 from mart.recorder.record.room_facts import RoomFacts
 from mart.recorder.record.room_models import RoomModels
 
@@ -109,12 +111,22 @@ class FinalizeWorker:
             text = f"Episode {episode.number} could not be completed: {in_words(error)}. {kept}"
             self._announcer.notice(episode.room, "error", text)
             return False
-        self._announcer.saved(saved)
+        self._tell(saved)
         return True
 
     def _tidy(self) -> None:
         for saved in self._tidy_folder():
-            self._announcer.saved(saved)
+            self._tell(saved)
+
+    def _tell(self, saved: SavedEpisode) -> None:
+        self._announcer.saved(saved)
+        try:
+            dropped = drop_pieces(self._root, saved.episode.room, saved.episode.number, clock.wall_ns())
+        except (OSError, MartError) as error:  # a full disk: the pieces stay, beside the whole
+            _log.warning("The pieces of %s are not left out: %s", saved.path, error)
+            return
+        for piece in dropped:
+            _log.info("%s is left out: the whole episode is in another file", piece)
 
     def _work(
         self, workers: ThreadPoolExecutor, what: str, call: Callable[..., object], *arguments: object
