@@ -19,7 +19,7 @@ from mart.runtime.ports import free_port
 _WAIT_MS = 30_000  # the pages share two cores with the platform behind them, and with two renderers
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
     options = PlatformOptions(
         data_dir=tmp_path_factory.mktemp("platform"),
@@ -31,7 +31,7 @@ def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
         yield running
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     expect.set_options(timeout=_WAIT_MS)
     with running_browser() as running:

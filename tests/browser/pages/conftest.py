@@ -14,7 +14,7 @@ from tests.support.processes import running_router, running_service
 Run = Callable[..., Any]
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def run(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
     """`run("drive/frame.js", "({ encodeFrame }, frame) => …", frame)`: a function of a module's exports, in a page."""
     port = free_port()

@@ -68,7 +68,8 @@ def test_what_is_said_while_recording_is_in_the_file(browser: Browser, platform:
             page.get_by_role("button", name="Failed").click()
         expect(page.locator("#state-detail")).to_contain_text("Saved and verified")
         leaves(page)
-    path = max((platform.options.data_dir / "episodes").rglob("*.mcap"))
+    files = (platform.options.data_dir / "episodes").rglob("*.mcap")
+    path = max(files, key=lambda file: file.stat().st_mtime)
     events = [codec.decode(Event, message.payload) for message in EpisodeFile.open(path).messages("/event")]
     said = [(event.cue_given.arm, event.cue_given.cue) for event in events if event.HasField("cue_given")]
     assert said == [("arm0", CUE_WAIT), ("arm1", CUE_GO)]
