@@ -31,6 +31,7 @@ class Row:
     """What became of one fault. Times in seconds from its beginning; None: never."""
 
     fault: str
+    felt_s: float = 0.0  # when people could first notice it: where the platform ends, with its last state
     standstill_s: float = 0.0
     back_s: float = 0.0
     told_s: float | None = None
@@ -99,8 +100,8 @@ def judge(row: Row, names: Sequence[str], *, felt: bool, ends_platform: bool) ->
         short.append("neither verified nor its gap named")
     if names and felt and row.told_s is None:
         short.append("nobody is told")
-    elif names and felt and row.told_s is not None and row.told_s > TOLD_WITHIN_S:
-        short.append(f"told after {row.told_s:.1f} s")
+    elif names and felt and row.told_s is not None and row.told_s - row.felt_s > TOLD_WITHIN_S:
+        short.append(f"told {row.told_s - row.felt_s:.1f} s after it is felt")
     if not row.next_verified:
         short.append("the next episode is not verified")
     if row.left_over:

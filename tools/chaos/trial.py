@@ -57,6 +57,7 @@ def try_fault(fault: Fault, scene: Scene, people: Sequence[EmulatedUser]) -> Tri
         if fault.ends_platform:
             witness.wait_for(lambda: bool(_told(witness, fault, fault_s)[1]), _DEAD_S)
             row.left_over = _left(scene.running.mark)
+            row.felt_s = max(witness.states[-1][0] - fault_s, 0.0)
         else:
             _await_end(witness, number)
         row.standstill_s, row.back_s = standstill(witness.states, witness.events, fault_s)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import resource
 import threading
 from collections.abc import Iterator
@@ -10,10 +12,12 @@ from pathlib import Path
 
 import pytest
 
+from mart.episodes.patient_file import PatientFile
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec, keys, recording
 from mart.protocol.keys import Topic
 from mart.recorder.catalogue.episode_catalogue import FILE_NAME
+from mart.recorder.record import folder_watch
 from mart.recorder.record.inbox import Inbox
 from mart.recorder.verify.file_check import check_file
 from mart.runtime.bus import Request
@@ -206,6 +210,37 @@ def test_a_full_disk_ends_that_recording_only(session: RecordingSession) -> None
     session.episode(number=2, first_tick=500)
     (event,) = session.told("episode_saved")
     assert (event.episode_saved.number, event.episode_saved.verified) == (2, True)
+
+
+@pytest.mark.parametrize("reason", [errno.ENOSPC, errno.EROFS])
+def test_a_disk_that_is_full_for_a_while_costs_nothing(
+    session: RecordingSession, monkeypatch: pytest.MonkeyPatch, reason: int
+) -> None:
+    full, drain = threading.Event(), PatientFile._drain
+
+    def drain_if_there_is_room(file: PatientFile) -> None:
+        if full.is_set():
+            raise OSError(reason, os.strerror(reason))
+        drain(file)
+
+    monkeypatch.setattr(PatientFile, "_drain", drain_if_there_is_room)
+    monkeypatch.setattr(folder_watch, "trouble_of", lambda _: "The disk is full" if full.is_set() else "")
+    states = synthetic.states(60)
+    session.event(synthetic.started())
+    session.states(states[:20])
+    full.set()
+    session.states(states[20:])
+    session.recorder._rooms[synthetic.ROOM]._flush(0.0)
+    (notice,) = session.told("notice")
+    assert (notice.notice.level, "waits in memory" in notice.notice.text) == ("error", True)
+    session.event(synthetic.ended(60))
+    session.recorder.step(0.3)  # longer than a retry
+    assert not list(session.data_dir.rglob("*.mcap"))
+    full.clear()
+    (event,) = session.told("episode_saved")
+    file = EpisodeFile.open(session.data_dir / event.episode_saved.path)
+    assert (event.episode_saved.verified, file.episode.complete) == (True, True)
+    assert [message.sequence for message in file.messages(recording.STATE)] == list(range(61))
 
 
 def test_a_recorder_that_cannot_keep_up_leaves_out_frames_and_says_so(tmp_path: Path) -> None:

@@ -66,7 +66,7 @@ def test_what_is_in_no_file_is_lost() -> None:
         ({"lost_s": 1.5}, ["1.5 s are lost"]),
         ({"gap_named": False}, ["neither verified nor its gap named"]),
         ({"told_s": None}, ["nobody is told"]),
-        ({"told_s": 0.9}, ["told after 0.9 s"]),
+        ({"told_s": 0.9}, ["told 0.9 s after it is felt"]),
         ({"next_verified": False}, ["the next episode is not verified"]),
         ({"left_over": 3}, ["3 processes are left"]),
     ],

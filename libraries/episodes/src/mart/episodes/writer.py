@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
 import errno
 import fcntl
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from typing import IO, cast
 
 from google.protobuf.message import Message
 from mcap.well_known import MessageEncoding
@@ -15,6 +15,7 @@ from mcap.writer import CompressionType, Writer
 from mcap_protobuf.schema import register_schema
 
 from mart.episodes.mcap_entries import McapEntry
+from mart.episodes.patient_file import PatientFile
 from mart.protocol.messages import Model
 from mart.protocol.recording import CHECKSUMS, MODEL_ATTACHMENT, PROFILE, RoomRecord, metadata_checksum
 from mart.runtime.atomic_file import rename_to_new
@@ -25,8 +26,8 @@ _CHUNK_BYTES = 256 * 1024  # what one damaged sector can cost
 class EpisodeWriter:
     """Write an episode file, which is this object's own until `move_to`, `abandon` or `discard`.
 
-    Every method may raise OSError: the disk is full or broken. The path is locked meanwhile, so that a repair leaves it
-    alone; a lock dies with its process.
+    Every method may raise OSError: the disk is broken, or has been full for too long (`PatientFile`). The path is
+    locked meanwhile, so that a repair leaves it alone; a lock dies with its process.
     """
 
     def __init__(self, path: Path) -> None:
@@ -36,12 +37,16 @@ class EpisodeWriter:
         self._description: Mapping[str, str] = {}
         self.has_model = False
         opening = path.with_name(f".{path.name}.opening")  # a repair must not find it before it is locked
-        self._file = opening.open("wb")
+        self._file = PatientFile(opening)
         self._lock = opening.open("rb")
         fcntl.flock(self._lock, fcntl.LOCK_EX)
         rename_to_new(opening, path)
+        self._is_finished = False
         self._mcap = Writer(
-            self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True
+            cast("IO[bytes]", self._file),
+            chunk_size=_CHUNK_BYTES,
+            compression=CompressionType.ZSTD,
+            enable_data_crcs=True,
         )
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
@@ -79,9 +84,17 @@ class EpisodeWriter:
         self._checksums[name] = metadata_checksum(strings)
 
     def flush(self) -> None:
-        """Bring everything so far onto the disk: a kill or a power cut takes nothing of it afterwards."""
+        """Bring everything so far onto the disk: a kill or a power cut takes nothing of it afterwards.
+
+        Raises OSError for want of room, too; then `waits`, and it goes on.
+        """
         self._mcap.flush()  # type: ignore[no-untyped-call]
-        os.fsync(self._file.fileno())
+        self._file.sync()
+
+    @property
+    def waits(self) -> bool:
+        """Whether anything waits in memory for room on the disk."""
+        return self._file.waiting_bytes > 0
 
     def require_there(self) -> None:
         """Raise FileNotFoundError where somebody has deleted the file: what is written would be lost."""
@@ -89,11 +102,15 @@ class EpisodeWriter:
             raise FileNotFoundError(errno.ENOENT, "its file was deleted", str(self.path))
 
     def finish(self) -> None:
-        """Write the checksums of the metadata and the summary, and close the file, which stays locked."""
-        self._mcap.add_metadata(CHECKSUMS, self._checksums)
-        self._mcap.finish()  # type: ignore[no-untyped-call]
-        self._file.flush()
-        os.fsync(self._file.fileno())
+        """Write the checksums of the metadata and the summary, and close the file, which stays locked.
+
+        May be called again after it has failed for want of room.
+        """
+        if not self._is_finished:
+            self._is_finished = True
+            self._mcap.add_metadata(CHECKSUMS, self._checksums)
+            self._mcap.finish()  # type: ignore[no-untyped-call]
+        self._file.sync()
         self._file.close()
 
     def move_to(self, path: Path) -> None:
@@ -111,8 +128,7 @@ class EpisodeWriter:
 
     def abandon(self) -> None:
         """Close the file as it is: what reached the disk stays there for a repair."""
-        with contextlib.suppress(OSError):  # closing tries to write what could not be written before
-            self._file.close()
+        self._file.close()
         self._lock.close()
 
     def _channel(self, topic: str, schema: type[Message]) -> int:

@@ -13,6 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from mart.episodes import find_episodes
+from mart.episodes.patient_file import patiently
 from mart.episodes.reader import EpisodeFile
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol import clock
@@ -34,6 +35,7 @@ from mart.recorder.record.room_facts import RoomFacts
 VerifyFile = Callable[[EpisodeFile, RoomRecord], VerificationRecord]
 NameFile = Callable[[EpisodeWriter, EpisodeRecord], None]  # raises FileExistsError, and never overwrites
 
+_PATIENCE_S = 20.0  # with a full disk; who stops the recorder waits for 30 s
 _SLACK_NS = 1_000_000_000
 _LAST_DAY_S = 253402300799  # of the year 9999: a file's stamps are only what its bytes say
 _SAFE = re.compile(r"[a-z0-9][a-z0-9_-]*")
@@ -73,7 +75,9 @@ def finalize(
 
     Raises OSError where the disk is full and Corrupt where what was written does not read back; the `.part` stays.
     """
-    return complete(file, episode, facts, below(root), verify, repaired=repaired)
+    patience_s = 0.0 if repaired else _PATIENCE_S  # what a crash had left can wait for the next time
+    name = below(root, patience_s)
+    return complete(file, episode, facts, name, verify, repaired=repaired, patience_s=patience_s)
 
 
 def complete(
@@ -85,16 +89,20 @@ def complete(
     *,
     repaired: bool,
     recorded: RecordedFacts = RecordedFacts(),
+    patience_s: float = 0.0,
 ) -> SavedEpisode:
-    """Complete `file` and give it its name, as `finalize`. recorded: what an earlier file said of the episode."""
+    """Complete `file` and give it its name, as `finalize`.
+
+    recorded: what an earlier file said of the episode. patience_s: for how long each step waits for room on the disk.
+    """
     file.describe(facts.record())
-    file.flush()
+    patiently(file.flush, patience_s)
     verification = verify(EpisodeFile(file.path, {}), facts.record())
     record, cadence = _as_recorded(recorded.episode, episode.record(facts, repaired)), episode.cadence()
     for known in (record, cadence, recorded.operators or episode.operators(facts), verification):
         file.add_record(known.NAME, known.to_strings())
     file.add_record(VERSIONS, versions())
-    file.finish()
+    patiently(file.finish, patience_s)
     EpisodeFile(file.path, {}).check(file.messages)
     name(file, record)
     return SavedEpisode(file.path, record, cadence, verification, file.path.stat().st_size)
@@ -114,14 +122,14 @@ def is_saved(root: Path, room: str, number: int, at_ns: int) -> bool:
     return False
 
 
-def below(root: Path) -> NameFile:
+def below(root: Path, patience_s: float = 0.0) -> NameFile:
     """Return what moves a finished file to its name under `root`, which nothing had before."""
 
     def name(file: EpisodeWriter, record: EpisodeRecord) -> None:
         while True:
             path = free_path(root, record)
             try:
-                return file.move_to(path)
+                return patiently(functools.partial(file.move_to, path), patience_s)
             except FileExistsError:  # another has taken the name meanwhile
                 if not _taken(path):
                     raise

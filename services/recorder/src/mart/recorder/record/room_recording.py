@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from mart.episodes.patient_file import is_for_want_of_room
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol import keys
 from mart.protocol.errors import MartError
@@ -18,6 +19,7 @@ from mart.recorder.record.arrival_decoder import ArrivedMessage, decode_arrival
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.finalize import describe_room, is_saved, part_path
 from mart.recorder.record.finalize_worker import FinalizeWorker, in_words
+from mart.recorder.record.folder_watch import FolderWatch
 from mart.recorder.record.inbox import BusArrival
 from mart.recorder.record.room_claim import RoomClaim
 from mart.recorder.record.room_models import RoomModels
@@ -43,7 +45,7 @@ class RecordingTools:
 
 
 class RoomRecording:
-    """Write the episodes of one room, one file after another. A full disk ends the file at hand, never the room."""
+    """Write the episodes of one room, one file after another. A broken disk ends the file at hand, never the room."""
 
     def __init__(self, room: str, tools: RecordingTools, claim: RoomClaim) -> None:
         """Record a room that is claimed; whoever leaves the room releases `claim`."""
@@ -56,6 +58,7 @@ class RoomRecording:
         self._boot = 0
         self._flushed_s = self._reported_s = 0.0
         self._tellings = RateLimit(1, _TELL_AGAIN_S)
+        self._folder_watch = FolderWatch(tools.root)
 
     @property
     def is_writing(self) -> bool:
@@ -72,13 +75,20 @@ class RoomRecording:
         self._apply(self._tracker.advance(now_s))
         if self._files and now_s - self._flushed_s >= FLUSH_S:
             self._flush(now_s)
-        episode = self._tracker.episode
-        if episode in self._files and now_s - self._reported_s >= _REPORT_S:
+        if self._files and now_s - self._reported_s >= _REPORT_S:
             self._reported_s = now_s
-            self._tools.announcer.report(episode.room, episode.boot, episode.number, episode.last_tick)
+            self._report()
         if self._tracker.unknown_task and self._tellings.allows(now_s):
             text = f"The recorder does not know the task {self._tracker.unknown_task[:64]!r}: nothing is recorded here."
             self._tools.announcer.notice(self._room, "error", text)
+
+    def _report(self) -> None:
+        """Tell the room what is kept, or what keeps it from being kept."""
+        if (news := self._folder_watch.news()) is not None:
+            self._tools.announcer.notice(self._room, *news)
+        episode = self._tracker.episode
+        if episode in self._files and not self._files[episode].waits:
+            self._tools.announcer.report(episode.room, episode.boot, episode.number, episode.last_tick)
 
     def _flush(self, now_s: float) -> None:
         """Bring the open files onto the disk, with what is known about the room by now."""
@@ -89,7 +99,8 @@ class RoomRecording:
                 describe_room(file, self._tracker.facts, self._tools.models.known(self._room, self._boot))
                 file.flush()
             except Exception as error:  # noqa: BLE001 - as above
-                self._give_up(episode, error)
+                if not (file.waits and is_for_want_of_room(error)):
+                    self._give_up(episode, error)
 
     def finish(self, reason: str) -> None:
         """End what is being recorded; the file says why it was not finished."""
@@ -168,7 +179,7 @@ class RoomRecording:
             self._tools.finalizer.finalize(file, episode, copy.deepcopy(self._tracker.facts))
 
     def _give_up(self, episode: EpisodeAccumulator, error: Exception) -> None:
-        """Leave this episode: the disk is full or broken. The room and its next episode go on."""
+        """Leave this episode: the disk is broken, or was full for too long. The room and its next episode go on."""
         if not isinstance(error, OSError):
             _log.error("Recording episode %d failed", episode.number, exc_info=error)
         self._tracker.abandon(episode)
