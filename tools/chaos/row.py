@@ -24,6 +24,7 @@ class RecordedFile:
     outcome: str
     verdict: str
     complete: bool
+    dropped: bool = False
 
 
 @dataclass
@@ -86,7 +87,7 @@ def in_words(files: Sequence[RecordedFile], expected: frozenset[int]) -> str:
         return "no file"
     return "; ".join(
         f"{file.outcome}, {file.verdict}, {len(file.ticks)} of {len(expected)} ticks"
-        f"{'' if file.complete else ', says that it is not whole'}"
+        f"{'' if file.complete else ', says that it is not whole'}{', left out' if file.dropped else ''}"
         for file in files
     )
 

@@ -118,6 +118,7 @@ def recorded(data_dir: Path, number: int) -> list[RecordedFile]:
                     str(file.episode.outcome),
                     str(labelled.verdict),
                     file.episode.complete and not file.cadence.messages_lost,
+                    labelled.dropped,
                 )
             )
     return found
