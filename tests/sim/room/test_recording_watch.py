@@ -9,15 +9,16 @@ from mart.protocol.messages import RecordingReport
 from mart.sim.room.recording_watch import UNKEPT_AFTER_S, RecordingWatch
 
 PERIOD_S = 0.05
+BOOT_NS = 1_700_000_000_000_000_000
 
 
 def report(tick: int, number: int = 1) -> RecordingReport:
-    return RecordingReport(recorder="recorder-1", episode=number, last_tick=tick)
+    return RecordingReport(recorder="recorder-1", boot=BOOT_NS, episode=number, last_tick=tick)
 
 
 @given(st.lists(st.integers(0, 40), min_size=40, max_size=40))
 def test_it_objects_when_the_oldest_state_that_is_not_kept_is_too_old(behind: list[int]) -> None:
-    watch, kept = RecordingWatch(), -1
+    watch, kept = RecordingWatch(BOOT_NS), -1
     for tick, lag in enumerate(behind):
         now_s = tick * PERIOD_S
         watch.told(1, tick, now_s)
@@ -29,7 +30,7 @@ def test_it_objects_when_the_oldest_state_that_is_not_kept_is_too_old(behind: li
 
 
 def test_a_room_that_stands_still_or_practises_has_nothing_to_keep() -> None:
-    watch = RecordingWatch()
+    watch = RecordingWatch(BOOT_NS)
     watch.told(1, 7, 0.0)
     watch.reported(report(7))
     assert watch.objection(100.0) == ""
@@ -41,14 +42,14 @@ def test_a_room_that_stands_still_or_practises_has_nothing_to_keep() -> None:
 
 
 def test_reports_of_another_episode_mean_nothing() -> None:
-    watch = RecordingWatch()
+    watch = RecordingWatch(BOOT_NS)
     watch.told(2, 7, 0.0)
     watch.reported(report(99, number=1))
     assert "nobody" in watch.objection(1.0)
 
 
 def test_a_recorder_whose_process_ended_keeps_nothing_from_then_on() -> None:
-    watch = RecordingWatch()
+    watch = RecordingWatch(BOOT_NS)
     watch.told(1, 7, 0.0)
     watch.reported(report(7))
     watch.gone("recorder-1")
@@ -60,7 +61,7 @@ def test_a_recorder_whose_process_ended_keeps_nothing_from_then_on() -> None:
 
 
 def test_another_recorder_that_ended_was_not_the_one_that_keeps_it() -> None:
-    watch = RecordingWatch()
+    watch = RecordingWatch(BOOT_NS)
     watch.told(1, 7, 0.0)
     watch.reported(report(6))
     watch.gone("recorder-2")

@@ -44,12 +44,12 @@ def test_a_room_says_within_a_second_that_nobody_records_it(harness: RoomHarness
     report = RecordingReport(
         recorder="recorder-1", boot=harness.newest.boot, episode=1, last_tick=harness.newest.tick
     )
-    harness.room.recording_reported(report)
+    harness.room.recording_watch.reported(report)
     assert harness.status().unrecorded == ""
     harness.drive(20)
     assert "recorder-1" in harness.status().unrecorded
     report.last_tick = harness.newest.tick
-    harness.room.recording_reported(report)
+    harness.room.recording_watch.reported(report)
     harness.drive(5)
     assert harness.status().unrecorded == ""
     told = [event.notice.level for event in harness.publisher.of("notice")]

@@ -15,7 +15,9 @@ UNKEPT_AFTER_S = 0.4  # a recorder reports every 0.1 s
 class RecordingWatch:
     """Compare the states that were told in an episode with those that a recorder says it has."""
 
-    def __init__(self) -> None:
+    def __init__(self, boot_ns: int) -> None:
+        """Watch over the room that was opened at `boot_ns`; after a restart, an episode of this number is another."""
+        self._boot_ns = boot_ns
         self._number = 0
         self._unkept: deque[tuple[int, float]] = deque()  # tick and when it was told, the oldest first
         self._recorder = ""
@@ -32,7 +34,7 @@ class RecordingWatch:
 
     def reported(self, report: RecordingReport) -> None:
         """Take note of what a recorder has kept; what it says of another episode means nothing."""
-        if report.episode != self._number:
+        if (report.boot, report.episode) != (self._boot_ns, self._number):
             return
         self._recorder, self._is_gone = report.recorder, False
         while self._unkept and self._unkept[0][0] <= report.last_tick:

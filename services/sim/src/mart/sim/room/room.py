@@ -18,7 +18,6 @@ from mart.protocol.messages import (
     OUTCOME_SUCCESS,
     EpisodeRequest,
     Event,
-    RecordingReport,
     RoomReply,
     RoomStatus,
     Seat,
@@ -83,7 +82,7 @@ class Room:
         self._episode = EpisodeStateMachine(record.seed, horizon_ticks, record.episodes)
         self._ticker = Ticker(name, world, self._boot_ns, now_s)
         self._last_ended: Event.EpisodeEnded | None = None
-        self._recording_watch = RecordingWatch()
+        self.recording_watch = RecordingWatch(self._boot_ns)
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
         self._status_due_s = self._repeat_due_s = now_s
@@ -155,15 +154,6 @@ class Room:
         if (counted := self._record.with_saved(saved.number, good)) is not self._record:
             self._remember(counted)
 
-    def recorder_gone(self, recorder: str) -> None:
-        """Take note that the process of a recorder ended."""
-        self._recording_watch.gone(recorder)
-
-    def recording_reported(self, report: RecordingReport) -> None:
-        """Take note of what a recorder has kept of the episode."""
-        if report.boot == self._boot_ns:
-            self._recording_watch.reported(report)
-
     def advance(self, now_s: float) -> float:
         """Do what is due; return the time at which to call again if nothing arrives before."""
         decision = self._barrier.advance(now_s, self._episode.world_runs)
@@ -202,7 +192,7 @@ class Room:
             plan=room_messages.plan(self._record),
             stop=self._stop.message(),
             last_ended=self._last_ended,
-            unrecorded=self._recording_watch.objection(now_s),
+            unrecorded=self.recording_watch.objection(now_s),
         )
 
     def _fire(self, inputs: TickInputs, now_s: float) -> None:
@@ -273,7 +263,7 @@ class Room:
 
     def _tell_state(self, state: State, now_s: float) -> None:
         self._publisher.state(state)
-        self._recording_watch.told(0 if self._terms.lockstep else state.episode, state.tick, now_s)
+        self.recording_watch.told(0 if self._terms.lockstep else state.episode, state.tick, now_s)
         self._repeat_due_s = now_s + REPEAT_S
 
     def _tell(self, event: Event) -> None:
@@ -284,7 +274,7 @@ class Room:
         if now_s >= self._repeat_due_s:
             self._publisher.repeat_state()
             self._repeat_due_s = now_s + REPEAT_S
-        if (news := self._recording_watch.news(now_s)) is not None:
+        if (news := self.recording_watch.news(now_s)) is not None:
             self._tell(room_messages.notice(*news))
             self._status_due_s = now_s
         if now_s >= self._status_due_s:

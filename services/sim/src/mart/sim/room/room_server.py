@@ -81,11 +81,11 @@ class RoomServer:
         except InvalidInput:
             self._garbled["recording report"] += 1
         else:
-            self._leave(partial(self._room.recording_reported, report))
+            self._leave(partial(self._room.recording_watch.reported, report))
 
     def _on_recorder_alive(self, key: str, alive: bool) -> None:
         if not alive:
-            self._leave(partial(self._room.recorder_gone, keys.last_of(key)))
+            self._leave(partial(self._room.recording_watch.gone, keys.last_of(key)))
 
     def _on_saved(self, saved: Event.EpisodeSaved) -> None:
         self._leave(partial(self._room.episode_saved, saved))
