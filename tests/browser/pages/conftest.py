@@ -1,4 +1,4 @@
-"""The web service alone, for what needs no world behind it."""
+"""One platform for the tests of all pages, and the web service alone for what needs no world behind it."""
 
 from __future__ import annotations
 
@@ -8,10 +8,18 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser
 
+from mart.platform.run.running import Platform
 from mart.runtime.ports import free_port
+from tests.browser.whole_platform import whole_platform
 from tests.support.processes import running_router, running_service
 
 Run = Callable[..., Any]
+
+
+@pytest.fixture(scope="session")
+def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
+    with whole_platform(tmp_path_factory.mktemp("platform")) as running:
+        yield running
 
 
 @pytest.fixture(scope="session")

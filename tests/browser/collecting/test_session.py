@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import queue
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -13,14 +13,17 @@ from mcap.reader import make_reader
 from playwright.sync_api import Browser, expect
 
 from mart.platform.run.running import Platform
-from mart.protocol import keys
+from mart.protocol import clock, keys
 from mart.protocol.codec import decode
 from mart.protocol.messages import OUTCOME_SUCCESS, ArmState, Event, State
 from mart.runtime.bus.base import Sample
+from tests.browser.collecting.people import BrowserUser, Phone, person
 from tests.browser.pages.visits import INSPECT
-from tests.browser.people import BrowserUser, Phone, person
+from tests.browser.whole_platform import whole_platform
 
 WAIT_S = 60.0
+_SOON_S = 3.0  # a busy machine may open the clutch, because it hears nothing of the phone
+_PULLS = 8
 
 
 class Room:
@@ -47,13 +50,13 @@ class Room:
     def height_m(self, arm: str) -> float:
         return self.next_arm(arm).tool_in_base.z
 
-    def await_engaged(self, arm: str) -> None:
-        while not self.next_arm(arm).engaged:
-            pass
-
-    def await_height(self, arm: str, at_least_m: float) -> None:
-        while self.height_m(arm) < at_least_m:
-            pass
+    def becomes(self, arm: str, holds: Callable[[ArmState], bool]) -> bool:
+        """Whether something comes to hold of an arm soon."""
+        until_s = clock.monotonic_s() + _SOON_S
+        while clock.monotonic_s() < until_s:
+            if holds(self.next_arm(arm)):
+                return True
+        return False
 
     def await_event(self, what: str) -> Event:
         while (event := self._events.get(timeout=WAIT_S)).WhichOneof("what") != what:
@@ -71,6 +74,12 @@ class Room:
         self._events.put(decode(Event, sample.payload))
 
 
+@pytest.fixture(scope="module")
+def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
+    with whole_platform(tmp_path_factory.mktemp("platform")) as running:
+        yield running
+
+
 @pytest.fixture
 def room(platform: Platform) -> Iterator[Room]:
     with contextlib.closing(Room(platform)) as listening:
@@ -78,13 +87,17 @@ def room(platform: Platform) -> Iterator[Room]:
 
 
 def lift(room: Room, arm: str, phone: Phone) -> None:
-    """The arm follows the phone up by most of 8 cm."""
-    before_m = room.height_m(arm)
-    phone.hold()
-    room.await_engaged(arm)
-    phone.move(0.0, 0.08, 0.0, duration_s=1.5)
-    room.await_height(arm, before_m + 0.06)
-    phone.let_go()
+    """The arm follows the phone upwards; a person whose arm stops lets go and pulls again."""
+    goal_m = room.height_m(arm) + 0.06
+    for _ in range(_PULLS):
+        phone.hold()
+        if room.becomes(arm, lambda state: state.engaged):
+            phone.move(0.0, 0.08, 0.0, duration_s=1.5)
+        rose = room.becomes(arm, lambda state: state.tool_in_base.z >= goal_m)
+        phone.let_go()
+        if rose:
+            return
+    raise AssertionError(f"{arm} did not rise to {goal_m:.2f} m in {_PULLS} pulls.")
 
 
 @pytest.mark.timeout(300)
@@ -237,7 +250,8 @@ def test_a_newcomer_alone_records_within_a_minute_of_try_it(
         before_m = room.height_m("arm0")
         nia.page.keyboard.down("Space")
         nia.page.keyboard.down("KeyQ")
-        room.await_height("arm0", before_m + 0.05)
+        while room.height_m("arm0") < before_m + 0.05:
+            pass
         nia.page.keyboard.up("KeyQ")
         nia.page.keyboard.up("Space")
         nia.shoot("practice")

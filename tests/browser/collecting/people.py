@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from mart.platform.run.running import Platform
 
 SCREENSHOTS = Path("test-output/browser")
-_XR_STAND_IN = Path(__file__).parent / "pages" / "xr_stand_in.js"
+_XR_STAND_IN = Path(__file__).parents[1] / "pages" / "xr_stand_in.js"
 
 _MOVE_PHONE = """
 async ([x, y, z, durationMs]) => {
