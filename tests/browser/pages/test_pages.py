@@ -179,6 +179,20 @@ def test_dragging_the_picture_moves_the_arm(browser: Browser, platform: Platform
         expect(page.locator("#clutch")).to_contain_text("Hold space")
 
 
+def test_space_drives_after_a_button_was_pressed_by_key(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        for closes in ("Escape", "?"):
+            page.locator("#help").focus()
+            page.keyboard.press("Enter")
+            expect(page.locator("#keys")).to_be_visible()
+            page.keyboard.press(closes)
+            expect(page.locator("#keys")).to_be_hidden()
+            page.keyboard.down("Space")
+            expect(page.locator("#clutch")).to_have_text("Moving")
+            page.keyboard.up("Space")
+            expect(page.locator("#keys")).to_be_hidden()
+
+
 def test_a_script_is_taken_over_from_and_handed_back_to(browser: Browser, platform: Platform) -> None:
     with visit(browser, platform) as ana:
         ana.join("Ana", "Join and choose a seat")

@@ -139,6 +139,8 @@ def test_an_episode_is_told_from_its_end_until_the_next_one_begins(run: Run) -> 
 def test_a_success_by_hand_says_how_far_it_was(run: Run) -> None:
     by_hand = after(outcome="success", reason="said by Ana", ended_by="operator", subtasks_done=0, subtasks=3)
     assert "Said by Ana. 0 of 3 steps were done. Saved" in view(run, by_hand)["detail"]
+    too_late = after(outcome="failure", reason="time is up", ended_by="time", subtasks_done=1, subtasks=2)
+    assert "Time is up. 1 of 2 steps were done. Saved" in view(run, too_late)["detail"]
 
 
 def test_what_nobody_keeps_is_not_called_a_recording(run: Run) -> None:

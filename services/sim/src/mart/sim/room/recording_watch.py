@@ -9,6 +9,7 @@ from collections import deque
 
 from mart.protocol.messages import RecordingReport
 
+_NOTICE_AFTER_S = 2.0
 UNKEPT_AFTER_S = 0.4  # a recorder reports every 0.1 s
 
 
@@ -50,18 +51,24 @@ class RecordingWatch:
             return ""
         if self._is_gone:
             return f"This episode is not being recorded: {self._recorder} is gone."
-        since_s = now_s - self._unkept[0][1]
+        since_s = self._unkept_s(now_s)
         if since_s < UNKEPT_AFTER_S:
             return ""
         who = f"{self._recorder} has kept nothing" if self._recorder else "nobody has kept anything"
         return f"This episode is not being recorded: {who} for {since_s:.1f} s."
 
     def news(self, now_s: float) -> tuple[str, str] | None:
-        """Return, once, what people are to be told now: the level of a notice and its text."""
-        objection = self.objection(now_s)
+        """Return, once, what people are to be told now: the level of a notice and its text.
+
+        A recorder that is only late shows in the room's status for as long as it is; a notice stays longer.
+        """
+        objection = self.objection(now_s) if self._is_gone or self._unkept_s(now_s) >= _NOTICE_AFTER_S else ""
         if bool(objection) == self._objects:
             return None
         self._objects = bool(objection)
         if objection:
             return "error", objection
         return ("info", f"{self._recorder} records again.") if self._number else None
+
+    def _unkept_s(self, now_s: float) -> float:
+        return now_s - self._unkept[0][1] if self._unkept else 0.0

@@ -83,6 +83,7 @@ function begin() {
   byId("health").addEventListener("toggle", () => render());
   video.addEventListener("resize", () => render());
   document.addEventListener("click", letGoOfButton);
+  document.addEventListener("keydown", letGoOnEscape);
   watchTicks(video, (tick, nowMs) => {
     if (tick !== input.seenTick) displayedMs = nowMs;
     input.seenTick = tick; // a smaller one than before is of another run of the simulation
@@ -94,12 +95,19 @@ function begin() {
 }
 
 /**
- * What was pressed with the pointer gives the keys back to the arm.
+ * What was pressed gives the keys back to the arm; by key, what may have to be pressed once more keeps them.
  * @param {MouseEvent} event
  */
 function letGoOfButton({ detail, target }) {
-  const pressed = detail > 0 && target instanceof Element && target.closest("button, summary");
-  if (pressed instanceof HTMLElement) pressed.blur();
+  const pressed = target instanceof Element && target.closest(detail > 0 ? "button, summary" : "button");
+  if (pressed instanceof HTMLElement && (detail > 0 || !pressed.closest("#actions, #emergency"))) pressed.blur();
+}
+
+/** @param {KeyboardEvent} event */
+function letGoOnEscape({ code }) {
+  if (code !== "Escape") return;
+  if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
+  panel.hideHelp();
 }
 
 const ownSeat = () => room?.seats.find((seat) => seat.arm === armId);

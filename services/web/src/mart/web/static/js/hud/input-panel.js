@@ -80,9 +80,12 @@ export class InputPanel {
 
   /** Shows the keys, or hides them. */
   toggleHelp() {
-    const shown = Boolean(byId("keys").hidden);
-    setShown(byId("keys"), shown);
-    byId("help").setAttribute("aria-expanded", String(shown));
+    showKeys(Boolean(byId("keys").hidden));
+  }
+
+  /** Hides the keys. */
+  hideHelp() {
+    showKeys(false);
   }
 
   async #pair() {
@@ -171,3 +174,9 @@ const caps = (keys) => keys.split(" ").flatMap((key) => [element("kbd", {}, key)
 /** @param {string} svg */
 const withNamespace = (svg) =>
   svg.includes("xmlns=") ? svg : svg.replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"');
+
+/** @param {boolean} shown */
+function showKeys(shown) {
+  setShown(byId("keys"), shown);
+  byId("help").setAttribute("aria-expanded", String(shown));
+}

@@ -22,9 +22,9 @@ export function lastText(last) {
   return [asSentence(last.reason), stepsText(last), file].filter(Boolean).join(" ");
 }
 
-/** How far it had come, where a person ended it. @param {Api.LastEpisode} last */
+/** How far it had come, where the task did not end it. @param {Api.LastEpisode} last */
 function stepsText({ ended_by: by, subtasks_done: done, subtasks: all }) {
-  return by === "operator" && all > 0 ? `${done} of ${all} steps were done.` : "";
+  return (by === "operator" || by === "time") && all > 0 ? `${done} of ${all} steps were done.` : "";
 }
 
 /** Whether it was discarded, and its file is there to be kept after all. @param {Api.LastEpisode} last */

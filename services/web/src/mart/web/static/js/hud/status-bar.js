@@ -1,6 +1,7 @@
 // The status bar: what is happening, and the next action as the one prominent button.
 
 import { byId, element, setShown, setText } from "../dom.js";
+import { lastEpisodeOf } from "./last-episode.js";
 import { statusBarView } from "./status-bar-view.js";
 
 /** @import { Action, ActionCommand, Known } from "./status-bar-view.js" */
@@ -36,8 +37,7 @@ export class StatusBar {
     setShown(byId("state-detail"), view.detail !== "");
     setText(byId("state-hint"), view.hint ?? "");
     setShown(byId("state-hint"), Boolean(view.hint));
-    const works = ["practice", "recording"].includes(room?.episode.phase ?? "") && known.seat?.mine;
-    this.#showSubtasks(room && works ? room.progress.subtasks : []);
+    this.#showSubtasks(stepsOf(room, known.seat));
     this.#showActions(view.actions, pending);
   }
 
@@ -96,4 +96,16 @@ export class StatusBar {
     const cap = key ? [element("kbd", { "aria-hidden": "true" }, key)] : [];
     return element("button", properties, `${words}${text}`, ...cap);
   }
+}
+
+/**
+ * The steps of the scene that one works on. Beside the last episode's outcome, those of the scene that was set up since
+ * would be taken for its own.
+ * @param {Api.Room | null} room
+ * @param {Api.Seat | undefined} seat
+ */
+function stepsOf(room, seat) {
+  if (!room || !seat?.mine) return [];
+  const isPractice = room.episode.phase === "practice" && !lastEpisodeOf(room, seat);
+  return isPractice || room.episode.phase === "recording" ? room.progress.subtasks : [];
 }
