@@ -9,17 +9,30 @@ import pytest
 from playwright.sync_api import Browser
 
 from mart.platform.run.running import Platform
+from mart.protocol import codec, keys
+from mart.protocol.messages import EpisodeRequest
 from mart.runtime.ports import free_port
 from tests.browser.whole_platform import whole_platform
 from tests.support.processes import running_router, running_service
 
 Run = Callable[..., Any]
+_ANSWERED_WITHIN_S = 30.0
 
 
 @pytest.fixture(scope="session")
 def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
     with whole_platform(tmp_path_factory.mktemp("platform")) as running:
         yield running
+
+
+@pytest.fixture(autouse=True)
+def goes_on(request: pytest.FixtureRequest) -> Iterator[None]:
+    """A stop that a test leaves pressed would stop the next one's arms."""
+    yield
+    if "platform" in request.fixturenames:
+        platform: Platform = request.getfixturevalue("platform")
+        go_on = EpisodeRequest(go_on=EpisodeRequest.GoOn(name="The test"))
+        platform.bus.query(keys.episode(platform.options.room), codec.encode(go_on), _ANSWERED_WITHIN_S)
 
 
 @pytest.fixture(scope="session")
