@@ -36,7 +36,7 @@ def ticks_for_each(own_hz: float, room_hz: float) -> int:
     ticks = round(room_hz / own_hz)
     if ticks < 1 or not same_control_hz(ticks * own_hz, room_hz):
         raise InvalidInput(
-            f"A room of {room_hz:g} Hz was given to what has {own_hz:g} Hz; "
-            f"the room's rate must be a multiple of it, such as {own_hz:g} or {2 * own_hz:g} Hz."
+            f"It acts {own_hz:g} times a second and the room ticks {room_hz:g} times; "
+            f"the room's rate must be {own_hz:g} Hz or a multiple, such as {3 * own_hz:g} Hz."
         )
     return ticks
