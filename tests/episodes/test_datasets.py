@@ -100,5 +100,6 @@ class ComparableEpisode:
 )
 def test_what_is_learned_from_together_is_alike(other: ComparableEpisode, words: str) -> None:
     require_alike([ComparableEpisode(), ComparableEpisode()], "split them")
+    require_alike([ComparableEpisode(), ComparableEpisode(control_hz=30.0)], "split them", any_rate=True)
     with pytest.raises(InvalidInput, match=words):
         require_alike([ComparableEpisode(), other], "split them")

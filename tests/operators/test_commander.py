@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from mart.operators import Operator, SeatView, ToolTarget
 from mart.operators.commander import SeatCommander
@@ -15,8 +17,10 @@ from mart.protocol.pose import Pose
 from tests.operators.rooms import POSE, TASK, Riser, state_of
 
 
-def commander_of(operator: Operator, arms: tuple[str, ...] = ("arm0",)) -> SeatCommander:
-    commander = SeatCommander(operator, TASK, arms, OPERATOR_POLICY)
+def commander_of(
+    operator: Operator, arms: tuple[str, ...] = ("arm0",), act_every_ticks: int = 1
+) -> SeatCommander:
+    commander = SeatCommander(operator, TASK, arms, OPERATOR_POLICY, act_every_ticks=act_every_ticks)
     commander.seat(dict.fromkeys(arms, 4))
     return commander
 
@@ -95,6 +99,39 @@ def test_who_keeps_one_of_several_seats_remembers() -> None:
     commander.observe(state_of(7))
     assert [command.arm for command in commander.commands(0)] == ["arm0", "arm1"]
     assert riser.begun == [1]
+
+
+def test_an_operator_of_a_slower_rate_acts_at_every_third_tick_and_holds_between() -> None:
+    riser = Riser()
+    commander = commander_of(riser, act_every_ticks=3)
+    said = []
+    for tick in range(5, 13):
+        assert commander.observe(state_of(tick))  # each is news, of which the barrier must hear
+        said += commander.commands(tick)
+    assert [view.tick for view in riser.views] == [5, 8, 11]
+    assert [command.sequence for command in said] == list(range(1, 9))
+    assert [command.state_tick for command in said] == [5, 5, 5, 8, 8, 8, 11, 11]
+    assert [command.seen_tick for command in said] == list(range(5, 13))
+
+
+def test_it_acts_on_the_state_after_a_reset_whenever_that_comes() -> None:
+    riser = Riser()
+    commander = commander_of(riser, act_every_ticks=3)
+    for state in (state_of(5), state_of(6, episode=2, after_reset=True), state_of(7), state_of(9)):
+        commander.observe(state)
+    assert [view.tick for view in riser.views] == [5, 6, 9]
+    assert riser.begun == [1, 2]
+
+
+@given(heard=st.sets(st.integers(1, 60), min_size=1), each=st.integers(1, 5))
+def test_it_acts_once_in_each_of_its_own_ticks_of_which_it_hears(heard: set[int], each: int) -> None:
+    riser = Riser()
+    commander = commander_of(riser, act_every_ticks=each)
+    ticks = sorted(heard)
+    for tick in ticks:
+        commander.observe(state_of(tick))
+    own = [(tick - ticks[0]) // each for tick in ticks]
+    assert [view.tick for view in riser.views] == [ticks[own.index(one)] for one in dict.fromkeys(own)]
 
 
 @pytest.mark.parametrize("spoil", ["missing", "short", "no arm"])

@@ -60,6 +60,7 @@ class Room:
         self.seats = SeatTable(task.arm_names)
         self.course = EpisodeStateMachine(room_seed=1, horizon_ticks=task.horizon_ticks)
         self.tick = 1
+        self.control_hz = 20.0
         self._barrier = Barrier(task.arm_names, 0.05, 0.0)
         self._stop = StopLatch(self._barrier, self.seats, None, self._on_stop_changed, 0.0)
         self._subtasks = task.subtasks
@@ -79,7 +80,7 @@ class Room:
         status = RoomStatus(
             room=self.name,
             task=TASK,
-            control_hz=20.0,
+            control_hz=self.control_hz,
             tick=self.tick,
             real_time_factor=1.0,
             barrier=BARRIER_PHASE_STOPPED if self._barrier.stopped else BARRIER_PHASE_RUNNING,

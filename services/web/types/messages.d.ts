@@ -107,6 +107,7 @@ declare namespace Messages {
     dataset: string;
     dataset_episodes: number;
     left_out: string[];
+    control_hz: number;
   }
 
   interface NamedDataSet {
@@ -125,6 +126,7 @@ declare namespace Messages {
     evaluation_episodes: number;
     score_episodes?: number;
     dataset: string;
+    control_hz: number;
   }
 
   interface Policy {

@@ -155,6 +155,14 @@ def test_a_data_set_is_put_together_by_name_or_by_filter_and_every_act_is_undone
     assert of_dataset(CatalogueHandlers(root), "good") == (0, [])
 
 
+def test_episodes_of_several_rates_are_put_together(root: Path) -> None:
+    rows = [
+        LabelledEpisode(path=name, size_bytes=1, task=synthetic.TASK, outcome="success", control_hz=rate)
+        for name, rate in (("a", 20.0), ("b", 60.0))
+    ]
+    assert take_in(root, "both", rows, [], now_ns=1).dataset.episodes == ("a", "b")
+
+
 def test_what_cannot_be_put_together_is_refused_and_nothing_changes(root: Path) -> None:
     asked = CatalogueHandlers(root)
     other = synthetic.TASK.replace("cube", "tray")

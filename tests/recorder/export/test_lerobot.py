@@ -144,3 +144,14 @@ def test_nothing_is_overwritten_and_nothing_half_is_left(exported: Exported, tmp
     with pytest.raises(InvalidInput):
         write(tmp_path / "episodes", tmp_path / "lifting")
     assert [path.name for path in tmp_path.iterdir()] == ["episodes"]
+
+
+def test_episodes_of_a_higher_rate_are_told_in_ticks_of_the_usual_one(tmp_path: Path) -> None:
+    world = World.build(recorded.TASK)
+    path = recorded.write(tmp_path / "episodes", world, recorded.perform(world, 1)[:30], control_hz=60.0)
+    write(tmp_path / "episodes", tmp_path / "lifting")
+    told = open_episode(path).arrays(TASK, 20.0)
+    table = pq.read_table(tmp_path / "lifting/data/chunk-000/file-000.parquet")
+    assert json.loads((tmp_path / "lifting/meta/info.json").read_text())["fps"] == 20
+    np.testing.assert_allclose(table["timestamp"].to_numpy(), 0.05 * np.arange(10), atol=1e-6)
+    np.testing.assert_allclose(table["action"].to_pylist(), told.actions.reshape(10, -1), atol=1e-6)

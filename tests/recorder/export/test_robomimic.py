@@ -167,7 +167,26 @@ def test_nothing_is_overwritten_and_nothing_half_is_left(source: Source, folder:
 def test_a_mixture_is_refused(source: Source, folder: Path, field: str, value: object) -> None:
     recorded.write(folder, source.world, renumbered(source.episodes[0], 5), **{field: value})  # type: ignore[arg-type]
     with pytest.raises(InvalidInput):
-        write(folder, folder / "lifting.hdf5")
+        write(folder, folder / "lifting.hdf5", "--control-hz", "own")
+
+
+def test_episodes_of_several_rates_are_told_at_one(source: Source, folder: Path) -> None:
+    """Recorded at 60 Hz, the first of these says the same in ticks of 20 Hz as `arrays` does."""
+    recorded.write(folder, source.world, renumbered(source.episodes[0], 5), control_hz=60.0)
+    write(folder, folder / "lifting.hdf5")
+    told = open_episode(next(folder.rglob("*-0005-*.mcap"))).arrays(TASK, 20.0)
+    with h5py.File(folder / "lifting.hdf5") as file:
+        assert json.loads(file["data"].attrs["env_args"])["env_kwargs"]["control_hz"] == 20.0
+        demo = file["data/demo_1"]  # of the same start as the first
+        np.testing.assert_array_equal(demo["actions"][:], told.actions.reshape(len(told), -1))
+        np.testing.assert_array_equal(demo["next_obs/arm0_gripper"][:], told.observations["arm0/gripper"][1:])
+        assert len(told) == -(-(len(source.episodes[0]) - 1) // 3)
+
+
+@pytest.mark.parametrize("given", ["60", "-1", "fast", "nan"])
+def test_a_rate_that_cannot_be_had_is_refused(folder: Path, given: str) -> None:
+    with pytest.raises(InvalidInput):
+        write(folder, folder / "lifting.hdf5", "--control-hz", given)
 
 
 def test_a_file_that_cannot_be_read_is_named_and_in_nobodys_way(

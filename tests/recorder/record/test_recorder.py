@@ -88,6 +88,24 @@ def test_a_command_that_never_comes_is_counted_in_the_file_and_told(
     assert event.episode_saved.verified
 
 
+def test_a_file_that_waits_keeps_its_rate_when_the_room_begins_anew_at_another(
+    session: RecordingSession, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The sim is started again at 60 Hz, with another model, while the last command of the episode is awaited."""
+    monkeypatch.setattr("mart.recorder.record.episode_closing.GRACE_S", 0.5)
+    session.event(synthetic.started())
+    session.states(synthetic.states(4))
+    session.put(keys.state(synthetic.ROOM), codec.encode(synthetic.states(5)[5]))  # its command does not come
+    session.event(synthetic.ended(5))
+    anew = synthetic.status(boot=synthetic.BOOT + 1)
+    anew.control_hz = 60.0
+    session.put(keys.status(synthetic.ROOM), codec.encode(anew))
+    (event,) = session.told("episode_saved")
+    file = EpisodeFile.open(session.data_dir / event.episode_saved.path)
+    assert (file.room.control_hz, file.episode.control_hz) == (20.0, 20.0)
+    assert file.room.model_sha256 == synthetic.MODEL.sha256
+
+
 def test_each_episode_has_its_file_and_the_catalogue_knows_them(session: RecordingSession) -> None:
     for number in (1, 2, 3):
         session.episode(number=number, first_tick=100 * number)

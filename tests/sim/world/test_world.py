@@ -262,3 +262,8 @@ def test_unknown_names_are_refused(world: World) -> None:
         World.build(TASK, arms=7)
     with pytest.raises(NotFound):
         world.tool_pose_in_base("arm9")
+
+
+def test_a_task_must_stay_done_for_the_same_time_at_every_rate(world: World) -> None:
+    fine = World.build(TASK, 60.0)
+    assert fine.success_hold_ticks == 3 * world.success_hold_ticks == 3 * world.task.success_hold_ticks

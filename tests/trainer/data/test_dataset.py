@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mart.episodes import labels
+from mart.episodes import labels, open_episode
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_SCRIPT, OUTCOME_FAILURE, Operator, State
 from mart.protocol.vocabulary import Verdict
@@ -110,6 +110,27 @@ def test_episodes_that_do_not_belong_together_are_refused(episodes: Recorded, tm
         load_dataset([tmp_path / "a", tmp_path / "b"], Selection())
     with pytest.raises(InvalidInput, match="several tasks were given"):
         load_dataset([tmp_path / "a", tmp_path / "c"], Selection())
+
+
+def test_episodes_of_several_rates_are_learned_from_at_one(episodes: Recorded, tmp_path: Path) -> None:
+    states = episodes.states[0]
+    recorded.write(tmp_path, episodes.world, states)
+    fine = recorded.write(tmp_path, episodes.world, episodes.states[1], control_hz=60.0)
+    for _ in range(2):  # read, and from the cache
+        mixed = load_dataset([tmp_path], Selection(), tmp_path / "cache", control_hz=20.0)
+        told = open_episode(fine).arrays(control_hz=20.0)
+        assert [(one.ticks, one.recorded_hz) for one in mixed.digest.episodes] == [
+            (len(states) - 1, 20.0),
+            (len(told), 60.0),
+        ]
+        assert mixed.digest.control_hz == 20.0
+        rows = slice(len(states), None)
+        np.testing.assert_array_equal(mixed.observations[rows], mixed.layout.vector(told.observations))
+        np.testing.assert_allclose(mixed.actions[rows][:-1], told.actions, atol=1e-7)
+        np.testing.assert_array_equal(mixed.sources[rows][:-1], told.sources)
+    assert len(load_dataset([fine], Selection(), tmp_path / "cache").starts) == len(episodes.states[1]) - 1
+    with pytest.raises(InvalidInput, match="at most 20 Hz"):
+        load_dataset([tmp_path], Selection(), control_hz=60.0)
 
 
 def test_failures_and_unverified_files_stay_out_unless_asked(episodes: Recorded, tmp_path: Path) -> None:

@@ -38,6 +38,7 @@ REQUEST = {
     "weights": {"human": 2.0},
     "base": None,
     "device": "cpu",
+    "control_hz": None,
 }
 JUDGING = {
     "task": "two_arm_multi_cube_lifting",
@@ -50,6 +51,12 @@ JUDGING = {
 def test_a_spec_is_kept_under_its_old_names(tmp_path: Path) -> None:
     save_spec(tmp_path, SPEC)
     assert json.loads((tmp_path / "job.json").read_text()) == {"request": REQUEST, "judging": JUDGING}
+    assert load_spec(tmp_path) == SPEC
+
+
+def test_a_spec_of_a_version_without_rates_learns_at_its_episodes_own(tmp_path: Path) -> None:
+    request = {name: value for name, value in REQUEST.items() if name != "control_hz"}
+    (tmp_path / "job.json").write_text(json.dumps({"request": request, "judging": JUDGING}))
     assert load_spec(tmp_path) == SPEC
 
 

@@ -112,6 +112,7 @@ def stand() -> Iterator[Stand]:
         "together": Wanderer(joint=True),
         "elsewhere": Wanderer(task="another"),
         "slow": Wanderer(hz=10.0),
+        "quick": Wanderer(hz=30.0),
         "small": Wanderer(("arm0",)),
     }
     with contextlib.closing(Stand(MemoryNetwork().connect(), policies)) as stand:
@@ -140,12 +141,23 @@ def test_a_joint_policy_drives_all_its_seats_with_one_memory(stand: Stand) -> No
     assert stand.loaded == ["together"]
 
 
+def test_a_policy_of_a_slower_rate_speaks_at_every_tick_and_acts_at_its_own(stand: Stand) -> None:
+    stand.assign("arm1", "slow")
+    assert [stand.show() for _ in range(4)] == [[("arm1", 2)]] * 4
+    part = stand.policies["slow"].parts["arm1"]
+    assert len(part.given) == 2
+    stand.room.control_hz = 40.0  # as between two episodes
+    stand.room.publish()
+    assert [stand.show() for _ in range(8)] == [[("arm1", 2)]] * 8
+    assert (len(part.given), part.seeds) == (4, [0, 0])
+
+
 @pytest.mark.parametrize(
     ("policy", "says"),
     [
         ("unknown", "no policy 'unknown'"),
         ("elsewhere", "trained for another"),
-        ("slow", "10 ticks a second"),
+        ("quick", "acts 30 times a second"),
         ("small", "drives arm0"),
     ],
 )

@@ -8,6 +8,9 @@ MIN_CONTROL_HZ = 5.0
 MAX_CONTROL_HZ = 100.0
 DEFAULT_CONTROL_HZ = 20.0
 OFFERED_CONTROL_HZ = (20.0, 30.0, 60.0)  # what pages propose: screens and phones divide into them
+LEARNING_CONTROL_HZ = 20.0  # at which is learned and exported where nothing else is asked for
+
+_SAME = 1e-6  # of a rate: what rounding makes
 
 
 def require_control_hz(control_hz: float) -> float:
@@ -18,3 +21,22 @@ def require_control_hz(control_hz: float) -> float:
             f"it must be from {MIN_CONTROL_HZ:g} to {MAX_CONTROL_HZ:g} Hz."
         )
     return control_hz
+
+
+def same_control_hz(one_hz: float, other_hz: float) -> bool:
+    """Whether two control rates are the same but for rounding."""
+    return abs(one_hz - other_hz) <= _SAME * max(one_hz, other_hz)
+
+
+def ticks_for_each(own_hz: float, room_hz: float) -> int:
+    """Return how many ticks of a room of `room_hz` make one tick of something that has `own_hz`.
+
+    Raises InvalidInput where the room's rate is no multiple of its own.
+    """
+    ticks = round(room_hz / own_hz)
+    if ticks < 1 or not same_control_hz(ticks * own_hz, room_hz):
+        raise InvalidInput(
+            f"It acts {own_hz:g} times a second and the room ticks {room_hz:g} times; "
+            f"the room's rate must be {own_hz:g} Hz or a multiple, such as {3 * own_hz:g} Hz."
+        )
+    return ticks

@@ -19,7 +19,7 @@ from mart.protocol.errors import InvalidInput
 Array = NDArray[np.float64]
 
 _SMALL_ANGLE_RAD = 1e-8
-_NORM_TOLERANCE = 1e-2  # a quaternion off by more than this was never meant to be one
+QUATERNION_NORM_TOLERANCE = 1e-2  # a quaternion off by more than this was never meant to be one
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class Pose:
         position = _vector("position", self.position, 3)
         quaternion = _vector("quaternion_wxyz", self.quaternion_wxyz, 4)
         norm = math.sqrt(quaternion @ quaternion)
-        if abs(norm - 1.0) > _NORM_TOLERANCE:
+        if abs(norm - 1.0) > QUATERNION_NORM_TOLERANCE:
             raise InvalidInput(f"A quaternion of norm {norm:.4f} was given; it must be within 1 % of 1.")
         quaternion /= norm
         if quaternion[0] < 0:

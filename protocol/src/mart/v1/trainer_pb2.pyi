@@ -24,7 +24,7 @@ JOB_STATE_FAILED: JobState
 JOB_STATE_CANCELLED: JobState
 
 class Order(_message.Message):
-    __slots__ = ("model", "task", "data", "preset", "seeds", "evaluation_episodes", "score_episodes", "dataset")
+    __slots__ = ("model", "task", "data", "preset", "seeds", "evaluation_episodes", "score_episodes", "dataset", "control_hz")
     MODEL_FIELD_NUMBER: _ClassVar[int]
     TASK_FIELD_NUMBER: _ClassVar[int]
     DATA_FIELD_NUMBER: _ClassVar[int]
@@ -33,6 +33,7 @@ class Order(_message.Message):
     EVALUATION_EPISODES_FIELD_NUMBER: _ClassVar[int]
     SCORE_EPISODES_FIELD_NUMBER: _ClassVar[int]
     DATASET_FIELD_NUMBER: _ClassVar[int]
+    CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
     model: str
     task: str
     data: str
@@ -41,7 +42,8 @@ class Order(_message.Message):
     evaluation_episodes: int
     score_episodes: int
     dataset: str
-    def __init__(self, model: _Optional[str] = ..., task: _Optional[str] = ..., data: _Optional[str] = ..., preset: _Optional[str] = ..., seeds: _Optional[_Iterable[int]] = ..., evaluation_episodes: _Optional[int] = ..., score_episodes: _Optional[int] = ..., dataset: _Optional[str] = ...) -> None: ...
+    control_hz: float
+    def __init__(self, model: _Optional[str] = ..., task: _Optional[str] = ..., data: _Optional[str] = ..., preset: _Optional[str] = ..., seeds: _Optional[_Iterable[int]] = ..., evaluation_episodes: _Optional[int] = ..., score_episodes: _Optional[int] = ..., dataset: _Optional[str] = ..., control_hz: _Optional[float] = ...) -> None: ...
 
 class Job(_message.Message):
     __slots__ = ("id", "sweep", "order", "state", "executor", "submitted_ns", "started_ns", "ended_ns", "attempt", "detail", "run", "progress")
@@ -98,20 +100,22 @@ class Curve(_message.Message):
     def __init__(self, name: _Optional[str] = ..., updates: _Optional[_Iterable[int]] = ..., values: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class Learned(_message.Message):
-    __slots__ = ("episodes", "ticks", "sha256", "dataset", "dataset_episodes", "left_out")
+    __slots__ = ("episodes", "ticks", "sha256", "dataset", "dataset_episodes", "left_out", "control_hz")
     EPISODES_FIELD_NUMBER: _ClassVar[int]
     TICKS_FIELD_NUMBER: _ClassVar[int]
     SHA256_FIELD_NUMBER: _ClassVar[int]
     DATASET_FIELD_NUMBER: _ClassVar[int]
     DATASET_EPISODES_FIELD_NUMBER: _ClassVar[int]
     LEFT_OUT_FIELD_NUMBER: _ClassVar[int]
+    CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
     episodes: int
     ticks: int
     sha256: str
     dataset: str
     dataset_episodes: int
     left_out: _containers.RepeatedScalarFieldContainer[str]
-    def __init__(self, episodes: _Optional[int] = ..., ticks: _Optional[int] = ..., sha256: _Optional[str] = ..., dataset: _Optional[str] = ..., dataset_episodes: _Optional[int] = ..., left_out: _Optional[_Iterable[str]] = ...) -> None: ...
+    control_hz: float
+    def __init__(self, episodes: _Optional[int] = ..., ticks: _Optional[int] = ..., sha256: _Optional[str] = ..., dataset: _Optional[str] = ..., dataset_episodes: _Optional[int] = ..., left_out: _Optional[_Iterable[str]] = ..., control_hz: _Optional[float] = ...) -> None: ...
 
 class SubtaskCount(_message.Message):
     __slots__ = ("name", "episodes")

@@ -8,6 +8,7 @@ Open one, and it is arrays:
     data = episode.arrays()
     data.observations["arm0/gripper"]  # float64[T + 1, …]: before each action, and after the last
     data.actions  # float64[T, arms, 7]
+    episode.arrays(control_hz=20.0)  # the same motion in ticks of 20 Hz, from a recording of any rate above
 
 List a folder with what people have said about its episodes, and choose:
 
@@ -34,6 +35,7 @@ from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.labels import EpisodeLabels, Label, LabelKind
 from mart.episodes.mcap_entries import McapEntry
 from mart.episodes.reader import EpisodeFile, RecordedMessage, open_episode
+from mart.episodes.resampling import at_control_hz
 from mart.episodes.writer import EpisodeWriter
 
 __all__ = [
@@ -51,6 +53,7 @@ __all__ = [
     "RecordedMessage",
     "arrays_for_task",
     "arrays_from_states",
+    "at_control_hz",
     "datasets",
     "episode_files",
     "find_episodes",

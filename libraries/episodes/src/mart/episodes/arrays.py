@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import ArmState, State
+from mart.protocol.pose import QUATERNION_NORM_TOLERANCE
 from mart.protocol.tasks import Task
 
 Shapes = Mapping[str, tuple[int, ...]]  # by an observation's name, without the axis of time
@@ -31,6 +32,8 @@ class EpisodeData:
     sim_time_s: float64[T + 1], simulated seconds, as the world counted them.
     sent_ns: int64[T + 1], Unix time at which the room sent the state.
     integration_states: float64[T + 1, size], MuJoCo's, from which a simulation can go on.
+    tool_positions_in_base: float64[T + 1, arms, 3], measured, in each arm's base frame.
+    tool_quaternions_in_base: float64[T + 1, arms, 4], wxyz.
     """
 
     arms: tuple[str, ...]
@@ -43,6 +46,8 @@ class EpisodeData:
     sim_time_s: NDArray[np.float64]
     sent_ns: NDArray[np.int64]
     integration_states: NDArray[np.float64]
+    tool_positions_in_base: NDArray[np.float64]
+    tool_quaternions_in_base: NDArray[np.float64]
 
     def __len__(self) -> int:
         return len(self.actions)
@@ -70,7 +75,9 @@ def arrays_from_states(
     _require_every_tick(states)
     names = tuple(arms) if arms is not None else tuple(arm.arm for arm in states[0].arms)
     wanted = {seen.name: (len(seen.value),) for seen in states[0].observations} if shapes is None else shapes
-    moved = [_arms(state, names) for state in states[1:]]
+    arms_of = [_arms(state, names) for state in states]
+    moved = arms_of[1:]
+    poses = _poses(arms_of)
     return EpisodeData(
         arms=names,
         observations=_observations(states, wanted),
@@ -82,6 +89,8 @@ def arrays_from_states(
         sim_time_s=np.array([state.sim_time_s for state in states]),
         sent_ns=np.array([state.stamps.sent_ns for state in states], dtype=np.int64),
         integration_states=_integration_states(states),
+        tool_positions_in_base=poses[..., :3],
+        tool_quaternions_in_base=poses[..., 3:],
     )
 
 
@@ -114,6 +123,17 @@ def _actions(moved: Sequence[Sequence[ArmState]]) -> NDArray[np.float64]:
     if not np.isfinite(actions).all():
         raise InvalidInput("an action holds NaN or infinity; every number must be finite.")
     return actions
+
+
+def _poses(arms_of: Sequence[Sequence[ArmState]]) -> NDArray[np.float64]:
+    """Return float64[T + 1, arms, 7]: x, y, z, and a quaternion wxyz of unit norm."""
+    tools = [[arm.tool_in_base for arm in row] for row in arms_of]
+    poses = np.array([[(t.x, t.y, t.z, t.qw, t.qx, t.qy, t.qz) for t in row] for row in tools])
+    norms = np.linalg.norm(poses[..., 3:], axis=-1, keepdims=True)
+    if not (np.isfinite(poses).all() and (np.abs(norms - 1.0) < QUATERNION_NORM_TOLERANCE).all()):
+        raise InvalidInput("a measured pose of a tool is missing or is none.")
+    poses[..., 3:] /= norms
+    return poses
 
 
 def _observations(states: Sequence[State], shapes: Shapes) -> dict[str, NDArray[np.float64]]:

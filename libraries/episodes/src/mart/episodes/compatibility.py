@@ -19,12 +19,20 @@ class ComparableEpisode(Protocol):
     def arms(self) -> tuple[str, ...]: ...
 
 
-def require_alike(episodes: Iterable[ComparableEpisode], advice: str) -> None:
-    """Raise InvalidInput where tasks, control rates or arms differ. advice: what to do then, as a clause."""
+def require_alike(episodes: Iterable[ComparableEpisode], advice: str, *, any_rate: bool = False) -> None:
+    """Raise InvalidInput where tasks, arms or, but for `any_rate`, control rates differ.
+
+    advice: what to do then, as a clause. any_rate: they are told at one rate (`mart.episodes.resampling`).
+    """
     listed = list(episodes)
+    rates = {f"{one.control_hz:g} Hz" for one in listed if one.control_hz}
+    if len(rates) > 1 and not any_rate:
+        raise InvalidInput(
+            f"Episodes of several control rates were given: {', '.join(sorted(rates))}; "
+            f"say one to take them at, at most the lowest of these, such as --control-hz {_lowest(listed):g}."
+        )
     facts: dict[str, set[str]] = {
         "tasks": {str(one.task) for one in listed},
-        "control rates": {f"{one.control_hz:g} Hz" for one in listed if one.control_hz},
         "sets of arms": {" and ".join(one.arms) for one in listed},
     }
     for what, values in facts.items():
@@ -32,3 +40,7 @@ def require_alike(episodes: Iterable[ComparableEpisode], advice: str) -> None:
             raise InvalidInput(
                 f"Episodes of several {what} were given: {', '.join(sorted(values))}; {advice}."
             )
+
+
+def _lowest(episodes: Iterable[ComparableEpisode]) -> float:
+    return min(one.control_hz for one in episodes if one.control_hz)

@@ -14,6 +14,7 @@ from typing import TypeVar
 from mart.episodes.arrays import EpisodeData, arrays_for_task, arrays_from_states
 from mart.episodes.contents import read_attachments, read_messages, read_metadata, require_intact_data
 from mart.episodes.foreign import foreign_kind
+from mart.episodes.resampling import at_control_hz
 from mart.episodes.scan import BoundedFile, ForeignFile, corruption
 from mart.episodes.summary import read_summary
 from mart.protocol import codec
@@ -117,20 +118,32 @@ class EpisodeFile:
             except InvalidInput as error:
                 raise Corrupt(f"{self.path} holds a state that cannot be read: {error}") from error
 
-    def arrays(self, task: Task | None = None) -> EpisodeData:
+    def arrays(self, task: Task | None = None, control_hz: float | None = None) -> EpisodeData:
         """Read the whole episode into numpy arrays.
 
         task: whose observations and shapes are wanted; None takes the one that the file names, or, where the catalogue
         has no such task, every observation of the file as it is.
+        control_hz: ticks a second that are wanted, at most those of the recording (`mart.episodes.resampling`); None
+        takes every tick.
         Raises Corrupt where the file is damaged and InvalidInput, naming it, where ticks, arms or observations are
-        missing or a number is NaN.
+        missing, a number is NaN, or the rate cannot be had.
         """
         known = self._known_task() if task is None else task
         states = list(self.states())
         try:
-            return arrays_from_states(states) if known is None else arrays_for_task(states, known)
+            data = arrays_from_states(states) if known is None else arrays_for_task(states, known)
+            return data if control_hz is None else self._at(data, known, control_hz)
         except InvalidInput as error:
             raise InvalidInput(f"{self.path} cannot be read into arrays: {error}") from error
+
+    def _at(self, data: EpisodeData, task: Task | None, control_hz: float) -> EpisodeData:
+        recorded_hz = self.episode.control_hz
+        if task is None or recorded_hz is None:
+            raise InvalidInput(
+                "another control rate was asked for, and it names no task of the catalogue or no rate; "
+                "read it as it is."
+            )
+        return at_control_hz(data, recorded_hz, control_hz, task.limits)
 
     def messages(self, *topics: str) -> Iterator[RecordedMessage]:
         """Iterate over the messages of these topics, or of all, in the order of the file.

@@ -15,6 +15,7 @@ from mart.operators.operator import Operator
 from mart.operators.room_client import RoomClient
 from mart.operators.time_limit import TimeLimitedOperator
 from mart.protocol import clock
+from mart.protocol.control_rate import ticks_for_each
 from mart.protocol.errors import Conflict, InvalidInput, Unavailable
 from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_SCRIPT, RoomStatus, operator_from_word
 from mart.protocol.messages import Operator as OperatorOnWire
@@ -38,6 +39,7 @@ def drive_seats(
     episodes: int | None = None,
     fill_with_scripts: bool = False,
     time_limit_s: float = 2.0,
+    control_hz: float | None = None,
     router: str | None = None,
     stop: threading.Event | None = None,
 ) -> list[EpisodeOutcome]:
@@ -47,10 +49,12 @@ def drive_seats(
     and partners are told so. People may take over from a policy and hand back. With `episodes`, the operator says that
     it is ready whenever the room practises, and the call returns the outcomes of that many; without, it drives until
     Ctrl-C, or until `stop` is set, and returns the outcomes of what was recorded meanwhile. `fill_with_scripts` gives
-    seats that nobody holds to scripted experts. `router` is where the platform's router listens; None: MART_ROUTER, or
-    this machine.
+    seats that nobody holds to scripted experts. `control_hz` is how often a second the operator acts, in rooms of that
+    rate or a multiple; None: at every tick of the room. `router` is where the platform's router listens; None:
+    MART_ROUTER, or this machine.
 
-    Raises InvalidInput for another kind than policy and human, or where the operator fails or says what is no target;
+    Raises InvalidInput for another kind than policy and human, for a room whose rate is no multiple of `control_hz`, or
+    where the operator fails or says what is no target;
     Conflict where somebody else sits there or the last seat was given to another; NotFound for an unknown arm;
     Unavailable where room or router cannot be reached, or where the operator takes longer than `time_limit_s` seconds
     for one tick. The seats are left in every case.
@@ -68,7 +72,7 @@ def drive_seats(
         source = _source(kind)
         seats = stack.enter_context(claimed_seats(client, arms, holder_id, name, source))
         limited = TimeLimitedOperator(operator, time_limit_s)
-        selection = ProgramSeats(seats, name, _maker(limited, arms, source))
+        selection = ProgramSeats(seats, name, _maker(limited, arms, source, control_hz))
         session = _Session(client, arms[0], holder_id, episodes, fill_with_scripts)
         drive_claimed(SeatDriver(bus, room, selection), seats, room, stop, session.follow)
         return session.outcomes
@@ -165,10 +169,11 @@ def _source(kind: OperatorKind) -> OperatorOnWire:
 
 
 def _maker(
-    operator: Operator, arms: Sequence[str], source: OperatorOnWire
+    operator: Operator, arms: Sequence[str], source: OperatorOnWire, control_hz: float | None
 ) -> Callable[[RoomStatus], Sequence[SeatCommander]]:
     def make(status: RoomStatus) -> Sequence[SeatCommander]:
         task = get_task(status.task, len(status.seats))
-        return [SeatCommander(operator, task, arms, source)]
+        each = 1 if control_hz is None else ticks_for_each(control_hz, status.control_hz)
+        return [SeatCommander(operator, task, arms, source, act_every_ticks=each)]
 
     return make

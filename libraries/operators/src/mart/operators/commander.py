@@ -1,8 +1,9 @@
 """Turn the states of a room into an operator's commands. Pure: states in, commands out.
 
-An operator acts once for every state. Its target is absolute, so a command that is lost, repeated or overtaken does no
-harm: while no new state comes, the same command is given again under growing numbers, and the barrier hears that the
-operator is still there.
+An operator acts once for every state, or, with a control rate of its own in a faster room, for every second, third, …
+one: its target holds in between, so the arm goes as in a room of its rate (docs/decisions/0059). Its target is
+absolute, so a command that is lost, repeated or overtaken does no harm: while no new state comes, the same command is
+given again under growing numbers, and the barrier hears that the operator is still there.
 """
 
 from __future__ import annotations
@@ -42,8 +43,13 @@ class SeatCommander:
         arms: Sequence[str],
         source: OperatorOnWire,
         needs: Iterable[str] | None = None,
+        *,
+        act_every_ticks: int = 1,
     ) -> None:
-        """Command for an operator. `needs` names the observations to show; None: those shown to these arms."""
+        """Command for an operator. `needs` names the observations to show; None: those shown to these arms.
+
+        act_every_ticks: of the room; see `mart.protocol.control_rate.ticks_for_each`.
+        """
         self.arms = tuple(arms)
         self._operator, self._task, self._source = operator, task, source
         self._shapes = _shapes(task, self.arms, needs)
@@ -52,6 +58,8 @@ class SeatCommander:
         self._targets: dict[str, tuple[PoseMessage, float, bool]] = {}
         self._newest = (0, 0, 0.0)  # boot, tick, simulated seconds
         self._begun = False
+        self._act_every_ticks = act_every_ticks
+        self._begun_tick = self._acted_tick = 0
 
     def seat(self, epochs: Mapping[str, int]) -> None:
         """Tell the epochs of the seats that the operator holds now, by arm."""
@@ -61,7 +69,7 @@ class SeatCommander:
         self._epochs = held
 
     def observe(self, state: State) -> bool:
-        """Let the operator act on `state`; False where it was no news.
+        """Let the operator act on `state` where it is its turn; False where the state was no news.
 
         Raises Corrupt where the state lacks what the operator should see, and InvalidInput where what the operator says
         is no target, or where it fails in any other way.
@@ -73,16 +81,29 @@ class SeatCommander:
         missing = [arm for arm in self.arms if arm not in arms]
         if missing:
             raise Corrupt(f"A state without {', '.join(missing)} came, which is driven here.")
-        view = self._view(state, arms)
-        if not self._begun or self._world_was_reset(state, arms[self.arms[0]]):
-            _guarded(lambda: self._operator.begin(state.episode))
-            self._begun = True
+        begins = not self._begun or self._world_was_reset(state, arms[self.arms[0]])
         self._newest = newest
-        for arm, target in _targets_of(self._operator, view).items():
-            self._targets[arm] = pose_message(target.pose_tool_in_base), target.gripper, target.engaged
-            # Whoever drove under this epoch before has counted so far.
+        if begins or self._is_its_turn(state.tick):
+            self._act(state, arms, begins=begins)
+        for arm in self.arms:  # whoever drove under this epoch before has counted so far
             self._sequences[arm] = max(self._sequences[arm], arms[arm].sequence)
         return True
+
+    def _act(self, state: State, arms: Mapping[str, ArmState], *, begins: bool) -> None:
+        view = self._view(state, arms)
+        if begins:
+            _guarded(lambda: self._operator.begin(state.episode))
+            self._begun, self._begun_tick = True, state.tick
+        self._acted_tick = state.tick
+        for arm, target in _targets_of(self._operator, view).items():
+            self._targets[arm] = pose_message(target.pose_tool_in_base), target.gripper, target.engaged
+
+    def _is_its_turn(self, tick: int) -> bool:
+        """Whether a tick of its own has begun since it acted: they count from its beginning, whatever is missed."""
+        return self._own_tick(tick) > self._own_tick(self._acted_tick)
+
+    def _own_tick(self, tick: int) -> int:
+        return (tick - self._begun_tick) // self._act_every_ticks
 
     def commands(self, wall_ns: int) -> list[Command]:
         """Return what the operator wants now, one command a seat, under new numbers; none before it saw a state."""
@@ -116,7 +137,7 @@ class SeatCommander:
             source=self._source,
             stamps=CommandStamps(sent_ns=wall_ns),
             seen_tick=self._newest[1],
-            state_tick=self._newest[1],
+            state_tick=self._acted_tick,
         )
 
 

@@ -69,6 +69,7 @@ class _FailedSeats:
 class _DrivenSeats:
     commanders: Sequence[SeatCommander]
     publishers: Mapping[str, Publisher]
+    control_hz: float  # of the room, for which the commanders are made
     epochs: Mapping[str, int] = field(default_factory=dict)
     repeat_s: float = 0.0
 
@@ -149,6 +150,9 @@ class SeatDriver(Generic[K]):
 
     def _seat(self, place: tuple[str, K], epochs: Mapping[str, int], status: RoomStatus) -> None:
         driven = self._driven.get(place)
+        if driven is not None and driven.control_hz != status.control_hz:
+            self._driven.pop(place).close()  # it drives anew, at the room's new rate
+            driven = None
         if driven is not None and driven.epochs == epochs:
             return
         if driven is None:
@@ -169,9 +173,8 @@ class SeatDriver(Generic[K]):
         if commanders is None:
             return None
         arms = [arm for commander in commanders for arm in commander.arms]
-        return _DrivenSeats(
-            commanders, {arm: self._bus.publisher(self._selection.topic(room, arm)) for arm in arms}
-        )
+        publishers = {arm: self._bus.publisher(self._selection.topic(room, arm)) for arm in arms}
+        return _DrivenSeats(commanders, publishers, status.control_hz)
 
     def _show(self, room: str, state: State) -> None:
         for place, driven in list(self._driven.items()):

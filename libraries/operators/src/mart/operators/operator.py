@@ -63,7 +63,10 @@ class Operator(ABC):
 
     @abstractmethod
     def act(self, view: SeatView) -> Mapping[str, ToolTarget]:
-        """Return a target for every arm that this operator drives. Called once for each new state of the world."""
+        """Return a target for every arm that this operator drives.
+
+        Called once for each new state of the world, or once for each of its own ticks where it has a slower rate.
+        """
 
 
 def target_from_action(

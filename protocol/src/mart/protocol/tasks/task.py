@@ -135,7 +135,9 @@ _HORIZON_HZ = 20.0
 
 @dataclass(frozen=True)
 class Task:
-    """One task. `horizon_ticks` and `trial_ticks` count ticks of a room at 20 Hz, whatever the room's own rate.
+    """One task. `horizon_ticks`, `trial_ticks` and `success_hold_ticks` count ticks of a room at 20 Hz.
+
+    They say a time, the same at every rate.
 
     The horizon is for people, who may take their time. A trial is what a session that collects under a clock allows:
     three to five times what a practised operator needs (decision 0012). None: as long as the horizon.
@@ -166,6 +168,10 @@ class Task:
     def horizon_at(self, control_hz: float) -> int:
         """How many ticks an episode may last in a room of this rate."""
         return round(self.time_limit_s * control_hz)
+
+    def success_hold_at(self, control_hz: float) -> int:
+        """How many ticks in a row the task must be done in a room of this rate."""
+        return max(1, round(self.success_hold_ticks / _HORIZON_HZ * control_hz))
 
     @property
     def arm_names(self) -> tuple[str, ...]:

@@ -21,6 +21,7 @@ from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, 
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
 from mart.runtime.progress import progress, tracked
+from mart.runtime.rate_option import control_hz_option
 
 if TYPE_CHECKING:
     from mart.recorder.verify.replica import AskReplica
@@ -210,9 +211,17 @@ def label(
 @word_option("--outcome", OUTCOMES, EpisodeOutcome.SUCCESS.value)
 @word_option("--verdict", VERDICTS, Verdict.VERIFIED.value)
 @click.option("--dataset", default="", help="Only of this data set.")
+@control_hz_option
 @json_option
 def export(
-    paths: tuple[Path, ...], file_format: str, out: Path, dataset: str, as_json: bool, **wanted: Any
+    *,
+    paths: tuple[Path, ...],
+    file_format: str,
+    out: Path,
+    dataset: str,
+    control_hz: float | None,
+    as_json: bool,
+    **wanted: Any,
 ) -> None:
     """Write episodes of one task as a data set of another project; dropped ones are left out."""
     from mart.episodes.filter import EpisodeFilter
@@ -229,12 +238,17 @@ def export(
     listed = of_dataset.apply(list_paths(_given(paths)))
     asked = filter_of(wanted, unusable=False)
     taken = readable(sound(asked.apply(readable(listed, paths))), paths)
-    selection = choose(taken or [one for one in listed if one.error is None], asked)
+    selection = choose(taken or [one for one in listed if one.error is None], asked, control_hz)
     each = partial(tracked, label="Episodes", as_json=as_json)
     ticks = write(replace(selection, each=each), out)
     count, task = len(selection.episodes), selection.task.name
     result = {"path": str(out), "format": file_format, "task": task, "episodes": count, "ticks": ticks}
-    print_result(result, f"{out}: {count} of {len(listed)} episodes of {task}, {ticks} ticks.", as_json)
+    rate = f"{selection.control_hz:g} Hz"
+    print_result(
+        result | {"control_hz": selection.control_hz},
+        f"{out}: {count} of {len(listed)} episodes of {task}, {ticks} ticks of {rate}.",
+        as_json,
+    )
 
 
 def _settings(replica: str | None) -> RecorderSettings:

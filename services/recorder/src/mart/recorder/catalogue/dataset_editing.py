@@ -40,7 +40,7 @@ def take_in(
 ) -> DataSetEdit:
     """Make `chosen` part of a data set, but for those that nobody shall learn from. known: all that there are.
 
-    Raises InvalidInput where nothing is left, or for episodes of several tasks, control rates or sets of arms.
+    Raises InvalidInput where nothing is left, or for episodes of several tasks or sets of arms.
     """
     left_out: Counter[str] = Counter()
     taken: list[LabelledEpisode] = []
@@ -55,7 +55,8 @@ def take_in(
             f"Nothing was put into {name!r}: {_counted(left_out)}; choose episodes to learn from."
         )
     members = [row for row in known if name in row.datasets]
-    require_alike([*members, *taken], "a data set holds one: narrow the choice, or use another name")
+    advice = "a data set holds one: narrow the choice, or use another name"
+    require_alike([*members, *taken], advice, any_rate=True)
     said = labels.read_folded(root)
     joining = datasets.join(said, name, [row.path for row in taken], now_ns)
     return _act(root, name, _said_by(joining, by), now_ns, left_out)

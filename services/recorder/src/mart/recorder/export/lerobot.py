@@ -55,7 +55,7 @@ def write_lerobot(selection: ExportSelection, path: Path) -> int:
 
 def _write(selection: ExportSelection, folder: Path) -> int:
     episodes = [
-        _frames(read_data(episode, selection.task), selection, number)
+        _frames(read_data(episode, selection.task, selection.control_hz), selection, number)
         for number, episode in enumerate(selection.each(selection.episodes))
     ]
     columns = {name: np.concatenate([episode[name] for episode in episodes]) for name in episodes[0]}

@@ -56,7 +56,7 @@ def _write(file: h5py.File, selection: ExportSelection) -> int:
     total, groups = 0, defaultdict(list)
     for number, episode in enumerate(selection.each(selection.episodes)):
         demo = f"demo_{number}"
-        episode_data = read_data(episode, selection.task)
+        episode_data = read_data(episode, selection.task, selection.control_hz)
         _write_demo(data.create_group(demo), episode_data, episode)
         total += len(episode_data)
         in_data_sets = (f"dataset-{name}" for name in episode.datasets)

@@ -1,4 +1,4 @@
-"""Choose the episodes of an export and read them: one task, one control rate, the same arms."""
+"""Choose the episodes of an export and read them: one task, the same arms, in ticks of one control rate."""
 
 from __future__ import annotations
 
@@ -23,8 +23,9 @@ SOURCES: Mapping[int, str] = {operator_from_word(kind): kind.value for kind in O
 
 @dataclass(frozen=True)
 class ExportSelection:
-    """Hold episodes of one task, one control rate and the same arms, the oldest first.
+    """Hold episodes of one task and the same arms, the oldest first.
 
+    control_hz: in whose ticks they are written, whatever their own rates are.
     each: how a writer goes through them, for whoever counts along.
     """
 
@@ -34,8 +35,10 @@ class ExportSelection:
     each: Callable[[Sequence[LabelledEpisode]], Iterable[LabelledEpisode]] = iter
 
 
-def choose(episodes: Iterable[LabelledEpisode], wanted: EpisodeFilter) -> ExportSelection:
-    """Choose what the filter takes, each file once.
+def choose(
+    episodes: Iterable[LabelledEpisode], wanted: EpisodeFilter, control_hz: float | None = None
+) -> ExportSelection:
+    """Choose what the filter takes, each file once. control_hz: None takes the episodes' own, which must be one.
 
     Raises InvalidInput where nothing is left or where they do not belong together.
     """
@@ -44,11 +47,12 @@ def choose(episodes: Iterable[LabelledEpisode], wanted: EpisodeFilter) -> Export
     if not taken:
         raise InvalidInput(_why_none(listed))
     taken.sort(key=lambda episode: (episode.started_ns, episode.file_path))
-    require_alike(taken, "a file holds one: export each by itself")
+    require_alike(taken, "a file holds one: export each by itself", any_rate=control_hz is not None)
     first = taken[0]
     if first.task is None or first.control_hz is None:
         raise InvalidInput(f"{first.file_path} does not say its task and control rate; leave it out.")
-    return ExportSelection(get_task(first.task, len(first.arms)), first.control_hz, tuple(taken))
+    task = get_task(first.task, len(first.arms))
+    return ExportSelection(task, control_hz or first.control_hz, tuple(taken))
 
 
 def sound(episodes: Iterable[LabelledEpisode]) -> list[LabelledEpisode]:
@@ -64,15 +68,15 @@ def _checked(episode: LabelledEpisode) -> LabelledEpisode:
     return episode
 
 
-def read_data(episode: LabelledEpisode, task: Task) -> EpisodeData:
-    """Read an episode into arrays, as the task's catalogue entry says.
+def read_data(episode: LabelledEpisode, task: Task, control_hz: float | None = None) -> EpisodeData:
+    """Read an episode into arrays, as the task's catalogue entry says, in ticks of `control_hz` or its own.
 
     Raises Corrupt where the file is damaged, its model included, and InvalidInput, naming it, where it is not whole,
-    not finite, or an action is outside -1 … 1.
+    not finite, was recorded at a lower rate, or an action is outside -1 … 1.
     """
     file = episode.open()
     file.check_model()
-    data = file.arrays(task)
+    data = file.arrays(task, control_hz)
     if (np.abs(data.actions) > 1.0).any():
         raise InvalidInput(f"{episode.file_path} cannot be exported: an action is outside -1 … 1.")
     return data

@@ -27,6 +27,10 @@ class RoomFacts:
     numerics: Numerics = field(default_factory=Numerics)
     names: dict[tuple[str, int], str] = field(default_factory=dict)  # (arm, seat epoch) → who
 
+    def of_next_run(self) -> RoomFacts:
+        """Return what still holds when the sim has started anew, perhaps at another rate: its task, and who was who."""
+        return RoomFacts(self.room, self.task, names=dict(self.names))
+
     def learn_status(self, status: RoomStatus) -> None:
         """Learn task, control rate and who sits where."""
         self._learn_task(status.task, status.control_hz)

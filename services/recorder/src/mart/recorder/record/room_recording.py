@@ -22,6 +22,7 @@ from mart.recorder.record.finalize_worker import FinalizeWorker, in_words
 from mart.recorder.record.folder_watch import FolderWatch
 from mart.recorder.record.inbox import BusArrival
 from mart.recorder.record.room_claim import RoomClaim
+from mart.recorder.record.room_facts import RoomFacts
 from mart.recorder.record.room_models import RoomModels
 from mart.recorder.record.room_tracker import CloseFile, FileAction, OpenFile, RoomTracker
 from mart.runtime.rate_limit import RateLimit
@@ -51,6 +52,7 @@ class RoomRecording:
         """Record a room that is claimed; whoever leaves the room releases `claim`."""
         self.claim = claim
         self._files: dict[EpisodeAccumulator, EpisodeWriter] = {}
+        self._facts: dict[EpisodeAccumulator, RoomFacts] = {}  # of the run of the sim in which it is recorded
         self.heard_s = 0.0
         self._room = room
         self._tools = tools
@@ -96,7 +98,7 @@ class RoomRecording:
         for episode, file in list(self._files.items()):
             try:
                 file.require_there()
-                describe_room(file, self._tracker.facts, self._tools.models.known(self._room, self._boot))
+                describe_room(file, self._facts[episode], self._tools.models.known(self._room, episode.boot))
                 file.flush()
             except Exception as error:  # noqa: BLE001 - as above
                 if not (file.waits and is_for_want_of_room(error)):
@@ -139,6 +141,8 @@ class RoomRecording:
 
     def _notice_boot(self, boot: int) -> None:
         if self._boot != boot:
+            if self._boot:  # what is known of the last run stays with its files
+                self._tracker.facts = self._tracker.facts.of_next_run()
             self._boot = boot
             self._tools.finalizer.fetch_model(self._room, boot)
 
@@ -159,7 +163,7 @@ class RoomRecording:
 
     def _open(self, episode: EpisodeAccumulator) -> None:
         file = EpisodeWriter(part_path(self._tools.root, episode, self._tracker.facts))
-        self._files[episode] = file
+        self._files[episode], self._facts[episode] = file, self._tracker.facts
         self._flushed_s = float("-inf")  # the first state is on the disk at once
         _log.info("%s: recording episode %d into %s", episode.room, episode.number, file.path)
         if self._tools.models.known(self._room, episode.boot) is None:
@@ -171,18 +175,20 @@ class RoomRecording:
 
     def _close(self, episode: EpisodeAccumulator) -> None:
         file = self._files.pop(episode, None)
-        if file is None:
+        facts = self._facts.pop(episode, None)
+        if file is None or facts is None:
             return
         if episode.is_glimpse:
             file.discard()
         else:
-            self._tools.finalizer.finalize(file, episode, copy.deepcopy(self._tracker.facts))
+            self._tools.finalizer.finalize(file, episode, copy.deepcopy(facts))
 
     def _give_up(self, episode: EpisodeAccumulator, error: Exception) -> None:
         """Leave this episode: the disk is broken, or was full for too long. The room and its next episode go on."""
         if not isinstance(error, OSError):
             _log.error("Recording episode %d failed", episode.number, exc_info=error)
         self._tracker.abandon(episode)
+        self._facts.pop(episode, None)
         file = self._files.pop(episode, None)
         if file is not None:
             file.abandon()

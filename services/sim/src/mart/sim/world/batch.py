@@ -111,7 +111,7 @@ class WorldBatch:
         return BatchState(
             observations=self._interface.observations(),
             subtasks=np.stack([status.subtasks[s.name] for s in self._world.task.subtasks], axis=-1),
-            success=ticks >= self._world.task.success_hold_ticks,
+            success=ticks >= self._world.success_hold_ticks,
             failed=np.array([bool(reason) for reason in reasons]),
             sim_time_s=self._batch.time.copy(),
             success_ticks=ticks.astype(np.uint32),

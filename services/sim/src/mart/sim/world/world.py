@@ -58,6 +58,7 @@ class World:
         self._scene = scene
         self.substeps, timestep_s = model.substeps(control_hz)
         self.control_hz, self.control_period_s = control_hz, 1.0 / control_hz
+        self.success_hold_ticks = scene.task.success_hold_at(control_hz)
         self.model = model.build(scene, timestep_s, detail)
         self.data = mujoco.MjData(self.model)
         self._interface = ControlInterface(scene, self.model, self.data)
@@ -217,7 +218,7 @@ class World:
             subtasks={name: bool(done) for name, done in status.subtasks.items()},
             success_now=bool(status.success_now),
             success_ticks=ticks,
-            success=ticks >= self.task.success_hold_ticks,
+            success=ticks >= self.success_hold_ticks,
             failed=reason or None,
         )
 

@@ -14,6 +14,7 @@ from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
 from mart.episodes.reader import EpisodeFile
+from mart.protocol.tasks import Task
 from mart.runtime.atomic_file import PUBLIC, write_atomically
 from mart.trainer.data.episode import EpisodeArrays, read_episode
 from mart.trainer.data.layout import ObservationLayout
@@ -30,19 +31,21 @@ def sha256_of(path: Path) -> str:
 
 
 def read_cached(
-    file: EpisodeFile, layout: ObservationLayout, sha256: str, folder: Path | None
+    file: EpisodeFile, task: Task, control_hz: float | None, sha256: str, folder: Path | None
 ) -> EpisodeArrays:
-    """Read an episode, from the cache where it is there.
+    """Read an episode at a control rate, from the cache where it is there.
 
-    Raises what `read_episode` raises. `folder`: of the cache; None reads the file itself.
+    Raises what `read_episode` raises. `control_hz`: None is its own. `folder`: of the cache; None reads the file.
     """
+    layout = ObservationLayout.of(task)
     if folder is None:
-        return read_episode(file, layout)
-    entry = folder / f"{sha256}-{layout.sha256[:16]}-{_VERSION}.safetensors"
+        return read_episode(file, task, layout, control_hz)
+    rate = "" if control_hz is None else f"-{control_hz:g}hz"
+    entry = folder / f"{sha256}-{layout.sha256[:16]}{rate}-{_VERSION}.safetensors"
     known = _load(entry)
     if known is not None:
         return known
-    episode = read_episode(file, layout)
+    episode = read_episode(file, task, layout, control_hz)
     _save(entry, episode)
     return episode
 

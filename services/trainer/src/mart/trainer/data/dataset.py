@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict
 
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import Corrupt, InvalidInput
+from mart.protocol.tasks import Task, get_task
 from mart.trainer.data.cache import read_cached, sha256_of
 from mart.trainer.data.data_spec import DataSetName, Selection
 from mart.trainer.data.episode import EpisodeArrays
@@ -28,7 +29,7 @@ S = TypeVar("S", bound=np.generic)
 
 
 class UsedEpisode(BaseModel):
-    """One episode that was learned from."""
+    """One episode that was learned from. ticks: at the data set's rate; recorded_hz: None where it was not noted."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -38,10 +39,14 @@ class UsedEpisode(BaseModel):
     outcome: str
     verdict: str
     operators: tuple[str, ...]
+    recorded_hz: float | None = None
 
 
 class DataDigest(BaseModel):
-    """What a training learned from; `sha256` is over the files' hashes in their order."""
+    """What a training learned from; `sha256` is over the files' hashes in their order.
+
+    control_hz: at which it was learned from, whatever the episodes' own rates are.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -81,14 +86,16 @@ def load_dataset(
     selection: Selection,
     cache: Path | None = None,
     dataset: DataSetName | None = None,
+    control_hz: float | None = None,
 ) -> Dataset:
-    """Reads what `selection` takes of the episode files in `paths`.
+    """Read what `selection` takes of the episode files in `paths`.
 
     cache: a folder of episodes that were read before; None reads every file.
     dataset: whose files `paths` are; what of it is dropped, discarded or missing is left out and said.
+    control_hz: the rate to learn at, at most that of every episode (`mart.episodes.resampling`); None: their own.
     A file that cannot be read is left out, and the log says so.
-    Raises NotFound, Corrupt or InvalidInput: missing paths, nothing but damaged files, several tasks, rates or numbers
-    of arms, missing arms or observations, NaN, or nothing left to learn from.
+    Raises NotFound, Corrupt or InvalidInput: missing paths, nothing but damaged files, several tasks or numbers of
+    arms, several rates where none was asked for, missing arms or observations, NaN, or nothing left to learn from.
     """
     given = tuple(paths)
     found = candidates(path for path in given if dataset is None or path.exists())
@@ -96,14 +103,14 @@ def load_dataset(
         raise InvalidInput(
             f"Every episode of the data set {dataset.name!r} was deleted; put them back, or choose another."
         )
-    chosen = select(found, selection)
-    task, rate, arms = _facts(chosen[0])
-    layout = ObservationLayout.of_arms(task, len(arms))
-    read = _read(chosen, layout, cache)
+    chosen = select(found, selection, any_rate=control_hz is not None)
+    name, recorded_hz, arms = _facts(chosen[0])
+    task = get_task(name, len(arms))
+    read = _read(chosen, task, control_hz, cache)
     chosen, hashes, episodes = [one for one, _, _ in read], [h for _, h, _ in read], [e for _, _, e in read]
     digest = DataDigest(
-        task=task,
-        control_hz=rate,
+        task=name,
+        control_hz=control_hz or recorded_hz,
         arms=arms,
         selection=selection,
         episodes=tuple(map(_used, chosen, hashes, episodes)),
@@ -111,11 +118,11 @@ def load_dataset(
         sha256=hashlib.sha256("".join(hashes).encode()).hexdigest(),
         dataset=account(dataset, given, found, chosen, selection) if dataset else None,
     )
-    return join(digest, layout, episodes)
+    return join(digest, ObservationLayout.of(task), episodes)
 
 
 def _read(
-    chosen: Iterable[LabelledEpisode], layout: ObservationLayout, cache: Path | None
+    chosen: Iterable[LabelledEpisode], task: Task, control_hz: float | None, cache: Path | None
 ) -> list[tuple[LabelledEpisode, str, EpisodeArrays]]:
     """Read episodes, each with the hash of its file. One that turns out to be damaged is left out, and the log says so.
 
@@ -126,7 +133,7 @@ def _read(
     for one in chosen:
         sha256 = sha256_of(one.file_path)
         try:
-            read.append((one, sha256, read_cached(one.open(), layout, sha256, cache)))
+            read.append((one, sha256, read_cached(one.open(), task, control_hz, sha256, cache)))
         except Corrupt as error:
             _log.warning("Left out: %s", error)
             damaged.append(error)
@@ -163,6 +170,7 @@ def _used(one: LabelledEpisode, sha256: str, episode: EpisodeArrays) -> UsedEpis
         outcome=one.outcome,
         verdict=one.verdict,
         operators=tuple(sorted({f"{shift.operator} {shift.name}".rstrip() for shift in one.shifts})),
+        recorded_hz=one.control_hz,
     )
 
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mart.episodes.arrays import arrays_from_states
+from mart.episodes.arrays import EpisodeData, arrays_from_states
 from mart.episodes.reader import EpisodeFile
-from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import State
+from mart.protocol.tasks import Task
 from mart.trainer.data.layout import ObservationLayout
 
 
@@ -33,18 +33,24 @@ class EpisodeArrays:
     sources: NDArray[np.int8]
 
 
-def read_episode(file: EpisodeFile, layout: ObservationLayout) -> EpisodeArrays:
-    """Read an episode. Raises Corrupt where the file is damaged and InvalidInput, naming it, where it is not whole."""
-    try:
-        return from_states(layout, list(file.states()))
-    except InvalidInput as error:
-        raise InvalidInput(f"{file.path} cannot be learned from: {error}") from error
+def read_episode(
+    file: EpisodeFile, task: Task, layout: ObservationLayout, control_hz: float | None = None
+) -> EpisodeArrays:
+    """Read an episode of a task, at a control rate (`mart.episodes.resampling`); None: its own.
+
+    Raises Corrupt where the file is damaged and InvalidInput, naming it, where it is not whole or has no such rate.
+    """
+    return from_data(layout, file.arrays(task, control_hz))
 
 
 def from_states(layout: ObservationLayout, states: Sequence[State]) -> EpisodeArrays:
     """Turn the states of one episode in their order, the one after the reset first, into arrays."""
     shapes = {field.name: field.shape for field in layout.fields}
-    data = arrays_from_states(states, layout.arms, shapes)
+    return from_data(layout, arrays_from_states(states, layout.arms, shapes))
+
+
+def from_data(layout: ObservationLayout, data: EpisodeData) -> EpisodeArrays:
+    """Turn the arrays of one episode into what a model takes."""
     return EpisodeArrays(
         observations=layout.vector(data.observations),
         actions=data.actions.astype(np.float32),

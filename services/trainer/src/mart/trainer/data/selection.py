@@ -27,8 +27,10 @@ def candidates(paths: Iterable[Path]) -> list[LabelledEpisode]:
     return left
 
 
-def select(found: list[LabelledEpisode], selection: Selection) -> list[LabelledEpisode]:
-    """Choose those that the selection takes.
+def select(
+    found: list[LabelledEpisode], selection: Selection, *, any_rate: bool = False
+) -> list[LabelledEpisode]:
+    """Choose those that the selection takes; `any_rate`: they may be of several control rates.
 
     Raises InvalidInput where none is left, or where they do not belong together.
     """
@@ -36,7 +38,7 @@ def select(found: list[LabelledEpisode], selection: Selection) -> list[LabelledE
     chosen = chosen[-selection.last :] if selection.last else chosen
     if not chosen:
         raise InvalidInput(_why_none(found, selection))
-    require_alike(chosen, "one model learns from one: give a folder of its own for each")
+    require_alike(chosen, "one model learns from one: give a folder of its own for each", any_rate=any_rate)
     return chosen
 
 

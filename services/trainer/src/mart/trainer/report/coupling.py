@@ -16,6 +16,7 @@ from mart.episodes.arrays import EpisodeData
 from mart.episodes.filter import EpisodeFilter
 from mart.episodes.folder import list_episodes, readable
 from mart.episodes.labelled_episode import LabelledEpisode
+from mart.protocol.control_rate import LEARNING_CONTROL_HZ
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.tasks import Arm, Task, get_task
 from mart.protocol.vocabulary import EpisodeOutcome
@@ -91,7 +92,7 @@ def read_couplings(folder: Path, policies: Sequence[Policy] = ()) -> list[Coupli
 
 def _coupling(task: Task, episodes: Sequence[LabelledEpisode], policy: Policy | None) -> Coupling:
     layout = ObservationLayout.of(task)
-    data = list(_arrays(task, episodes))
+    data = list(_arrays(task, episodes, LEARNING_CONTROL_HZ if policy is None else policy.control_hz))
     if len(data) < MIN_EPISODES:
         raise InvalidInput(
             f"{len(data)} successful episodes of {task.name} can be read; at least {MIN_EPISODES} tell something "
@@ -110,11 +111,14 @@ def _coupling(task: Task, episodes: Sequence[LabelledEpisode], policy: Policy | 
     )
 
 
-def _arrays(task: Task, episodes: Sequence[LabelledEpisode]) -> Iterator[EpisodeData]:
-    """Read episodes; one that turns out to be damaged is left out, and the log says so."""
+def _arrays(task: Task, episodes: Sequence[LabelledEpisode], control_hz: float) -> Iterator[EpisodeData]:
+    """Read episodes in ticks of `control_hz`, those of a lower rate in their own.
+
+    One that turns out to be damaged is left out, and the log says so.
+    """
     for episode in episodes:
         try:
-            yield episode.open().arrays(task)
+            yield episode.open().arrays(task, min(control_hz, episode.control_hz or control_hz))
         except Corrupt as error:
             _log.warning("Left out: %s", error)
 

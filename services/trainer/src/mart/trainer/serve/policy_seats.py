@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from mart.operators.commander import SeatCommander
 from mart.operators.driver import SeatSelection
+from mart.protocol.control_rate import ticks_for_each
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
 from mart.protocol.tasks import Task, get_task
@@ -64,24 +65,24 @@ class PromotedPolicies(SeatSelection[str]):
 def policy_commanders(policy: Policy, status: RoomStatus) -> Sequence[SeatCommander]:
     """Return what a policy drives with in a room of this status: one commander for each of its independent parts.
 
-    Raises InvalidInput where the policy was not made for such a room.
+    It acts at its own rate also where the room's is a multiple of it. Raises InvalidInput where the policy was not made
+    for such a room, or the room's rate is no multiple.
     """
     task = get_task(status.task, len(status.seats))
-    require_fit(policy, task, status.control_hz)
+    require_fit(policy, task)
+    each = ticks_for_each(policy.control_hz, status.control_hz)
     return [
-        SeatCommander(PolicyOperator(part), task, part.arms, OPERATOR_POLICY, part.needs)
+        SeatCommander(
+            PolicyOperator(part), task, part.arms, OPERATOR_POLICY, part.needs, act_every_ticks=each
+        )
         for part in parts_of(policy)
     ]
 
 
-def require_fit(policy: Policy, task: Task, control_hz: float) -> None:
-    """Raise InvalidInput where the policy was not made for such a room."""
+def require_fit(policy: Policy, task: Task) -> None:
+    """Raise InvalidInput where the policy was not made for such a room, whatever its rate."""
     if policy.task != task.name:
         raise InvalidInput(f"It was trained for {policy.task} and the room's task is {task.name}.")
-    if abs(policy.control_hz - control_hz) > 1e-6:
-        raise InvalidInput(
-            f"It was trained at {policy.control_hz:g} ticks a second and the room runs at {control_hz:g}."
-        )
     unknown = sorted(set(policy.needs) - {observation.name for observation in task.observations})
     if unknown:
         raise InvalidInput(

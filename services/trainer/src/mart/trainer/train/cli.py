@@ -16,6 +16,7 @@ from mart.protocol.errors import InvalidInput
 from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind, Verdict
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import Progress, progress
+from mart.runtime.rate_option import control_hz_option
 from mart.trainer.data.data_spec import DataSetName, Selection
 from mart.trainer.models.architecture import model_names
 from mart.trainer.train.presets import PRESETS
@@ -75,6 +76,7 @@ _paths = click.Path(path_type=Path, exists=True)
     metavar="SOURCE=W",
     help="How much ticks driven by a source count, e.g. human=3.",
 )
+@control_hz_option
 @click.option("--device", default="cpu", show_default=True, help="cpu, cuda, cuda:N or auto.")
 @json_option
 def train(resume: Path | None, out: Path | None, as_json: bool, **options: Any) -> int:
@@ -141,6 +143,7 @@ def _spec(options: dict[str, Any]) -> TrainingSpec:
             weights={name: _value(text) for name, text in _pairs(options["weight"])},
             base=options["base"].resolve() if options["base"] else None,
             device=options["device"],
+            control_hz=options["control_hz"],
         )
     except ValidationError as error:
         fault = error.errors()[0]
@@ -205,6 +208,7 @@ def _result(run: RunDirectory) -> dict[str, Any]:
         "task": data["task"],
         "episodes": len(data["episodes"]),
         "ticks": data["ticks"],
+        "control_hz": data["control_hz"],
         "times_seen": round(run.spec.times_seen(data["ticks"]), 1),
         "dataset": data.get("dataset"),
         "seeds": list(run.spec.seeds),
@@ -224,7 +228,9 @@ def _of_dataset(dataset: dict[str, Any] | None) -> str:
 
 def _words(result: dict[str, Any]) -> str:
     newest = result["checkpoints"][-len(result["seeds"]) :]
-    ticks = f"{result['ticks']} ticks, each seen {result['times_seen']:g} times"
+    ticks = (
+        f"{result['ticks']} ticks of {result['control_hz']:g} Hz, each seen {result['times_seen']:g} times"
+    )
     learned = f"from {result['episodes']} episodes ({ticks}){_of_dataset(result['dataset'])}"
     then = "Judge them: mart eval --checkpoint" if result["complete"] else "Go on: mart train --resume"
     lines = [

@@ -10,6 +10,7 @@ import torch
 from safetensors.torch import save
 from torch import Tensor
 
+from mart.protocol.control_rate import same_control_hz
 from mart.protocol.errors import InvalidInput
 from mart.runtime.atomic_directory import write_directory_atomically
 from mart.trainer.data.dataset import DataDigest
@@ -60,12 +61,12 @@ def write_checkpoint(
 
 
 def read_base(
-    folder: Path, seeds: Sequence[int], model: ModelSpec, layout: ObservationLayout
+    folder: Path, seeds: Sequence[int], model: ModelSpec, layout: ObservationLayout, control_hz: float
 ) -> dict[str, Tensor]:
     """Return planners, actors and normalisation of another run's seeds, as weights of this one.
 
     folder: a run, whose newest checkpoint is taken, or one of its checkpoints (`…/checkpoints/4000`).
-    Raises InvalidInput where that run's model is not the base of this one, or lacks a seed.
+    Raises InvalidInput where that run's model is not the base of this one, has another rate, or lacks a seed.
     """
     run = RunDirectory(folder if (folder / "checkpoints").is_dir() else folder.parent.parent)
     updates = run.checkpointed()[-1] if run.path == folder and run.checkpointed() else _number(folder)
@@ -78,6 +79,11 @@ def read_base(
             raise InvalidInput(
                 f"{path} is a {record.name} of {record.task}; a base must have the planner and actor of {model.name}, "
                 "and be of the same task."
+            )
+        if not same_control_hz(record.control_hz, control_hz):
+            raise InvalidInput(
+                f"{path} learned at {record.control_hz:g} Hz and its residual would at {control_hz:g}; "
+                f"give --control-hz {record.control_hz:g}."
             )
         found.append(read_weights(path))
     return {

@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from mart.protocol.control_rate import MAX_CONTROL_HZ, MIN_CONTROL_HZ
 from mart.protocol.errors import InvalidInput
 from mart.protocol.vocabulary import OperatorKind
 from mart.trainer.data.data_spec import DataSetName, Selection
@@ -21,11 +22,12 @@ MAX_SEEDS = 64
 class TrainingSpec(BaseModel):
     """What one run is asked to do: one model of the grid, trained with several seeds in one go on the same data.
 
-    data: episode files, or folders of them, of one task and control rate.
+    data: episode files, or folders of them, of one task.
     dataset: the named data set whose files `data` are.
     changes: single hyperparameters that differ from the preset's.
     weights: how much a tick counts by who drove the arm in it; 1 where it is not named, 0 leaves it out.
     base: a run whose models a residual corrects, instead of training a base first.
+    control_hz: the rate to learn at, at most that of every episode; None: the one rate that all of them have.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -40,6 +42,7 @@ class TrainingSpec(BaseModel):
     weights: Mapping[OperatorKind, float] = Field(default_factory=dict)
     base: Path | None = None
     device: str = "cpu"
+    control_hz: float | None = Field(None, ge=MIN_CONTROL_HZ, le=MAX_CONTROL_HZ)
 
     @field_validator("seeds")
     @classmethod

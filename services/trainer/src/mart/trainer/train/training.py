@@ -56,7 +56,7 @@ def train(
     device = find_device(spec.device)
     with _claimed(run, spec):
         cache = Settings().data_dir / "cache" / "episodes"
-        dataset = load_dataset(spec.data, spec.selection, cache, spec.dataset)
+        dataset = load_dataset(spec.data, spec.selection, cache, spec.dataset, spec.control_hz)
         loop = _training_loop(spec, dataset, device)
         _note(run, spec, dataset)
         kept = read_state(run)
@@ -102,7 +102,7 @@ def _training_loop(spec: TrainingSpec, dataset: Dataset, device: torch.device) -
     if spec.base is not None:
         if model.residual == "none":
             raise InvalidInput(f"A base was given, but {model.name} has no residual to put on it.")
-        base = read_base(spec.base, spec.seeds, model, layout)
+        base = read_base(spec.base, spec.seeds, model, layout, dataset.digest.control_hz)
         missing, _ = networks.load_state_dict(base, strict=False)
         assert all(name.startswith("model.residual.") for name in missing)
     networks.to(device)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from mart.protocol.control_rate import LEARNING_CONTROL_HZ
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.cli import json_option, print_result
 
@@ -48,6 +49,13 @@ def jobs() -> None:
 @click.option("--data", default="", help="Folder of episodes on the trainer's machine.  [default: episodes]")
 @click.option("--dataset", default="", help="A named data set of that folder, whole.")
 @click.option("--preset", default="fast", show_default=True, help="debug, fast or paper.")
+@click.option(
+    "--control-hz",
+    default=LEARNING_CONTROL_HZ,
+    show_default=True,
+    type=float,
+    help="Learn in ticks of this rate, whatever the episodes' is.",
+)
 @click.option("--seeds", default=1, show_default=True, type=click.IntRange(1, 64), help="How many.")
 @click.option("--seeds-per-job", default=0, type=click.IntRange(0, 64), help="0: all seeds in one job.")
 @click.option(
@@ -70,6 +78,7 @@ def submit(
     data: str,
     dataset: str,
     preset: str,
+    control_hz: float,
     seeds: int,
     seeds_per_job: int,
     episodes: int,
@@ -85,6 +94,7 @@ def submit(
         data=data,
         dataset=dataset,
         preset=preset,
+        control_hz=control_hz,
         seeds=range(seeds),
         evaluation_episodes=episodes,
         score_episodes=score_episodes,

@@ -44,7 +44,8 @@ def details(found: TrainerReply.Details) -> str:
 def learned(found: Learned) -> str:
     """What a run learned from, and what of a data set it did not."""
     whole = f" of the {found.dataset_episodes} in {found.dataset}" if found.dataset else ""
-    text = f"Episodes learned from: {found.episodes}{whole}; {found.ticks} ticks, digest {found.sha256[:12]}."
+    ticks = f"{found.ticks} ticks of {found.control_hz:g} Hz"
+    text = f"Episodes learned from: {found.episodes}{whole}; {ticks}, digest {found.sha256[:12]}."
     return f"{text} Left out: {', '.join(found.left_out)}." if found.left_out else text
 
 

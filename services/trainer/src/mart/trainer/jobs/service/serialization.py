@@ -51,7 +51,12 @@ def learned_message(run: RunDirectory) -> Learned | None:
     if not run.data.is_file():
         return None
     digest = DataDigest.model_validate_json(run.data.read_bytes())
-    learned = Learned(episodes=len(digest.episodes), ticks=digest.ticks, sha256=digest.sha256)
+    learned = Learned(
+        episodes=len(digest.episodes),
+        ticks=digest.ticks,
+        sha256=digest.sha256,
+        control_hz=digest.control_hz,
+    )
     if digest.dataset is not None:
         learned.dataset, learned.dataset_episodes = digest.dataset.name, digest.dataset.episodes
         told = (f"{Path(one.path).name} ({one.why})" for one in digest.dataset.left_out[:MAX_LEFT_OUT])
@@ -91,6 +96,7 @@ def _order(job: Job) -> Order:
         data=str(_folder(training)),
         dataset=training.dataset.name if training.dataset else "",
         preset=training.preset,
+        control_hz=training.control_hz or 0.0,
         seeds=training.seeds,
         evaluation_episodes=job.spec.evaluation.episodes,
         score_episodes=job.spec.evaluation.score_episodes,

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from mart.protocol.control_rate import LEARNING_CONTROL_HZ
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import Order, TrainerRequest
 from mart.protocol.recording import SUFFIX
@@ -69,6 +70,7 @@ def _job_spec(
             seeds=tuple(seeds),
             preset=order.preset or DEFAULT_PRESET,
             device=settings.device,
+            control_hz=order.control_hz or LEARNING_CONTROL_HZ,
         )
     except ValidationError as error:
         fault = error.errors()[0]
