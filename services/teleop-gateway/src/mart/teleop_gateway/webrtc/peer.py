@@ -134,8 +134,9 @@ class Peer:
             self._listener.on_keyframe_wanted(self.codec)
 
     def _on_channel(self, channel: RTCDataChannel) -> None:
-        if channel.label == "pose" and self.role is not Role.VIEWER:
-            channel.on("message", self._on_pose)
+        if channel.label == "pose":
+            if self.role is not Role.VIEWER:  # a page opens it before it knows whether it drives
+                channel.on("message", self._on_pose)
         elif channel.label == "status":
             self._status = channel
             channel.on("message", self._on_status)

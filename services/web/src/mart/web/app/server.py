@@ -16,7 +16,7 @@ from mart.protocol.errors import Unavailable
 from mart.runtime.secret_file import load_or_create_secret
 from mart.runtime.service import AsyncService, announced
 from mart.web.access.certificate import ensure_certificate
-from mart.web.access.connection_table import ConnectionTable
+from mart.web.access.connection_table import KEPT_S, ConnectionTable
 from mart.web.access.join_code import digest_of
 from mart.web.access.site_names import SiteNames
 from mart.web.access.user_sessions import UserSessions
@@ -127,6 +127,7 @@ def _configured(
         ws="websockets-sansio",
         ws_max_size=MAX_BODY_BYTES,
         timeout_graceful_shutdown=_STOP_S,
+        timeout_keep_alive=int(KEPT_S),
     )
     config.load()
     assert config.ssl is not None

@@ -14,6 +14,7 @@ import { showHealth } from "./hud/health-figure.js";
 import { showPartners } from "./hud/partners.js";
 import { showPicture } from "./hud/picture.js";
 import { StatusBar } from "./hud/status-bar.js";
+import { approachAsPage } from "./link/page-approach.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
@@ -46,7 +47,7 @@ const statusBar = new StatusBar((command) => press(command));
 const panel = new InputPanel(roomName, armId, (error) => notice(api.messageOf(error)));
 const input = new KeyboardMouseInput(byId("picture"), onKey);
 const link = new SeatLink({
-  fetchToken: async () => ({ room: roomName, arm: armId, ...(await api.seatToken(roomName, armId)) }),
+  approach: () => approachAsPage(roomName, armId),
   wantsVideo: true,
   onState: () => render(),
   onStatus,
@@ -91,6 +92,7 @@ function begin() {
   setInterval(render, AGE_MS); // what grows old says so without any news
   input.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));
   followRooms({ onRooms, onEvent, onEnded: toLobby });
+  link.connect(); // the seat's picture is wanted in nearly all cases: what the rooms say comes three round trips later
 }
 
 /**
@@ -120,7 +122,9 @@ function onRooms(rooms) {
  */
 function follow(seat) {
   if (!seat || seat.epoch === followed) return;
+  const isFirst = followed === 0;
   followed = seat.epoch;
+  if (hasPicture(seat) && isFirst && link.mayBeFor(seat.epoch)) return;
   status = null;
   if (hasPicture(seat)) link.connect();
   else link.close();

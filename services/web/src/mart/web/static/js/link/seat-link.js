@@ -1,6 +1,6 @@
 // A page's lasting connection to its seat: connects, watches the gateway's heartbeat, connects again when it is lost.
 
-import { messageOf, sendOffer, statusOf } from "../api.js";
+import { messageOf, statusOf } from "../api.js";
 import { ClockOffset } from "./clock-offset.js";
 import { Peer } from "./peer.js";
 
@@ -25,20 +25,25 @@ export const LinkState = Object.freeze({
 /** @typedef {(typeof LinkState)[keyof typeof LinkState]} State */
 
 /**
- * What a gateway is told to let this page in, and where it is.
- * @typedef {Api.SeatToken & { room: string, arm: string }} Ticket
+ * How a gateway is reached: `exchange` hands it the offer, and tells what one may do there.
+ * @typedef {object} Approach
+ * @property {RTCIceServer[]} iceServers
+ * @property {(sdp: string) => Promise<{ sdp: string, role: Api.PeerRole, epoch: number }>} exchange
  */
 
 /**
  * @typedef {object} LinkOptions
- * @property {() => Promise<Ticket>} fetchToken
+ * @property {() => Promise<Approach>} approach called for every connection
  * @property {boolean} wantsVideo
  * @property {() => void} onState
  * @property {(status: StatusChannel.Tick) => void} onStatus
  * @property {(stream: MediaStream) => void} [onTrack]
  */
 
-/** Keeps a page connected to a seat. `problem`: why it does not connect, in words; `epoch`, `role`: the token's. */
+/**
+ * Keeps a page connected to a seat. `problem`: why it does not connect, in words; `epoch`, `role`: whose seat it is and
+ * what one may do there.
+ */
 export class SeatLink {
   /** @type {State} */
   state = LinkState.CONNECTING;
@@ -67,6 +72,11 @@ export class SeatLink {
   connect() {
     this.#closed = false;
     this.#connect();
+  }
+
+  /** Whether it is, or may become, a connection of this seat epoch. @param {number} epoch */
+  mayBeFor(epoch) {
+    return !this.#closed && (this.epoch === 0 || this.epoch === epoch);
   }
 
   /**
@@ -102,14 +112,11 @@ export class SeatLink {
     this.#setState(LinkState.CONNECTING);
     this.#heardMs = performance.now() + CONNECT_MS - LOST_MS;
     try {
-      const ticket = await this.#options.fetchToken();
-      const peer = await this.#reach(ticket, attempt);
+      const peer = await this.#reach(await this.#options.approach(), attempt);
       if (attempt !== this.#attempt) {
         peer.close();
         return;
       }
-      this.epoch = ticket.epoch;
-      this.role = ticket.role;
       this.problem = "";
       this.#peer = peer;
       this.#options.onState();
@@ -122,16 +129,19 @@ export class SeatLink {
   }
 
   /**
-   * @param {Ticket} ticket
+   * @param {Approach} approach
    * @param {number} attempt
    */
-  #reach({ room, arm, token, role, ice_servers: iceServers }, attempt) {
+  #reach({ iceServers, exchange }, attempt) {
     const { wantsVideo, onTrack = () => {} } = this.#options;
     return Peer.connect({
       wantsVideo,
-      drives: role !== "viewer",
       iceServers,
-      exchange: async (sdp) => (await sendOffer(room, arm, token, sdp)).sdp,
+      exchange: async (offer) => {
+        const { sdp, role, epoch } = await exchange(offer);
+        if (attempt === this.#attempt) [this.role, this.epoch] = [role, epoch];
+        return sdp;
+      },
       onTrack,
       onMessage: (message) => attempt === this.#attempt && this.#onMessage(message),
       onClosed: () => attempt === this.#attempt && this.#lose(),
