@@ -47,11 +47,15 @@ def listen(host: str, port: int) -> socket.socket:
     """
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
-        return socket.create_server((host, port), family=family)
+        listener = socket.create_server((host, port), family=family)
     except OSError as error:
         raise Unavailable(
             f"Could not listen at {host} port {port}: {error.strerror}. Choose another with --host or --port."
         ) from error
+    # What it accepts inherits this. Without it the second piece of an answer waits for word that the first arrived, a
+    # round trip; asyncio sets it for sockets that say they are TCP's, which one made by family and type alone does not.
+    listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return listener
 
 
 async def serve(

@@ -73,6 +73,13 @@ export const leave = () => request("DELETE", "/me");
 /** How every part does. @type {() => Promise<{ findings: Api.Finding[] }>} */
 export const findings = () => request("GET", "/health/findings");
 
+/** Whether the site can be reached now. @type {(withinMs: number) => Promise<boolean>} */
+export const siteAnswers = (withinMs) =>
+  fetch("/api/health", { signal: AbortSignal.timeout(withinMs) }).then(
+    () => true,
+    () => false,
+  );
+
 // Rooms
 
 /** @type {(room: string) => string} */

@@ -40,6 +40,7 @@ let status = null;
 let noticeTimer = 0;
 let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
+let pictured = false; // by the present connection: its picture comes a round trip before its first word
 let displayedMs = -Infinity; // when a newer picture was last displayed
 
 const confirm = new Confirm(() => render());
@@ -49,7 +50,7 @@ const input = new KeyboardMouseInput(byId("picture"), onKey);
 const link = new SeatLink({
   approach: () => approachAsPage(roomName, armId),
   wantsVideo: true,
-  onState: () => render(),
+  onState: onLinkState,
   onStatus,
   onTrack: (stream) => (video.srcObject = stream),
 });
@@ -82,7 +83,10 @@ function begin() {
   });
   byId("emergency").append(stop.node);
   byId("health").addEventListener("toggle", () => render());
-  video.addEventListener("resize", () => render());
+  video.addEventListener("resize", () => {
+    pictured = true;
+    render();
+  });
   document.addEventListener("click", letGoOfButton);
   watchTicks(video, (tick, nowMs) => {
     if (tick !== input.seenTick) displayedMs = nowMs;
@@ -138,6 +142,11 @@ function onEvent(event) {
   render();
 }
 
+function onLinkState() {
+  if (link.state === LinkState.CONNECTING) pictured = false;
+  render();
+}
+
 /** @param {StatusChannel.Tick} tick */
 function onStatus(tick) {
   input.adoptGripper(tick, status);
@@ -166,7 +175,7 @@ function render() {
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
   if (room) showRoom({ ...room, stale: !told });
-  showPicture(seat, status, link.state === LinkState.LIVE);
+  showPicture(seat, status, link.state === LinkState.LIVE || (link.state === LinkState.CONNECTING && pictured));
   showHolder(mine);
 }
 

@@ -6,13 +6,14 @@
  * @property {RTCIceServer[]} iceServers STUN and TURN servers; none on one network
  * @property {(sdp: string) => Promise<string>} exchange takes the offer to the gateway and returns its answer
  * @property {(stream: MediaStream) => void} onTrack
+ * @property {() => void} onOpen messages can be sent from now on
  * @property {(message: StatusChannel.FromGateway) => void} onMessage
  * @property {() => void} onClosed
  */
 
 const CHANNEL = { ordered: false, maxRetransmits: 0 };
 const GATHERING_MS = 1000;
-const MOST_BUFFERED_BYTES = 4096; // what waits longer is older than what comes next
+const MOST_BUFFERED_BYTES = 300; // five frames: what waits longer is older than what comes next
 
 /** A connection, from its making until `close`. */
 export class Peer {
@@ -43,7 +44,7 @@ export class Peer {
   }
 
   /** @param {PeerOptions} options */
-  async #connect({ wantsVideo, exchange, onTrack, onMessage, onClosed }) {
+  async #connect({ wantsVideo, exchange, onTrack, onOpen, onMessage, onClosed }) {
     const connection = this.#connection;
     this.#status.addEventListener("message", ({ data }) => onMessage(JSON.parse(data)));
     if (wantsVideo) {
@@ -53,6 +54,7 @@ export class Peer {
     connection.addEventListener("connectionstatechange", () => {
       if (["failed", "closed"].includes(connection.connectionState)) onClosed();
     });
+    this.#status.addEventListener("open", onOpen);
     await connection.setLocalDescription();
     await gathered(connection);
     const sdp = await exchange(connection.localDescription?.sdp ?? "");
