@@ -13,6 +13,7 @@ from dataclasses import dataclass
 MAX_CANDIDATES = 32  # a laptop with Wi-Fi, a cable, two VPNs and a relay names about 20
 _FIRST_PORT = 1024  # below it are services that might answer
 _LINE = "a=candidate:"
+_END = "a=end-of-candidates"
 _NAME_SUFFIX = ".local"
 
 
@@ -42,6 +43,8 @@ def bounded_candidates(sdp: str) -> tuple[str, tuple[NamedCandidate, ...]]:
                 named.append(NamedCandidate(media_index, line.removeprefix(_LINE).strip()))
                 continue
         lines.append(line)
+    if named:  # what is looked up comes later, and after the end none counts
+        lines = [line for line in lines if not line.startswith(_END)]
     return "".join(lines), tuple(named)
 
 
