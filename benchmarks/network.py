@@ -23,12 +23,12 @@ from mart.sim.world import World
 from tools.netrelay.impairment import PROFILES
 
 TASK = "two_arm_multi_cube_lifting"
-EPISODES = 6
+EPISODES = 3
 SIM_LIMIT_S, WALL_LIMIT_S = 40.0, 240.0
 SAME = ("lan", "wifi", "4g", "intercontinental", "outage")
 MIXED = {"mixed": ("lan", "4g", "intercontinental")}
 OUTAGE_PERIOD_S, OUTAGE_S = 20.0, 2.0
-LEAD_S = 3.0  # an episode begins so long before the network goes dark
+LEAD_S = 1.5  # an episode begins so long before the network goes dark
 PICTURE = Path("docs/images/networks.svg")
 
 

@@ -159,8 +159,8 @@ class NetworkedRoom:
             and self._clock.now_s - self._began_s < wall_limit_s
         ):
             self._clock.step()
-        self.figures.sim_s = self._tick * self._world.control_period_s
-        self.figures.wall_s = self._clock.now_s - self._began_s
+        self.figures.sim_s = (self._tick - 1) * self._world.control_period_s  # from the first tick on
+        self.figures.wall_s = self._clock.now_s - self.figures.ticks_s[0]
         return self.figures
 
     def _stream(self, person: DistantPerson, up: Leg) -> None:
