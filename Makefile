@@ -85,7 +85,7 @@ format: $(VENV)/.tools ## Format the code and mend what the linter can mend
 bench: $(addprefix bench-,$(BENCHMARKS)) ## Run every benchmark; results go to benchmarks/results
 
 bench-%: $(VENV)/.tools ## Run one benchmark, for example bench-barrier
-	@$(BIN)/python benchmarks/$(subst -,_,$*).py
+	@PYTHONPATH=. $(BIN)/python benchmarks/$(subst -,_,$*).py
 
 .PHONY: chaos
 chaos: $(VENV)/.tools ## Try every fault once and write the table of docs/reliability.md: about half an hour on a quiet machine

@@ -9,6 +9,7 @@ from mart.protocol.messages import (
     EPISODE_PHASE_RECORDING,
     OPERATOR_HUMAN,
     Command,
+    CommandStamps,
     EpisodeRequest,
     Event,
     RoomStatus,
@@ -94,9 +95,16 @@ class RoomHarness:
             assert self.ask(EpisodeRequest(ready=ready)) == ""
 
     def command(
-        self, arm: str, x_m: float = 0.0, gripper: float = 0.0, stop: bool = False, state_tick: int = 0
+        self,
+        arm: str,
+        x_m: float = 0.0,
+        gripper: float = 0.0,
+        *,
+        stop: bool = False,
+        state_tick: int = 0,
+        sent_s: float | None = None,
     ) -> None:
-        """The tool is to go `x_m` from where it is."""
+        """The tool is to go `x_m` from where it is; `sent_s`: when it was said, where it says so."""
         self._sequence += 1
         target = pose_message(self.world.tool_pose_in_base(arm))
         target.x += x_m
@@ -109,6 +117,7 @@ class RoomHarness:
             engaged=True,
             emergency_stop=stop,
             state_tick=state_tick,
+            stamps=CommandStamps(sent_ns=0 if sent_s is None else round(sent_s * 1e9)),
         )
         self.room.hear(codec.encode(command), arm, self.now_s, round(self.now_s * 1e9))
 

@@ -189,13 +189,20 @@ def test_whoever_has_no_seat_stops_everything_too(barrier: Barrier) -> None:
 
 
 def test_an_old_command_moves_nothing_and_stops_all_the_same(barrier: Barrier) -> None:
-    assert barrier.offer(received("arm0", 1, 1, 0.0), in_time=False) is CommandRejection.OLD_STATE
+    assert (
+        barrier.offer(received("arm0", 1, 1, 0.0), too_old=CommandRejection.OLD_STATE)
+        is CommandRejection.OLD_STATE
+    )
     assert barrier.newest("arm0") is None
     assert (
-        barrier.offer(received("arm0", 2, 1, 0.0, stop=True), in_time=False) is CommandRejection.WRONG_EPOCH
+        barrier.offer(received("arm0", 2, 1, 0.0, stop=True), too_old=CommandRejection.OLD_STATE)
+        is CommandRejection.WRONG_EPOCH
     )
     assert not barrier.stopped
-    assert barrier.offer(received("arm0", 1, 1, 0.0, stop=True), in_time=False) is CommandRejection.OLD_STATE
+    assert (
+        barrier.offer(received("arm0", 1, 1, 0.0, stop=True), too_old=CommandRejection.OLD_STATE)
+        is CommandRejection.OLD_STATE
+    )
     assert barrier.stopped
 
 

@@ -96,6 +96,31 @@ def test_commands_that_were_made_from_an_old_state_are_refused_counted_and_told(
     assert "Ana at arm0 does not hear the room" in told.notice.text
 
 
+def test_a_command_that_waited_moves_nothing_and_stops_everything_all_the_same(harness: RoomHarness) -> None:
+    """A link to another site was broken for 3 s: the world stood still, so the state is as old as it was."""
+    for arm in ARMS:
+        harness.take(arm)
+    for _ in range(30):
+        for arm in ARMS:
+            harness.command(arm, sent_s=harness.now_s - 0.15)
+        harness.pass_time(0.05)
+    harness.pass_time(3.0)
+    stood = harness.newest.tick
+    for late_s in (3.0, 2.0, 1.0, 0.7):
+        for arm in ARMS:
+            harness.command(arm, x_m=0.1, sent_s=harness.now_s - 0.15 - late_s)
+        harness.pass_time(0.05)
+    assert harness.newest.tick == stood
+    assert harness.room.rejected[CommandRejection.WAITED] == 4 * len(ARMS)
+    for arm in ARMS:
+        harness.command(arm, sent_s=harness.now_s - 0.15)
+    harness.pass_time(0.05)
+    assert harness.newest.tick > stood
+    harness.command("arm0", stop=True, sent_s=harness.now_s - 2.0)
+    assert harness.room.rejected[CommandRejection.WAITED] == 4 * len(ARMS) + 1
+    assert harness.status().stop.arm == "arm0"
+
+
 def test_a_reset_voids_what_was_made_from_the_world_before_it(harness: RoomHarness) -> None:
     for arm in ARMS:
         harness.take(arm)

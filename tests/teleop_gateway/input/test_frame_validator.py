@@ -168,3 +168,24 @@ def test_the_clutch_counts_only_while_pressed_and_tracked(steps: list[tuple[bool
         let_go_since_doubt = not doubt and (let_go_since_doubt or not pressed)
         assert hand.clutch == (pressed and let_go_since_doubt)
         assert (Flag.CLUTCH in hand.frame.flags) == pressed
+
+
+@given(
+    st.lists(st.tuples(st.booleans(), st.floats(0.0, 4.0)), max_size=80),
+    st.floats(-1e4, 1e4),
+    st.floats(0.0, 0.4),
+)
+def test_no_frame_that_waited_ever_holds_an_arm(
+    frames: list[tuple[bool, float]], offset_s: float, transit_s: float
+) -> None:
+    """Whatever is held back, for however long, and however the two clocks differ."""
+    validator, sent_s, arrived_s = FrameValidator(EPOCH), 1e5, 0.0
+    for number, (held, late_s) in enumerate([(False, 0.0)] * 90 + frames):
+        sent_s += FRAME_S
+        arrived_s = max(arrived_s, sent_s + transit_s + late_s)  # in order, as a queue delivers them
+        frame = phone_frame(number, sent_us=int((sent_s + offset_s) * 1e6), clutch=held)
+        hand = validator.validate(frame.encode(), arrived_s)
+        if hand is not None and arrived_s - sent_s - transit_s > frame_validator.MAX_WAIT_S + 0.01:
+            # What comes late for two seconds is taken for another clock: the queue of a link is never that long,
+            # because nothing is queued behind 300 bytes.
+            assert not hand.clutch or arrived_s - (1e5 + 91 * FRAME_S + transit_s) > 2.0

@@ -1,9 +1,10 @@
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mart.web.access.connection_table import SILENT_S, ConnectionTable, Peer
+from mart.web.access.connection_table import KEPT_S, SILENT_S, ConnectionTable, Peer
 
 STRANGER, ANA = "10.0.0.66", "10.0.0.1"
 
@@ -59,8 +60,16 @@ def test_a_connection_that_asks_nothing_for_too_long_is_overdue() -> None:
     table.open((ANA, 2), 0.0)
     with table.asking((ANA, 2), lambda: 1000.0):
         assert table.overdue(SILENT_S + 1.0) == [(ANA, 1)]
-    assert table.overdue(1000.0 + SILENT_S) == [(ANA, 1)]
-    assert len(table.overdue(1001.0 + SILENT_S)) == 2
+    assert table.overdue(1001.0 + SILENT_S) == table.overdue(1000.0 + KEPT_S) == [(ANA, 1)]
+    assert len(table.overdue(1001.0 + KEPT_S)) == 2
+
+
+def test_a_request_that_fails_earns_no_patience() -> None:
+    table = ConnectionTable(per_address=4, in_all=7)
+    table.open((ANA, 1), 0.0)
+    with pytest.raises(TimeoutError), table.asking((ANA, 1), lambda: 10.0):
+        raise TimeoutError
+    assert table.overdue(11.0 + SILENT_S) == [(ANA, 1)]
 
 
 @given(

@@ -88,10 +88,28 @@ async def test_an_offer_reaches_the_gateway_and_its_answer_comes_back(enter: Ent
     assert [(made.sdp, made.token) for made in gateway.offers] == [(SDP, told["token"])]
 
 
-async def test_an_offer_without_a_seat_token_is_forbidden(enter: Enter, gateway: Gateway) -> None:
+async def test_a_page_needs_no_token_and_is_told_what_one_would_tell(
+    enter: Enter, gateway: Gateway, app_state: AppState
+) -> None:
+    ana, ben = await seated(enter), await enter("Ben")
+    for person, role in ((ana, Role.BROWSER), (ben, Role.VIEWER)):
+        told = (await person.get(f"{SEAT}/token")).json()
+        answer = (await person.post(f"{SEAT}/offer", json={"sdp": SDP})).json()
+        signed = verify(gateway.offers[-1].token, app_state.secret)
+        assert (signed.role, signed.epoch) == (role, told["epoch"])
+        assert answer == {"sdp": "answer"} | {key: told[key] for key in ("role", "epoch", "ice_servers")}
+
+
+async def test_a_page_at_a_seat_without_a_picture_is_told_at_once(enter: Enter, gateway: Gateway) -> None:
+    answer = await (await enter("Ana")).post(f"{SEAT}/offer", json={"sdp": SDP})
+    assert (answer.status_code, answer.json()["error"]["code"]) == (409, "Conflict")
+    assert gateway.opened == []
+
+
+async def test_an_offer_without_a_seat_token_or_a_visit_is_refused(enter: Enter, gateway: Gateway) -> None:
     ana = await seated(enter)
-    answer = await ana.post(f"{SEAT}/offer", json={"sdp": SDP})
-    assert answer.status_code == 403
+    answer = await (await enter()).post(f"{SEAT}/offer", json={"sdp": SDP})
+    assert answer.status_code == 401
     for token in ("", "garbage", "a.b.c", "x" * 5000):
         assert (await offer(ana, token))[0] == 403
     assert gateway.opened == []

@@ -139,3 +139,12 @@ def test_a_listener_is_taken_over_and_closed() -> None:
     assert listener.fileno() == -1
     assert isinstance(guarded, socket.socket)
     guarded.close()
+
+
+def test_the_second_piece_of_an_answer_waits_for_nothing() -> None:
+    with (
+        listen("127.0.0.1", 0) as listener,
+        socket.create_connection(listener.getsockname()),
+        contextlib.closing(listener.accept()[0]) as accepted,
+    ):
+        assert accepted.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)

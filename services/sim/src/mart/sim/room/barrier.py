@@ -102,14 +102,17 @@ class Barrier:
         self._seats[arm] = _SeatState(operator, epoch, now_s)
         self._driven = {arm: seat for arm, seat in self._seats.items() if seat.driven}
 
-    def offer(self, received: ReceivedCommand, *, in_time: bool = True) -> CommandRejection | None:
+    def offer(
+        self, received: ReceivedCommand, *, too_old: CommandRejection | None = None
+    ) -> CommandRejection | None:
         """Take a command, or return why not; rejections are counted in `rejected`.
 
-        `in_time`: it was made from a state that is new enough. One that is not stops the room all the same.
+        `too_old`: why its age speaks against it. One that is too old stops the room all the same.
         """
-        reason = self._objection(received) or (None if in_time else CommandRejection.OLD_STATE)
-        if reason in (None, CommandRejection.OLD_STATE) and self._presses_stop(received):
+        objection = self._objection(received)
+        if objection is None and self._presses_stop(received):
             self.stop(received.arm, received.at_s)
+        reason = objection or too_old
         if reason is not None:
             self.rejected[reason] += 1
             return reason

@@ -1,12 +1,16 @@
-"""Tell commands that were made from too old a state, and when to say so to people. Pure."""
+"""Tell commands that were made from too old a state or waited on their way, and when to say so to people. Pure."""
 
 from __future__ import annotations
 
-from mart.sim.room.command_validation import ReceivedCommand
+from mart.runtime.queueing_delay import QueueingDelay
+from mart.sim.room.command_validation import CommandRejection, ReceivedCommand
 
 MAX_AGE_S = 1.0  # simulated; and at least so many ticks:
 MIN_AGE_TICKS = 5
 TELL_EVERY_S = 10.0
+MAX_WAIT_S = (
+    0.5  # beyond the quickest of the last seconds: while a link is broken the world stands, and no state ages
+)
 
 
 class CommandAge:
@@ -16,18 +20,32 @@ class CommandAge:
         self.limit_ticks = max(MIN_AGE_TICKS, round(MAX_AGE_S * control_hz))
         self._reset_tick = 0
         self._told_s: dict[str, float] = {}  # by arm
+        self._delays: dict[str, tuple[int, QueueingDelay]] = {}  # by arm, of the epoch heard last
 
     def world_reset(self, tick: int) -> None:
         """Take the tick of the state after a reset: what was made from earlier ones is void."""
         self._reset_tick = tick
 
-    def allows(self, received: ReceivedCommand, tick: int) -> bool:
-        """Tell whether the command was made from a state of this world that is new enough, or does not say from which.
+    def objection(self, received: ReceivedCommand, tick: int) -> CommandRejection | None:
+        """Tell what speaks against a command for its age; None where nothing does, or it does not tell its age.
 
         A tick that has not been is one of an earlier run of the sim.
         """
         made_from = received.command.state_tick
-        return made_from == 0 or max(self._reset_tick, tick - self.limit_ticks) <= made_from <= tick
+        waited_s = self._waited_s(received)
+        if made_from and not max(self._reset_tick, tick - self.limit_ticks) <= made_from <= tick:
+            return CommandRejection.OLD_STATE
+        return CommandRejection.WAITED if waited_s > MAX_WAIT_S else None
+
+    def _waited_s(self, received: ReceivedCommand) -> float:
+        sent_ns = received.command.stamps.sent_ns
+        if not sent_ns:
+            return 0.0
+        epoch, delay = self._delays.get(received.arm, (received.seat_epoch, QueueingDelay()))
+        if epoch != received.seat_epoch:
+            delay = QueueingDelay()  # of another sender, whose clock is its own
+        self._delays[received.arm] = (received.seat_epoch, delay)
+        return delay.waited_s(sent_ns * 1e-9, received.at_wall_ns * 1e-9)
 
     def worth_telling(self, received: ReceivedCommand, tick: int) -> bool:
         """Tell whether people should hear of this refused command: one of the same world, and not again and again."""

@@ -32,6 +32,7 @@ class CommandRejection(StrEnum):
     BAD_NORM = "quaternion not of unit norm"
     OUT_OF_BOUNDS = "out of bounds"
     OLD_STATE = "made from an old state"
+    WAITED = "waited on its way"
 
 
 class CommandRejected(InvalidInput):

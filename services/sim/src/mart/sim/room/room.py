@@ -114,7 +114,7 @@ class Room:
         except CommandRejected as error:
             self._barrier.rejected[error.reason] += 1
             return
-        reason = self._barrier.offer(received, in_time=self._age.allows(received, self._ticker.tick))
+        reason = self._barrier.offer(received, too_old=self._age.objection(received, self._ticker.tick))
         if reason is None:
             self._ticker.aim(received)
         elif reason is CommandRejection.OLD_STATE and self._age.worth_telling(received, self._ticker.tick):

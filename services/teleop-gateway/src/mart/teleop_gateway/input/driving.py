@@ -126,14 +126,15 @@ class Driving:
         if peer is None or hand is None:
             return None
         peer.started = peer.started or Flag.TRACKING in hand.frame.flags
-        peer.grips = peer.grips or _means_its_gripper(hand, peer.last)
+        peer.grips = peer.grips or (not hand.waited and _means_its_gripper(hand, peer.last))
         peer.last = hand
         if source is not self.active or tool is None:
             return None
         sent_ns = _input_sent_ns(hand.frame.sent_us, peer.clock_offset_ns, now_ns)
         hand = peer.last = self._unless_blind(peer.validator, hand, sent_ns, now_s, now_ns)
         target = self.retarget.follow(hand, tool)
-        gripper = target.gripper if peer.grips or self.gripper_told is None else self.gripper
+        follows = peer.grips and not hand.waited
+        gripper = target.gripper if follows or self.gripper_told is None else self.gripper
         self._target = replace(target, gripper=gripper)
         return self._command(hand, self._target, sent_ns, now_ns)
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mart.protocol.pose import Pose
+from mart.runtime.queueing_delay import QueueingDelay
 from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.input.phone_frame import Flag, MalformedFrame, PhoneFrame
 
@@ -24,6 +25,7 @@ GAP_S = 0.2
 JUMP_M = 0.15
 JUMP_RAD = 0.6
 JUMP_WITHIN_S = 0.1
+MAX_WAIT_S = 0.5  # on the way, beyond the quickest frame of the last seconds
 
 
 class FrameRejection(enum.StrEnum):
@@ -60,12 +62,16 @@ class _Rejected(Exception):
 
 @dataclass(frozen=True)
 class HandSample:
-    """Hold a good frame. `clutch`: held, and nothing speaks against it; `let_go`: what speaks against a held one."""
+    """Hold a good frame. `clutch`: held, and nothing speaks against it; `let_go`: what speaks against a held one.
+
+    waited: it comes so late that nothing in it counts but an emergency stop.
+    """
 
     frame: PhoneFrame
     pose_phone_in_session: Pose
     clutch: bool
     let_go: LetGo | None = None
+    waited: bool = False
 
 
 class FrameValidator:
@@ -75,6 +81,7 @@ class FrameValidator:
         self.rejected: Counter[FrameRejection] = Counter()
         self._seat_epoch = seat_epoch
         self._rate = RateLimit(MAX_FRAMES_PER_S)
+        self._delay = QueueingDelay()
         self._last: HandSample | None = None
         self._last_s = -math.inf
         self._let_go: LetGo | None = LetGo.NEW  # until the clutch is open
@@ -118,12 +125,17 @@ class FrameValidator:
     def _accept(self, frame: PhoneFrame, now_s: float) -> HandSample:
         pose = Pose(np.array(frame.position), np.array(frame.quaternion_wxyz))
         pressed = Flag.CLUTCH in frame.flags
-        doubt = self._doubt(frame, pose, now_s)
+        waited = self._delay.waited_s(frame.sent_us * 1e-6, now_s) > MAX_WAIT_S
+        doubt = LetGo.AGE if waited else self._doubt(frame, pose, now_s)
         if doubt is not None:
             self._let_go = self._let_go or doubt
         elif not pressed:
             self._let_go = None
-        hand = HandSample(frame, pose, pressed and not self._let_go, self._let_go if pressed else None)
+        if waited and pressed:
+            self.rejected[FrameRejection.AGE] += 1
+        hand = HandSample(
+            frame, pose, pressed and not self._let_go, self._let_go if pressed else None, waited=waited
+        )
         self._last, self._last_s = hand, now_s
         return hand
 

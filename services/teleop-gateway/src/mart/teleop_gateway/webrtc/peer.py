@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections.abc import Sequence
 from typing import Protocol
@@ -14,6 +15,8 @@ from aiortc import (
     RTCRtpSender,
     RTCSessionDescription,
 )
+from aiortc.exceptions import InvalidStateError
+from aiortc.sdp import candidate_from_sdp
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
@@ -30,7 +33,7 @@ from mart.teleop_gateway.webrtc.aiortc_hooks import (
     sent_codec,
     show_at_once,
 )
-from mart.teleop_gateway.webrtc.ice_candidates import bounded_candidates
+from mart.teleop_gateway.webrtc.ice_candidates import NamedCandidate, bounded_candidates
 from mart.teleop_gateway.webrtc.track import EncodedTrack
 
 _log = logging.getLogger(__name__)
@@ -73,6 +76,7 @@ class Peer:
         self._listener = listener
         self._status_rate = RateLimit(MAX_STATUS_PER_S)
         self._status: RTCDataChannel | None = None
+        self._looking_up: asyncio.Task[None] | None = None
         # An empty list, or aiortc asks a public STUN server and waits for it.
         self._connection = RTCPeerConnection(RTCConfiguration([*map(_as_aiortc, ice_servers)]))
         self._connection.on("datachannel", self._on_channel)
@@ -104,19 +108,40 @@ class Peer:
 
     async def close(self) -> None:
         """Return when the connection has ended."""
+        if self._looking_up is not None:
+            self._looking_up.cancel()
         if self.track is not None:
             self.track.stop()
         await close_connection(self._connection)
 
     async def _negotiate(self, offer_sdp: str) -> None:
         sender = self._add_video() if self.role is not Role.PHONE else None
-        offer = RTCSessionDescription(bounded_candidates(offer_sdp), "offer")
+        sdp, named = bounded_candidates(offer_sdp)
+        # The browser knows first that packets come through, so it begins the handshake: a round trip less.
+        sdp = sdp.replace("a=setup:actpass", "a=setup:active")
+        offer = RTCSessionDescription(sdp, "offer")
         await self._connection.setRemoteDescription(offer)
         if self._connection.sctp is not None:
             on_unreadable(self._connection.sctp, self._on_unreadable)
         await self._connection.setLocalDescription(await self._connection.createAnswer())
         if sender is not None:
             self.codec = Codec(sent_codec(self._connection.getTransceivers()[0]))
+        if named:
+            self._looking_up = asyncio.create_task(self._look_up(named))
+
+    async def _look_up(self, named: Sequence[NamedCandidate]) -> None:
+        """Add candidates whose names must be looked up first: the answer is on its way meanwhile."""
+        for one in named:
+            try:
+                candidate = candidate_from_sdp(one.line)
+                candidate.sdpMLineIndex = one.media_index
+                await self._connection.addIceCandidate(candidate)
+            except (
+                InvalidStateError,
+                ValueError,
+                OSError,
+            ) as error:  # closed meanwhile, no multicast here, garbage
+                _log.debug("A candidate with a name is left out: %s", error)
 
     def _add_video(self) -> RTCRtpSender:
         self.track = EncodedTrack(self._want_keyframe)
@@ -134,8 +159,9 @@ class Peer:
             self._listener.on_keyframe_wanted(self.codec)
 
     def _on_channel(self, channel: RTCDataChannel) -> None:
-        if channel.label == "pose" and self.role is not Role.VIEWER:
-            channel.on("message", self._on_pose)
+        if channel.label == "pose":
+            if self.role is not Role.VIEWER:  # a page opens it before it knows whether it drives
+                channel.on("message", self._on_pose)
         elif channel.label == "status":
             self._status = channel
             channel.on("message", self._on_status)

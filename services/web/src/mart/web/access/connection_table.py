@@ -12,7 +12,10 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 
-SILENT_S = 15.0  # from a connection's begin, or its last answer, to the next whole head of a request
+SILENT_S = 15.0  # from a connection's begin to its first whole head of a request
+KEPT_S = (
+    180.0  # from its last answer to the next one: a new connection costs two round trips before it can ask
+)
 _SITE_BITS = 64  # of an IPv6 address: whoever has one has all that begin like it
 
 Peer = tuple[str, int]  # address and port of the other end: what tells open connections apart
@@ -24,6 +27,10 @@ class _OpenConnection:
     silent_since_s: float
     has_asked: bool = False
     requests: int = 0  # being answered now
+
+    @property
+    def patience_s(self) -> float:
+        return KEPT_S if self.has_asked else SILENT_S
 
 
 class ConnectionTable:
@@ -65,7 +72,7 @@ class ConnectionTable:
 
     @contextlib.contextmanager
     def asking(self, peer: Peer, clock_s: Callable[[], float]) -> Iterator[None]:
-        """Count a request of a connection as long as the block runs."""
+        """Count a request of a connection as long as the block runs; one that fails earns it no patience."""
         connection = self._open.get(peer)
         if connection is None:
             yield
@@ -74,6 +81,9 @@ class ConnectionTable:
         connection.has_asked = True
         try:
             yield
+        except BaseException:
+            connection.has_asked = False
+            raise
         finally:
             connection.requests -= 1
             connection.silent_since_s = clock_s()
@@ -83,7 +93,7 @@ class ConnectionTable:
         return [
             peer
             for peer, connection in self._open.items()
-            if not connection.requests and now_s - connection.silent_since_s > SILENT_S
+            if not connection.requests and now_s - connection.silent_since_s > connection.patience_s
         ]
 
     def _dispensable(self, new: Peer, site: str | None) -> Peer:

@@ -12,22 +12,25 @@ from pydantic import BaseModel, Field
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, Forbidden
 from mart.protocol.holders import is_held_by
-from mart.protocol.messages import OPERATOR_HOLD, Seat
+from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, OPERATOR_POLICY, Seat
 from mart.protocol.queryables import MAX_SDP_CHARACTERS
 from mart.protocol.tokens import Role, SeatToken, sign, verify
 from mart.web.access.pairing_codes import LIFETIME_S, PairingGrant
 from mart.web.access.site_names import host_name, in_url, is_loopback
 from mart.web.access.user_sessions import User
 from mart.web.api.app_state import AppState
-from mart.web.api.dependencies import Address, App, JoinedUser, now_unix_s
+from mart.web.api.dependencies import Address, App, JoinedUser, MaybeUser, now_unix_s
 from mart.web.api.texts import Word
+from mart.web.errors import NotJoined
 from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api")
 
 Authorization = Annotated[str, Header()]
+MaybeAuthorization = Annotated[str | None, Header()]
 
 _BROWSER_TOKEN_S = 300.0  # a page asks for a new one whenever it connects
+_SEEN_OPERATORS = (OPERATOR_HUMAN, OPERATOR_POLICY)  # whose seats gateways draw
 _PHONE_TOKEN_S = 12 * 3600.0  # however often it is renewed
 _UNREACHABLE = (
     "This service listens on this computer alone, so a phone cannot reach it. Start it with --host 0.0.0.0, or tell "
@@ -50,12 +53,8 @@ class SdpOffer(BaseModel):
 @router.get("/rooms/{room}/seats/{arm}/token")
 async def token(room: str, arm: str, app: App, user: JoinedUser) -> Json:
     """Send a token for a seat: its holder's drives, anybody else's watches."""
-    seat = _seat(app, room, arm)
-    role = Role.BROWSER if is_held_by(seat, user.holder_id) else Role.VIEWER
-    signed = _sign(
-        app, SeatToken(room, arm, seat.epoch, role, user.holder_id, now_unix_s() + _BROWSER_TOKEN_S)
-    )
-    return {"token": signed, "role": role.value, "epoch": seat.epoch, "ice_servers": _ice_servers(app)}
+    claims = _page_claims(app, room, arm, user)
+    return {"token": _sign(app, claims), **_told_with(app, claims)}
 
 
 @router.post("/rooms/{room}/seats/{arm}/pair")
@@ -114,17 +113,48 @@ async def phone_token(room: str, arm: str, app: App, authorization: Authorizatio
 
 @router.post("/rooms/{room}/seats/{arm}/offer")
 async def offer(
-    room: str, arm: str, body: SdpOffer, *, app: App, address: Address, authorization: Authorization = ""
+    room: str,
+    arm: str,
+    body: SdpOffer,
+    *,
+    app: App,
+    user: MaybeUser,
+    address: Address,
+    authorization: MaybeAuthorization = None,
 ) -> Json:
-    """Have the seat's gateway answer an offer and send the answer."""
-    seat_token = claims_of(app, room, arm, authorization)
-    if seat_token.epoch != _seat(app, room, arm).epoch:
-        raise Forbidden(
-            "This seat has changed hands since you got your token; take a seat in the lobby again."
-        )
-    app.offers.spend(f"{seat_token.holder_id} {seat_token.role}", clock.monotonic_s())
+    """Have the seat's gateway answer an offer and send the answer.
+
+    A page of somebody who has joined needs no token: one round trip less, and it is told what a token would tell.
+    """
+    if authorization is None:
+        if user is None:
+            raise NotJoined
+        claims = _page_claims(app, room, arm, user)
+        token, told = _sign(app, claims), _told_with(app, claims)
+        if _seat(app, room, arm).operator not in _SEEN_OPERATORS:
+            raise Conflict(
+                f"Nobody drives {arm} in {room} whose picture could be shown; take the seat first."
+            )
+    else:
+        claims, token, told = claims_of(app, room, arm, authorization), _bearer(authorization), {}
+        if claims.epoch != _seat(app, room, arm).epoch:
+            raise Forbidden(
+                "This seat has changed hands since you got your token; take a seat in the lobby again."
+            )
+    app.offers.spend(f"{claims.holder_id} {claims.role}", clock.monotonic_s())
     app.offers_from_address.spend(address, clock.monotonic_s())
-    return {"sdp": await app.gateways.answer_offer(seat_token, _bearer(authorization), body.sdp)}
+    return {"sdp": await app.gateways.answer_offer(claims, token, body.sdp), **told}
+
+
+def _page_claims(app: AppState, room: str, arm: str, user: User) -> SeatToken:
+    """Return what a page of this user may do at a seat: its holder's drives, anybody else's watches."""
+    seat = _seat(app, room, arm)
+    role = Role.BROWSER if is_held_by(seat, user.holder_id) else Role.VIEWER
+    return SeatToken(room, arm, seat.epoch, role, user.holder_id, now_unix_s() + _BROWSER_TOKEN_S)
+
+
+def _told_with(app: AppState, claims: SeatToken) -> Json:
+    return {"role": claims.role.value, "epoch": claims.epoch, "ice_servers": _ice_servers(app)}
 
 
 def _ice_servers(app: AppState) -> list[dict[str, str]]:

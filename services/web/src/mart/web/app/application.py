@@ -7,7 +7,6 @@ import logging
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
-from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
 
 from mart.protocol.errors import InvalidInput, MartError, NotFound
@@ -26,7 +25,6 @@ def create_app(state: AppState) -> FastAPI:
     app.add_middleware(SecurityMiddleware, site=state.site)
     for module in (auth, rooms, phones, signaling, live, health, episodes, datasets, training, pages):
         app.include_router(module.router)
-    app.mount("/static", StaticFiles(directory=pages.STATIC))
     app.add_exception_handler(MartError, _on_mart_error)
     app.add_exception_handler(RequestValidationError, _on_bad_body)
     app.add_exception_handler(HTTPException, _on_http_error)
@@ -52,7 +50,7 @@ async def _on_bad_body(_request: Request, error: Exception) -> Response:
 async def _on_http_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     if error.status_code == 404 and not request.url.path.startswith("/api/"):
-        return pages.page("not-found", 404)
+        return pages.page("not-found", request, 404)
     kind = NotFound if error.status_code == 404 else InvalidInput
     sentence = (
         f"{request.method} {request.url.path} is not part of this API (docs/protocol.md): {error.detail}."

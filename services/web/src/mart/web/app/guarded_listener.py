@@ -102,11 +102,11 @@ class ConnectionMiddleware:
             async with asyncio.timeout(TAKEN_WITHIN_S):
                 await send(message)
 
-        with self._table.asking((address, port), clock.monotonic_s):
-            try:
+        try:
+            with self._table.asking((address, port), clock.monotonic_s):
                 await self._app(scope, receive, send_in_time if scope["type"] == "http" else send)
-            except TimeoutError:
-                _log.info("%s takes nothing of its answer; the connection is ended", address)
+        except TimeoutError:
+            _log.info("%s takes nothing of its answer; the connection is ended", address)
 
 
 def raise_file_limit() -> int:

@@ -96,13 +96,14 @@ async def _refuse(error: MartError, scope: Scope, receive: Receive, send: Send) 
 
 
 def _with_headers(scope: Scope, send: Send) -> Send:
+    """Set the headers of every answer; what says how long it may be kept keeps its word."""
     caching = "no-store" if scope["path"].startswith("/api/") else "no-cache"
 
     async def send_with_headers(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
             headers.update(_HEADERS)
-            headers["Cache-Control"] = caching
+            headers.setdefault("Cache-Control", caching)
         await send(message)
 
     return send_with_headers

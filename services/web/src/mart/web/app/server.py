@@ -16,7 +16,7 @@ from mart.protocol.errors import Unavailable
 from mart.runtime.secret_file import load_or_create_secret
 from mart.runtime.service import AsyncService, announced
 from mart.web.access.certificate import ensure_certificate
-from mart.web.access.connection_table import ConnectionTable
+from mart.web.access.connection_table import KEPT_S, ConnectionTable
 from mart.web.access.join_code import digest_of
 from mart.web.access.site_names import SiteNames
 from mart.web.access.user_sessions import UserSessions
@@ -47,11 +47,15 @@ def listen(host: str, port: int) -> socket.socket:
     """
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
-        return socket.create_server((host, port), family=family)
+        listener = socket.create_server((host, port), family=family)
     except OSError as error:
         raise Unavailable(
             f"Could not listen at {host} port {port}: {error.strerror}. Choose another with --host or --port."
         ) from error
+    # What it accepts inherits this. Without it the second piece of an answer waits for word that the first arrived, a
+    # round trip; asyncio sets it for sockets that say they are TCP's, which one made by family and type alone does not.
+    listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return listener
 
 
 async def serve(
@@ -127,6 +131,7 @@ def _configured(
         ws="websockets-sansio",
         ws_max_size=MAX_BODY_BYTES,
         timeout_graceful_shutdown=_STOP_S,
+        timeout_keep_alive=int(KEPT_S),
     )
     config.load()
     assert config.ssl is not None

@@ -73,6 +73,13 @@ export const leave = () => request("DELETE", "/me");
 /** How every part does. @type {() => Promise<{ findings: Api.Finding[] }>} */
 export const findings = () => request("GET", "/health/findings");
 
+/** Whether the site can be reached now. @type {(withinMs: number) => Promise<boolean>} */
+export const siteAnswers = (withinMs) =>
+  fetch("/api/health", { signal: AbortSignal.timeout(withinMs) }).then(
+    () => true,
+    () => false,
+  );
+
 // Rooms
 
 /** @type {(room: string) => string} */
@@ -154,7 +161,13 @@ export const phoneToken = (room, arm, token) =>
   request("GET", `${seatPath(room, arm)}/phone-token`, undefined, bearer(token));
 
 /**
- * Hands a WebRTC offer to the seat's gateway; the answer is the gateway's.
+ * Hands a page's WebRTC offer to the seat's gateway; the answer is the gateway's, with what one may do there.
+ * @type {(room: string, arm: string, sdp: string) => Promise<Omit<Api.SeatToken, "token"> & { sdp: string }>}
+ */
+export const offer = (room, arm, sdp) => request("POST", `${seatPath(room, arm)}/offer`, { sdp });
+
+/**
+ * Hands a phone's WebRTC offer to the seat's gateway; the answer is the gateway's.
  * @type {(room: string, arm: string, token: string, sdp: string) => Promise<{ sdp: string }>}
  */
 export const sendOffer = (room, arm, token, sdp) =>

@@ -5,6 +5,7 @@ import { byId, element, setText } from "./dom.js";
 import { plural } from "./formatting.js";
 import { CONTROL_RATES_HZ, MAX_NAME_LENGTH, MAX_PLANNED_EPISODES } from "./facts.js";
 import { finalName, nameFrom } from "./names.js";
+import { taskPicture } from "./task-picture.js";
 
 /**
  * Fills the card `new-room` with a form.
@@ -33,7 +34,7 @@ export function newRoom(tasks) {
   function show() {
     const chosen = tasks.find((one) => one.name === task.value);
     if (!chosen) return;
-    picture.src = `/static/tasks/${chosen.name}.jpg`;
+    picture.src = taskPicture(chosen.name);
     setText(about, chosen.instruction);
     const counts = chosen.arm_counts.map((count) => element("option", { value: count }, plural(count, "arm")));
     arms.replaceChildren(...counts);

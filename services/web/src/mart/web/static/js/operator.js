@@ -14,6 +14,7 @@ import { showHealth } from "./hud/health-figure.js";
 import { showPartners } from "./hud/partners.js";
 import { showPicture } from "./hud/picture.js";
 import { StatusBar } from "./hud/status-bar.js";
+import { approachAsPage } from "./link/page-approach.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
@@ -39,6 +40,7 @@ let status = null;
 let noticeTimer = 0;
 let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
+let pictured = false; // by the present connection: its picture comes a round trip before its first word
 let displayedMs = -Infinity; // when a newer picture was last displayed
 
 const confirm = new Confirm(() => render());
@@ -46,9 +48,9 @@ const statusBar = new StatusBar((command) => press(command));
 const panel = new InputPanel(roomName, armId, (error) => notice(api.messageOf(error)));
 const input = new KeyboardMouseInput(byId("picture"), onKey);
 const link = new SeatLink({
-  fetchToken: async () => ({ room: roomName, arm: armId, ...(await api.seatToken(roomName, armId)) }),
+  approach: () => approachAsPage(roomName, armId),
   wantsVideo: true,
-  onState: () => render(),
+  onState: onLinkState,
   onStatus,
   onTrack: (stream) => (video.srcObject = stream),
 });
@@ -81,7 +83,10 @@ function begin() {
   });
   byId("emergency").append(stop.node);
   byId("health").addEventListener("toggle", () => render());
-  video.addEventListener("resize", () => render());
+  video.addEventListener("resize", () => {
+    pictured = true;
+    render();
+  });
   document.addEventListener("click", letGoOfButton);
   document.addEventListener("keydown", letGoOnEscape);
   watchTicks(video, (tick, nowMs) => {
@@ -92,6 +97,7 @@ function begin() {
   setInterval(render, AGE_MS); // what grows old says so without any news
   input.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));
   followRooms({ onRooms, onEvent, onEnded: toLobby });
+  link.connect(); // the seat's picture is wanted in nearly all cases: what the rooms say comes three round trips later
 }
 
 /**
@@ -128,7 +134,9 @@ function onRooms(rooms) {
  */
 function follow(seat) {
   if (!seat || seat.epoch === followed) return;
+  const isFirst = followed === 0;
   followed = seat.epoch;
+  if (hasPicture(seat) && isFirst && link.mayBeFor(seat.epoch)) return;
   status = null;
   if (hasPicture(seat)) link.connect();
   else link.close();
@@ -139,6 +147,11 @@ function onEvent(event) {
   if (event.room !== roomName) return;
   if (event.kind === "cue_given") cues.onGiven(event, room);
   if (event.kind === "notice") notice(inPlainWords(event.text));
+  render();
+}
+
+function onLinkState() {
+  if (link.state === LinkState.CONNECTING) pictured = false;
   render();
 }
 
@@ -170,7 +183,7 @@ function render() {
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
   if (room) showRoom({ ...room, stale: !told });
-  showPicture(seat, status, link.state === LinkState.LIVE);
+  showPicture(seat, status, link.state === LinkState.LIVE || (link.state === LinkState.CONNECTING && pictured));
   showHolder(mine);
 }
 

@@ -1,6 +1,6 @@
 // The phone: a hand that is usable without looking.
 
-import { actByPhone, letGoByPhone, messageOf, phoneToken, redeemPairing, stopByPhone } from "./api.js";
+import { actByPhone, letGoByPhone, messageOf, phoneToken, redeemPairing, sendOffer, stopByPhone } from "./api.js";
 import { armName, theArm } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
@@ -103,11 +103,16 @@ async function takePairing() {
 /** @param {Api.PairedPhone} pairing */
 function connect(pairing) {
   const link = new SeatLink({
-    fetchToken: async () => {
-      const renewed = await phoneToken(pairing.room, pairing.arm, pairing.token);
-      if (renewed.epoch !== link.epoch) status = null; // somebody else drove meanwhile: the gripper is as they left it
+    approach: async () => {
+      const { room, arm: seat } = pairing;
+      const renewed = await phoneToken(room, seat, pairing.token);
+      const { token, epoch, ice_servers: iceServers } = renewed;
+      if (epoch !== link.epoch) status = null; // somebody else drove meanwhile: the gripper is as they left it
       paired = { ...pairing, ...renewed };
-      return paired;
+      return {
+        iceServers,
+        exchange: async (sdp) => ({ ...(await sendOffer(room, seat, token, sdp)), role: "phone", epoch }),
+      };
     },
     wantsVideo: false,
     onState: () => onLinkState(link),

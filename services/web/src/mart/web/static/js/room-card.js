@@ -6,6 +6,7 @@ import { element, keepChildren, setShown, setText } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { phaseText, plural, planText, waitingText } from "./formatting.js";
 import { machineSelect } from "./machine-select.js";
+import { taskPicture } from "./task-picture.js";
 
 /** @import { Attempt } from "./api.js" */
 /** @import { Part } from "./dom.js" */
@@ -81,7 +82,7 @@ function scenePicture() {
   const node = element("img", { class: "scene", alt: "", width: 384, height: 288 });
   let shown = { room: "", task: "", still: 0 };
   node.addEventListener("error", () => {
-    if (shown.still) node.src = sceneOf(shown.task); // nobody looks any more
+    if (shown.still) node.src = taskPicture(shown.task); // nobody looks any more
     else node.remove(); // a newer sim's task
   });
 
@@ -89,15 +90,12 @@ function scenePicture() {
   function update({ room, task, title, still }) {
     if (shown.room === room && shown.task === task && shown.still === still) return;
     shown = { room, task, still };
-    node.src = still ? `/api/rooms/${room}/still?number=${still}` : sceneOf(task);
+    node.src = still ? `/api/rooms/${room}/still?number=${still}` : taskPicture(task);
     node.alt = still ? `${title} in ${room}, now` : "";
   }
 
   return { node, update };
 }
-
-/** @type {(task: string) => string} */
-const sceneOf = (task) => `/static/tasks/${task}.jpg`;
 
 /**
  * For a room that nobody needs: pressed twice, and only while it is empty.

@@ -6,7 +6,7 @@
  * @param {(nowMs: number) => void} onTick
  */
 export function everyFrame(onTick) {
-  const worker = new Worker("/static/js/drive/ticker-worker.js");
+  const worker = new Worker(new URL("./ticker-worker.js", import.meta.url));
   worker.addEventListener("message", () => onTick(performance.now()));
   return () => worker.terminate();
 }

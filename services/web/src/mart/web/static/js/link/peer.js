@@ -3,17 +3,17 @@
 /**
  * @typedef {object} PeerOptions
  * @property {boolean} wantsVideo
- * @property {boolean} drives frames are sent
  * @property {RTCIceServer[]} iceServers STUN and TURN servers; none on one network
  * @property {(sdp: string) => Promise<string>} exchange takes the offer to the gateway and returns its answer
  * @property {(stream: MediaStream) => void} onTrack
+ * @property {() => void} onOpen messages can be sent from now on
  * @property {(message: StatusChannel.FromGateway) => void} onMessage
  * @property {() => void} onClosed
  */
 
 const CHANNEL = { ordered: false, maxRetransmits: 0 };
 const GATHERING_MS = 1000;
-const MOST_BUFFERED_BYTES = 4096; // what waits longer is older than what comes next
+const MOST_BUFFERED_BYTES = 300; // five frames: what waits longer is older than what comes next
 
 /** A connection, from its making until `close`. */
 export class Peer {
@@ -34,20 +34,19 @@ export class Peer {
 
   #connection;
   #status;
-  /** @type {RTCDataChannel | null} */
-  #pose = null;
+  #pose; // of a viewer nobody listens to it: whether it drives is known only when the offer is answered
 
   /** @param {RTCIceServer[]} iceServers */
   constructor(iceServers) {
     this.#connection = new RTCPeerConnection({ iceServers });
     this.#status = this.#connection.createDataChannel("status", CHANNEL);
+    this.#pose = this.#connection.createDataChannel("pose", CHANNEL);
   }
 
   /** @param {PeerOptions} options */
-  async #connect({ wantsVideo, drives, exchange, onTrack, onMessage, onClosed }) {
+  async #connect({ wantsVideo, exchange, onTrack, onOpen, onMessage, onClosed }) {
     const connection = this.#connection;
     this.#status.addEventListener("message", ({ data }) => onMessage(JSON.parse(data)));
-    if (drives) this.#pose = connection.createDataChannel("pose", CHANNEL);
     if (wantsVideo) {
       receiveVideo(connection);
       connection.addEventListener("track", ({ track }) => onTrack(new MediaStream([track])));
@@ -55,6 +54,7 @@ export class Peer {
     connection.addEventListener("connectionstatechange", () => {
       if (["failed", "closed"].includes(connection.connectionState)) onClosed();
     });
+    this.#status.addEventListener("open", onOpen);
     await connection.setLocalDescription();
     await gathered(connection);
     const sdp = await exchange(connection.localDescription?.sdp ?? "");
@@ -75,7 +75,7 @@ export class Peer {
    */
   sendFrame(frame) {
     const channel = this.#pose;
-    if (channel?.readyState === "open" && channel.bufferedAmount < MOST_BUFFERED_BYTES) channel.send(frame);
+    if (channel.readyState === "open" && channel.bufferedAmount < MOST_BUFFERED_BYTES) channel.send(frame);
   }
 
   /** Ends the connection. */

@@ -1,11 +1,13 @@
 // A page's lasting connection to its seat: connects, watches the gateway's heartbeat, connects again when it is lost.
 
-import { messageOf, sendOffer, statusOf } from "../api.js";
+import { messageOf, siteAnswers, statusOf } from "../api.js";
 import { ClockOffset } from "./clock-offset.js";
 import { Peer } from "./peer.js";
 
 const SILENT_MS = 250; // the gateway speaks 20 times a second
 const LOST_MS = 1500; // a hiccup is not worth a new connection
+const PATIENCE_MS = 6000; // nor is an outage: the old one is back at its end, a new one takes seven round trips
+const LAST_WORD_MS = 300;
 const WATCH_MS = 50;
 const PING_MS = 1000;
 const CONNECT_MS = 15000;
@@ -25,20 +27,25 @@ export const LinkState = Object.freeze({
 /** @typedef {(typeof LinkState)[keyof typeof LinkState]} State */
 
 /**
- * What a gateway is told to let this page in, and where it is.
- * @typedef {Api.SeatToken & { room: string, arm: string }} Ticket
+ * How a gateway is reached: `exchange` hands it the offer, and tells what one may do there.
+ * @typedef {object} Approach
+ * @property {RTCIceServer[]} iceServers
+ * @property {(sdp: string) => Promise<{ sdp: string, role: Api.PeerRole, epoch: number }>} exchange
  */
 
 /**
  * @typedef {object} LinkOptions
- * @property {() => Promise<Ticket>} fetchToken
+ * @property {() => Promise<Approach>} approach called for every connection
  * @property {boolean} wantsVideo
  * @property {() => void} onState
  * @property {(status: StatusChannel.Tick) => void} onStatus
  * @property {(stream: MediaStream) => void} [onTrack]
  */
 
-/** Keeps a page connected to a seat. `problem`: why it does not connect, in words; `epoch`, `role`: the token's. */
+/**
+ * Keeps a page connected to a seat. `problem`: why it does not connect, in words; `epoch`, `role`: whose seat it is and
+ * what one may do there.
+ */
 export class SeatLink {
   /** @type {State} */
   state = LinkState.CONNECTING;
@@ -54,19 +61,25 @@ export class SeatLink {
   #retryMs = FIRST_RETRY_MS;
   #attempt = 0; // an older attempt's late answers are not heard
   #retry = 0;
+  #asking = false; // whether the site is there
   #closed = true;
 
   /** @param {LinkOptions} options */
   constructor(options) {
     this.#options = options;
     setInterval(() => this.#watch(performance.now()), WATCH_MS);
-    setInterval(() => this.send({ type: "ping", t_us: nowUs() }), PING_MS);
+    setInterval(() => this.#ping(), PING_MS);
   }
 
   /** Connects, anew where it is connected already, and from then on whenever the connection is lost. */
   connect() {
     this.#closed = false;
     this.#connect();
+  }
+
+  /** Whether it is, or may become, a connection of this seat epoch. @param {number} epoch */
+  mayBeFor(epoch) {
+    return !this.#closed && (this.epoch === 0 || this.epoch === epoch);
   }
 
   /**
@@ -100,16 +113,13 @@ export class SeatLink {
     const attempt = this.#attempt;
     this.#clock = new ClockOffset();
     this.#setState(LinkState.CONNECTING);
-    this.#heardMs = performance.now() + CONNECT_MS - LOST_MS;
+    this.#heardMs = performance.now() + CONNECT_MS - PATIENCE_MS;
     try {
-      const ticket = await this.#options.fetchToken();
-      const peer = await this.#reach(ticket, attempt);
+      const peer = await this.#reach(await this.#options.approach(), attempt);
       if (attempt !== this.#attempt) {
         peer.close();
         return;
       }
-      this.epoch = ticket.epoch;
-      this.role = ticket.role;
       this.problem = "";
       this.#peer = peer;
       this.#options.onState();
@@ -122,17 +132,21 @@ export class SeatLink {
   }
 
   /**
-   * @param {Ticket} ticket
+   * @param {Approach} approach
    * @param {number} attempt
    */
-  #reach({ room, arm, token, role, ice_servers: iceServers }, attempt) {
+  #reach({ iceServers, exchange }, attempt) {
     const { wantsVideo, onTrack = () => {} } = this.#options;
     return Peer.connect({
       wantsVideo,
-      drives: role !== "viewer",
       iceServers,
-      exchange: async (sdp) => (await sendOffer(room, arm, token, sdp)).sdp,
+      exchange: async (offer) => {
+        const { sdp, role, epoch } = await exchange(offer);
+        if (attempt === this.#attempt) [this.role, this.epoch] = [role, epoch];
+        return sdp;
+      },
       onTrack,
+      onOpen: () => attempt === this.#attempt && this.#ping(),
       onMessage: (message) => attempt === this.#attempt && this.#onMessage(message),
       onClosed: () => attempt === this.#attempt && this.#lose(),
     });
@@ -154,12 +168,30 @@ export class SeatLink {
     }
   }
 
+  #ping() {
+    this.#peer?.send({ type: "ping", t_us: nowUs() });
+  }
+
   /** @param {number} nowMs */
   #watch(nowMs) {
     if (this.#closed || !this.#heardMs) return;
     const silentMs = nowMs - this.#heardMs;
     if (this.state === LinkState.LIVE && silentMs > SILENT_MS) this.#setState(LinkState.SILENT);
-    if (silentMs > LOST_MS) this.#lose();
+    if (silentMs > PATIENCE_MS) this.#lose();
+    else if (this.state === LinkState.SILENT && silentMs > LOST_MS) void this.#askSite();
+  }
+
+  /** A site that answers while the seat is silent: it is not the network that is gone, and waiting would not help. */
+  async #askSite() {
+    if (this.#asking) return;
+    this.#asking = true;
+    const [attempt, heardMs] = [this.#attempt, this.#heardMs];
+    const answers = await siteAnswers(PATIENCE_MS);
+    await new Promise((resolve) => {
+      setTimeout(resolve, LAST_WORD_MS);
+    });
+    this.#asking = false;
+    if (answers && attempt === this.#attempt && heardMs === this.#heardMs) this.#lose();
   }
 
   #lose() {
