@@ -29,6 +29,11 @@ declare namespace Api {
     mend: string;
   }
 
+  interface ServerTime {
+    unix_s: number;
+    certificate_days: number | null;
+  }
+
   // Rooms
 
   interface Seat {

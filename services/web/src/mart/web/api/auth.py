@@ -9,10 +9,17 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel
 
 from mart.protocol import clock
-from mart.protocol.errors import Forbidden, MartError
-from mart.web.access.join_code import check_join_code
+from mart.protocol.errors import MartError
 from mart.web.access.user_sessions import SESSION_S, User
-from mart.web.api.dependencies import COOKIE, Address, App, JoinedUser, MaybeUser, now_unix_s
+from mart.web.api.dependencies import (
+    COOKIE,
+    Address,
+    App,
+    JoinedUser,
+    MaybeUser,
+    now_unix_s,
+    require_join_code,
+)
 
 router = APIRouter(prefix="/api")
 
@@ -33,11 +40,7 @@ async def join(body: JoinRequest, response: Response, app: App, known: MaybeUser
     """
     if known is None:
         await asyncio.sleep(app.wrong_codes.delay_s(address, clock.monotonic_s()))
-    try:
-        check_join_code(body.code, app.join_code)
-    except Forbidden:
-        app.wrong_codes.count(address, clock.monotonic_s())
-        raise
+    require_join_code(app, body.code, address)
     if known is None:
         app.joins.spend(address, clock.monotonic_s())
     session_id, user = app.user_sessions.join(body.name, now_unix_s(), known)

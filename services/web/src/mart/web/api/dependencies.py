@@ -9,6 +9,8 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from mart.protocol import clock
+from mart.protocol.errors import Forbidden
+from mart.web.access.join_code import check_join_code
 from mart.web.access.user_sessions import User
 from mart.web.api.app_state import AppState
 from mart.web.errors import NotJoined
@@ -67,6 +69,15 @@ async def writing_user(user: Annotated[User, Depends(browsing_user)], app: App) 
 async def address_of(connection: HTTPConnection) -> str:
     """Return the network address that a request comes from."""
     return connection.client.host if connection.client else "unknown"
+
+
+def require_join_code(app: AppState, given: str, address: str) -> None:
+    """Raise Forbidden, and count it for `address`, where the join code is not right."""
+    try:
+        check_join_code(given, app.join_code)
+    except Forbidden:
+        app.wrong_codes.count(address, clock.monotonic_s())
+        raise
 
 
 JoinedUser = Annotated[User, Depends(joined_user)]

@@ -42,6 +42,12 @@ async def health() -> FileResponse:
     return page("health")
 
 
+@router.get("/check", include_in_schema=False)
+async def check() -> FileResponse:
+    """Send the page that tells whether a device is ready for a session."""
+    return page("check")
+
+
 @router.get("/phone", include_in_schema=False)
 async def phone() -> FileResponse:
     """Send the phone's page."""

@@ -55,7 +55,7 @@ async def token(room: str, arm: str, app: App, user: JoinedUser) -> Json:
     signed = _sign(
         app, SeatToken(room, arm, seat.epoch, role, user.holder_id, now_unix_s() + _BROWSER_TOKEN_S)
     )
-    return {"token": signed, "role": role.value, "epoch": seat.epoch, "ice_servers": _ice_servers(app)}
+    return {"token": signed, "role": role.value, "epoch": seat.epoch, "ice_servers": ice_servers_json(app)}
 
 
 @router.post("/rooms/{room}/seats/{arm}/pair")
@@ -89,7 +89,7 @@ async def redeem(body: PairingRequest, app: App) -> Json:
         "epoch": pairing.epoch,
         "name": pairing.name,
         "role": Role.PHONE.value,
-        "ice_servers": _ice_servers(app),
+        "ice_servers": ice_servers_json(app),
     }
 
 
@@ -109,7 +109,7 @@ async def phone_token(room: str, arm: str, app: App, authorization: Authorizatio
             f"{driver} drives {arm} now; this phone goes on when the person who paired it takes the seat again."
         )
     renewed = _sign(app, replace(paired, epoch=seat.epoch))
-    return {"token": renewed, "epoch": seat.epoch, "ice_servers": _ice_servers(app)}
+    return {"token": renewed, "epoch": seat.epoch, "ice_servers": ice_servers_json(app)}
 
 
 @router.post("/rooms/{room}/seats/{arm}/offer")
@@ -124,21 +124,22 @@ async def offer(
         )
     app.offers.spend(f"{seat_token.holder_id} {seat_token.role}", clock.monotonic_s())
     app.offers_from_address.spend(address, clock.monotonic_s())
-    return {"sdp": await app.gateways.answer_offer(seat_token, _bearer(authorization), body.sdp)}
+    return {"sdp": await app.gateways.answer_offer(seat_token, bearer_of(authorization), body.sdp)}
 
 
-def _ice_servers(app: AppState) -> list[dict[str, str]]:
-    """As a browser's RTCPeerConnection takes them, with credentials that are good for a session."""
+def ice_servers_json(app: AppState) -> list[dict[str, str]]:
+    """Return them as a browser's RTCPeerConnection takes them, with credentials that are good for a session."""
     return [server.as_json() for server in app.ice.ice_servers_at(now_unix_s())]
 
 
-def _bearer(authorization: str) -> str:
+def bearer_of(authorization: str) -> str:
+    """Return the token of an Authorization header; empty where there is none."""
     return authorization.removeprefix("Bearer ")
 
 
 def claims_of(app: AppState, room: str, arm: str, authorization: str) -> SeatToken:
     """Return what the sent token says; raises Forbidden where it is not good for this seat."""
-    claims = verify(_bearer(authorization), app.secret)
+    claims = verify(bearer_of(authorization), app.secret)
     if (claims.room, claims.arm) != (room, arm):
         raise Forbidden(f"This seat token is for {claims.arm} in {claims.room}, not for {arm} in {room}.")
     return claims

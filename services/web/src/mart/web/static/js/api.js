@@ -160,6 +160,30 @@ export const phoneToken = (room, arm, token) =>
 export const sendOffer = (room, arm, token, sdp) =>
   request("POST", `${seatPath(room, arm)}/offer`, { sdp }, bearer(token));
 
+// The check of a device
+
+/** The server's time, and how long its certificate is good. @type {() => Promise<Api.ServerTime>} */
+export const serverTime = () => request("GET", "/check");
+
+/**
+ * Who asks to try the way to the server, where they have no session: by the join code, or by a phone's token.
+ * @typedef {{ code: string, token: string }} Admission
+ */
+
+/**
+ * STUN and TURN servers for trying the way; fails with 401 where nothing admits.
+ * @type {(admission: Admission) => Promise<{ ice_servers: RTCIceServer[] }>}
+ */
+export const checkServers = ({ code, token }) =>
+  request("POST", "/check/servers", { code }, token ? bearer(token) : {});
+
+/**
+ * Hands the offer of a connection that only tries the way to a gateway.
+ * @type {(admission: Admission, sdp: string) => Promise<{ sdp: string }>}
+ */
+export const sendCheckOffer = ({ code, token }, sdp) =>
+  request("POST", "/check/offer", { code, sdp }, token ? bearer(token) : {});
+
 // Recorded episodes
 
 /** @typedef {Promise<{ curated: Messages.CatalogueReplyCurated }>} CurationAnswer */

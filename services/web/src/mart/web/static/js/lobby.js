@@ -38,6 +38,7 @@ start();
 async function start() {
   nameInput.value = localStorage.getItem(NAME_KEY) ?? "";
   codeInput.value = new URLSearchParams(location.hash.slice(1)).get("code") ?? "";
+  byId("check", HTMLAnchorElement).hash = location.hash; // who was given the code need not type it there either
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     submit(event.submitter instanceof HTMLButtonElement && event.submitter.value === "try");
