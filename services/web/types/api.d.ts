@@ -29,6 +29,14 @@ declare namespace Api {
     mend: string;
   }
 
+  interface Invitation {
+    url: string;
+    other_urls: string[];
+    code: string;
+    qr_svg: string;
+    hint: string;
+  }
+
   interface ServerTime {
     unix_s: number;
     certificate_days: number | null;

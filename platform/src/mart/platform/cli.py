@@ -64,6 +64,7 @@ def run(
     as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
+    from mart.platform.run.invitation import in_words, urls_for_others
     from mart.platform.run.plan import (
         PlatformOptions,
         processes,
@@ -84,8 +85,15 @@ def run(
     plan = training_processes(options) if trains else processes(options)
     click.echo("Starting MART …", err=True)
     with stop_requested() as stop, running_platform(options, plan) as platform, opening_rooms(platform):
-        result = {"url": platform.url, "join_code": platform.join_code, "room": room, "task": task}
-        text = f"\n  Lobby      {platform.url}\n  Join code  {platform.join_code}\n\nCtrl-C stops everything."
+        others = urls_for_others(options)
+        result = {
+            "url": platform.url,
+            "urls": others,
+            "join_code": platform.join_code,
+            "room": room,
+            "task": task,
+        }
+        text = in_words(platform.url, platform.join_code, others, with_picture=sys.stdout.isatty())
         print_result(result, text, as_json)
         stop.wait()
         with contextlib.suppress(OSError):  # a terminal that was closed

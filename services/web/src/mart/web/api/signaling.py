@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated
 
-import segno
 from fastapi import APIRouter, Header, Request
 from pydantic import BaseModel, Field
 
@@ -16,10 +15,12 @@ from mart.protocol.messages import OPERATOR_HOLD, Seat
 from mart.protocol.queryables import MAX_SDP_CHARACTERS
 from mart.protocol.tokens import Role, SeatToken, sign, verify
 from mart.web.access.pairing_codes import LIFETIME_S, PairingGrant
-from mart.web.access.site_names import host_name, in_url, is_loopback
+from mart.web.access.site_names import host_name, is_loopback
 from mart.web.access.user_sessions import User
 from mart.web.api.app_state import AppState
 from mart.web.api.dependencies import Address, App, JoinedUser, now_unix_s
+from mart.web.api.invitation import UNREACHABLE
+from mart.web.api.qr_codes import qr_svg
 from mart.web.api.texts import Word
 from mart.web.lobby.room_json import Json
 
@@ -29,10 +30,6 @@ Authorization = Annotated[str, Header()]
 
 _BROWSER_TOKEN_S = 300.0  # a page asks for a new one whenever it connects
 _PHONE_TOKEN_S = 12 * 3600.0  # however often it is renewed
-_UNREACHABLE = (
-    "This service listens on this computer alone, so a phone cannot reach it. Start it with --host 0.0.0.0, or tell "
-    "it with --public-host the name that phones should use."
-)
 
 
 class PairingRequest(BaseModel):
@@ -64,14 +61,14 @@ async def pair(room: str, arm: str, request: Request, app: App, user: JoinedUser
     seat = _own_seat(app, room, arm, user)
     pairing = PairingGrant(room, arm, seat.epoch, user.holder_id, user.name)
     code = app.pairing_codes.issue(pairing, clock.monotonic_s())
-    host = _host_for_phone(request.headers["host"], app.site.lan_host)
+    host = app.site.for_others(request.headers["host"])
     url = f"https://{host}/phone#{code}"
     return {
         "code": code,
         "url": url,
         "expires_s": LIFETIME_S,
-        "qr_svg": segno.make(url, error="m", micro=False).svg_inline(dark="#000", light="#fff", border=3),
-        "hint": _UNREACHABLE if is_loopback(host_name(host)) else "",
+        "qr_svg": qr_svg(url),
+        "hint": UNREACHABLE if is_loopback(host_name(host)) else "",
     }
 
 
@@ -158,10 +155,3 @@ def _own_seat(app: AppState, room: str, arm: str, user: User) -> Seat:
 
 def _sign(app: AppState, token: SeatToken) -> str:
     return sign(token, app.secret)
-
-
-def _host_for_phone(host_header: str, lan_host: str) -> str:
-    name = host_name(host_header)
-    if lan_host and is_loopback(name):
-        return host_header.replace(in_url(name), in_url(lan_host), 1)
-    return host_header

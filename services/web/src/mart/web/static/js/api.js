@@ -160,6 +160,9 @@ export const phoneToken = (room, arm, token) =>
 export const sendOffer = (room, arm, token, sdp) =>
   request("POST", `${seatPath(room, arm)}/offer`, { sdp }, bearer(token));
 
+/** How others come in. @type {() => Promise<Api.Invitation>} */
+export const invitation = () => request("GET", "/invitation");
+
 // The check of a device
 
 /** The server's time, and how long its certificate is good. @type {() => Promise<Api.ServerTime>} */

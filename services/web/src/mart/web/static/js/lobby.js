@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { armName, isFree } from "./arms.js";
 import { byId, element, keepChildren, setShown, setText } from "./dom.js";
+import { offerInvitation } from "./invite.js";
 import { followRooms } from "./live.js";
 import { newRoom } from "./new-room.js";
 import { roomCard } from "./room-card.js";
@@ -44,6 +45,7 @@ async function start() {
     submit(event.submitter instanceof HTMLButtonElement && event.submitter.value === "try");
   });
   tryButton.addEventListener("click", () => attempt(tryIt));
+  offerInvitation();
   byId("leave").addEventListener("click", () => attempt(signOut));
   const person = localStorage.getItem(NAME_KEY) && (await api.me().catch(() => null));
   if (person) enter(person);

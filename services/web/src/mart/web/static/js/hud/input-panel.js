@@ -6,6 +6,7 @@ import { byId, element, setShown, setText } from "../dom.js";
 import { letGoText } from "../drive/let-go.js";
 import { CUES } from "../facts.js";
 import { seconds } from "../formatting.js";
+import { showQrCode } from "../qr-code.js";
 
 /** @import { HandView } from "../drive/keyboard-mouse-input.js" */
 
@@ -89,7 +90,7 @@ export class InputPanel {
     try {
       const { url, qr_svg: svg, expires_s: expiresS, hint } = await pairPhone(this.#room, this.#arm);
       const image = byId("qr", HTMLImageElement);
-      image.src = `data:image/svg+xml,${encodeURIComponent(withNamespace(svg))}`;
+      showQrCode(image, svg);
       image.title = url;
       image.classList.toggle("small", hint !== ""); // a phone could not get there
       setText(byId("pairing-address"), url);
@@ -167,7 +168,3 @@ function phoneText(phone) {
 
 /** @param {string} keys */
 const caps = (keys) => keys.split(" ").flatMap((key) => [element("kbd", {}, key), " "]);
-
-/** @param {string} svg */
-const withNamespace = (svg) =>
-  svg.includes("xmlns=") ? svg : svg.replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"');
