@@ -7,7 +7,7 @@ import contextlib
 from collections.abc import AsyncIterator, Sequence
 
 import pytest
-from zeroconf import AddressResolverIPv4
+from zeroconf import AddressResolverIPv4  # type: ignore[attr-defined]  # not in its __all__
 from zeroconf.asyncio import AsyncZeroconf
 
 from mart.runtime.ports import free_port

@@ -51,6 +51,7 @@ _CONTROL_HZ_OPTION = click.option(
 @click.option(
     "--public-host", default="", help="Name or address that people and phones use, where it isn't --host."
 )
+@click.option("--turn", is_flag=True, help="Also relay for people on other networks; needs coturn.")
 @json_option
 def run(
     *,
@@ -61,6 +62,7 @@ def run(
     host: str,
     port: int,
     public_host: str,
+    turn: bool,
     as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
@@ -72,6 +74,7 @@ def run(
     )
     from mart.platform.run.room_manager import opening_rooms
     from mart.platform.run.running import running_platform
+    from mart.platform.run.turn_server import relay_beside, with_relay
     from mart.protocol.tasks import get_task
     from mart.runtime.service import stop_requested
     from mart.runtime.settings import Settings
@@ -83,6 +86,9 @@ def run(
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)
+    if turn:
+        relay = relay_beside(options)
+        options, plan = with_relay(options, relay), (relay.process, *plan)
     click.echo("Starting MART …", err=True)
     with stop_requested() as stop, running_platform(options, plan) as platform, opening_rooms(platform):
         others = urls_for_others(options)

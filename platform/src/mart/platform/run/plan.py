@@ -19,12 +19,16 @@ DEFAULT_TASK = "two_arm_multi_cube_lifting"
 
 @dataclass(frozen=True)
 class Process:
-    """One `mart …` command; `kind` and `id` name its liveliness token. `awaited`: a session cannot begin without it."""
+    """One `mart …` command; `kind` and `id` name its liveliness token. `awaited`: a session cannot begin without it.
+
+    program: the path of another program than `mart`, which has no token.
+    """
 
     command: tuple[str, ...]
     kind: ServiceKind
     id: str
     awaited: bool = True
+    program: str = ""
 
     @property
     def name(self) -> str:

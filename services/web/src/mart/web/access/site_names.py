@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import ipaddress
 import socket
 from collections.abc import Sequence
 
-import ifaddr
+from mart.runtime.lan_addresses import lan_addresses
 
-_VIRTUAL = ("docker", "br-", "veth", "virbr", "cni")  # networks inside this machine, which come and go
 _EVERY_ADDRESS = ("0.0.0.0", "::")  # noqa: S104  (only when asked for)
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
@@ -67,20 +65,6 @@ def _lan_host(public_names: Sequence[str], listening_at: str) -> str:
 def _host_names() -> tuple[str, ...]:
     host = socket.gethostname()
     return (host, f"{host}.local") if "." not in host else (host,)
-
-
-def lan_addresses() -> tuple[str, ...]:
-    """Return the IPv4 addresses of this machine on its networks, the private ones first."""
-    found = [
-        ipaddress.IPv4Address(address.ip)
-        for adapter in ifaddr.get_adapters()
-        for address in adapter.ips
-        if isinstance(address.ip, str) and not adapter.name.startswith(_VIRTUAL)
-    ]
-    usable = {address for address in found if not (address.is_loopback or address.is_link_local)}
-    return tuple(
-        str(address) for address in sorted(usable, key=lambda address: (not address.is_private, address))
-    )
 
 
 def host_name(host_header: str) -> str:

@@ -10,7 +10,11 @@ import contextlib
 import logging
 from collections.abc import Sequence
 
-from zeroconf import AddressResolverIPv4, Error, IPVersion
+from zeroconf import (
+    AddressResolverIPv4,  # type: ignore[attr-defined]  # not in its __all__
+    Error,
+    IPVersion,
+)
 from zeroconf.asyncio import AsyncServiceInfo, AsyncZeroconf
 
 from mart.web.access import site_names
