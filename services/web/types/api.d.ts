@@ -34,6 +34,7 @@ declare namespace Api {
     other_urls: string[];
     code: string;
     qr_svg: string;
+    watch_url: string;
     hint: string;
   }
 

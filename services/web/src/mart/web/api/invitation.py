@@ -6,6 +6,7 @@ from urllib.parse import quote
 
 from fastapi import APIRouter, Request
 
+from mart.web.access.join_code import watch_code_of
 from mart.web.access.site_names import host_name, is_loopback
 from mart.web.api.dependencies import App, JoinedUser
 from mart.web.api.qr_codes import qr_svg
@@ -31,5 +32,6 @@ async def invitation(request: Request, app: App, _user: JoinedUser) -> Json:
         ],
         "code": app.join_code,
         "qr_svg": qr_svg(url),
+        "watch_url": f"https://{host}/watch#code={watch_code_of(app.join_code, app.secret)}",
         "hint": UNREACHABLE if is_loopback(host_name(host)) else "",
     }

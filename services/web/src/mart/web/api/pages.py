@@ -48,6 +48,12 @@ async def check() -> FileResponse:
     return page("check")
 
 
+@router.get("/watch", include_in_schema=False)
+async def watch() -> FileResponse:
+    """Send the page of spectators."""
+    return page("watch")
+
+
 @router.get("/phone", include_in_schema=False)
 async def phone() -> FileResponse:
     """Send the phone's page."""

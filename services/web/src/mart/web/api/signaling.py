@@ -18,7 +18,7 @@ from mart.web.access.pairing_codes import LIFETIME_S, PairingGrant
 from mart.web.access.site_names import host_name, is_loopback
 from mart.web.access.user_sessions import User
 from mart.web.api.app_state import AppState
-from mart.web.api.dependencies import Address, App, JoinedUser, now_unix_s
+from mart.web.api.dependencies import Address, App, JoinedUser, WatchingUser, now_unix_s
 from mart.web.api.invitation import UNREACHABLE
 from mart.web.api.qr_codes import qr_svg
 from mart.web.api.texts import Word
@@ -45,7 +45,7 @@ class SdpOffer(BaseModel):
 
 
 @router.get("/rooms/{room}/seats/{arm}/token")
-async def token(room: str, arm: str, app: App, user: JoinedUser) -> Json:
+async def token(room: str, arm: str, app: App, user: WatchingUser) -> Json:
     """Send a token for a seat: its holder's drives, anybody else's watches."""
     seat = _seat(app, room, arm)
     role = Role.BROWSER if is_held_by(seat, user.holder_id) else Role.VIEWER

@@ -64,6 +64,9 @@ const bearer = (token) => ({ Authorization: `Bearer ${token}` });
 /** Joins with the site's join code. @type {(code: string, name: string) => Promise<Api.Person>} */
 export const join = (code, name) => request("POST", "/join", { code, name });
 
+/** Comes in to watch, by the code of a link. @type {(code: string) => Promise<Api.Person>} */
+export const watch = (code) => request("POST", "/watch", { code });
+
 /** Who one is here; fails with 401 where one has not joined. @type {() => Promise<Api.Person>} */
 export const me = () => request("GET", "/me");
 

@@ -13,6 +13,7 @@ export function offerInvitation() {
   const address = element("code");
   const others = element("dd", { class: "soft" });
   const code = element("code");
+  const watching = element("code");
   const hint = element("p", { class: "message calm" });
   const copy = element("button", { type: "button" }, COPY);
   const facts = element(
@@ -23,6 +24,8 @@ export function offerInvitation() {
     others,
     element("dt", {}, "Join code"),
     element("dd", {}, code),
+    element("dt", {}, "To watch only, without a seat"),
+    element("dd", {}, watching),
   );
   const words = element(
     "p",
@@ -37,12 +40,14 @@ export function offerInvitation() {
     if (!card.open) return;
     setText(copy, COPY);
     try {
-      const { url, other_urls: otherUrls, code: joinCode, qr_svg: svg, hint: why } = await invitation();
+      const answer = await invitation();
+      const { url, other_urls: otherUrls, code: joinCode, qr_svg: svg, watch_url: watchUrl, hint: why } = answer;
       showQrCode(picture, svg);
       link = `${url}#code=${joinCode}`;
       setText(address, url);
       setText(code, joinCode);
       setText(others, otherUrls.length ? `or ${otherUrls.join(", ")}` : "");
+      setText(watching, watchUrl);
       setText(hint, why);
       picture.classList.toggle("small", why !== ""); // no other device gets there
     } catch (error) {
