@@ -28,7 +28,8 @@ def anyio_backend() -> str:
 
 @pytest.fixture(autouse=True)
 def _on_the_loopback(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(site_names, "lan_addresses", lambda: (OWN,))
+    for module in (site_names, mdns_announcement):
+        monkeypatch.setattr(module, "lan_addresses", lambda: (OWN,))
 
 
 @contextlib.asynccontextmanager
@@ -76,7 +77,7 @@ async def test_a_name_that_is_taken_gets_a_number(monkeypatch: pytest.MonkeyPatc
         async_request = request
         parsed_addresses = somebody_else
 
-    monkeypatch.setattr(mdns_announcement, "AddressResolverIPv4", Resolver)
+    monkeypatch.setattr("zeroconf.AddressResolverIPv4", Resolver)
     async with announced("mart-test-two") as site:
         assert site.mdns_host == "mart-test-two-3.local"
 

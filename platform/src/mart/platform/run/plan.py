@@ -64,7 +64,7 @@ class PlatformOptions:
 
     @property
     def local_url(self) -> str:
-        """Where this machine reaches the pages."""
+        """The address by which this machine reaches the pages."""
         here = "localhost" if self.host in ("127.0.0.1", *_EVERY_ADDRESS) else self.host
         return f"https://{f'[{here}]' if ':' in here else here}:{self.port}/"
 

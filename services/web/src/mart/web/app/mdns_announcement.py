@@ -10,14 +10,11 @@ import contextlib
 import logging
 from collections.abc import Sequence
 
-from zeroconf import (
-    AddressResolverIPv4,  # type: ignore[attr-defined]  # not in its __all__
-    Error,
-    IPVersion,
-)
+import zeroconf
+from zeroconf import Error, IPVersion
 from zeroconf.asyncio import AsyncServiceInfo, AsyncZeroconf
 
-from mart.web.access import site_names
+from mart.runtime.lan_addresses import lan_addresses
 from mart.web.access.site_names import SiteNames
 
 _log = logging.getLogger(__name__)
@@ -44,7 +41,7 @@ async def keep_announced(name: str, port: int, site: SiteNames, settled: asyncio
     while True:
         try:
             async with contextlib.AsyncExitStack() as stack:
-                addresses = site_names.lan_addresses()
+                addresses = lan_addresses()
                 if addresses:
                     site.mdns_host = await _announce(name, port, addresses, stack)
                     site.look()
@@ -63,7 +60,7 @@ async def keep_announced(name: str, port: int, site: SiteNames, settled: asyncio
 
 async def _moved(addresses: Sequence[str]) -> None:
     """Return when this machine has other addresses than these. Nothing tells: it is asked."""
-    while addresses == site_names.lan_addresses():  # noqa: ASYNC110
+    while addresses == lan_addresses():  # noqa: ASYNC110
         await asyncio.sleep(LOOK_EVERY_S)
 
 
@@ -86,7 +83,7 @@ async def _announce(name: str, port: int, addresses: Sequence[str], stack: conte
 async def _free_name(responder: AsyncZeroconf, name: str, own: Sequence[str]) -> str:
     """Return the first name that nobody else answers for. Raises OSError where all are taken."""
     for host in mdns_names(name):
-        resolver = AddressResolverIPv4(f"{host}.")
+        resolver = zeroconf.AddressResolverIPv4(f"{host}.")  # type: ignore[attr-defined]  # not in its __all__
         found = await resolver.async_request(responder.zeroconf, _ANSWER_MS)
         if not found or set(resolver.parsed_addresses()) <= set(own):
             return host
