@@ -10,6 +10,7 @@ import pytest
 import yaml
 from packaging.requirements import Requirement
 
+from mart.platform.run.turn_server import configuration
 from mart.runtime.cli import cli
 from tests.contract.repository import ROOT, projects
 
@@ -51,6 +52,17 @@ def test_only_the_web_service_listens_and_only_on_loopback_unless_asked() -> Non
     listening = {name: service["ports"] for name, service in _SERVICES.items() if "ports" in service}
     assert list(listening) == ["web"]
     assert all(_with_defaults(port).startswith("127.0.0.1:") for port in listening["web"])
+
+
+def test_the_relay_of_containers_is_that_of_mart_run() -> None:
+    words = yaml.safe_load((ROOT / "docker-compose.lan.yml").read_text())["services"]["turn"]["command"]
+    in_containers = {_with_defaults(word).removeprefix("--") for word in words}
+    with_run = configuration("", ["127.0.0.1"], "203.0.113.7").split()
+    differing = ("external-ip=", "allowed-peer-ip=")
+    assert {word for word in in_containers if not word.startswith(differing)} == {
+        word for word in with_run if not word.startswith(differing)
+    }
+    assert {"allowed-peer-ip=127.0.0.1", "external-ip=127.0.0.1"} <= in_containers
 
 
 def test_images_are_slim_watched_and_not_root() -> None:

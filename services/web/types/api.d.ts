@@ -29,6 +29,20 @@ declare namespace Api {
     mend: string;
   }
 
+  interface Invitation {
+    url: string;
+    other_urls: string[];
+    code: string;
+    qr_svg: string;
+    watch_url: string;
+    hint: string;
+  }
+
+  interface ServerTime {
+    unix_s: number;
+    certificate_days: number | null;
+  }
+
   // Rooms
 
   interface Seat {

@@ -4,3 +4,24 @@
 interface DeviceOrientationPermission {
   requestPermission?(): Promise<"granted" | "denied">;
 }
+
+/** WebHID (wicg.github.io/webhid), as far as a SpaceMouse needs it; Chromium's browsers have it. */
+interface HidFilter {
+  vendorId: number;
+  usagePage?: number;
+  usage?: number;
+}
+
+interface HidDevice {
+  readonly vendorId: number;
+  readonly opened: boolean;
+  open(): Promise<void>;
+  addEventListener(type: "inputreport", listener: (report: { reportId: number; data: DataView }) => void): void;
+}
+
+interface HidNavigator {
+  readonly hid?: {
+    getDevices(): Promise<HidDevice[]>;
+    requestDevice(options: { filters: HidFilter[] }): Promise<HidDevice[]>;
+  };
+}

@@ -4,8 +4,9 @@ import ipaddress
 
 import pytest
 
+from mart.runtime.lan_addresses import lan_addresses
 from mart.web.access import site_names as module
-from mart.web.access.site_names import SiteNames, host_name, in_url, lan_addresses, site_names
+from mart.web.access.site_names import SiteNames, host_name, in_url, site_names
 
 
 @pytest.mark.parametrize(

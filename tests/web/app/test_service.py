@@ -96,6 +96,12 @@ def receive(live: ClientConnection, what: str) -> Any:
             return message[what]
 
 
+def test_http_in_its_place_is_led_to_https(web: Web) -> None:
+    answer = httpx.get(f"http://localhost:{web.port}/check")
+    assert answer.status_code == 307
+    assert answer.headers["location"] == f"{web.origin}/check"
+
+
 def test_it_is_reached_over_https_with_the_certificate_it_made(web: Web) -> None:
     with web.client() as client:
         assert client.get("/api/health").json()["services"]["web"] == ["web"]

@@ -51,6 +51,7 @@ _CONTROL_HZ_OPTION = click.option(
 @click.option(
     "--public-host", default="", help="Name or address that people and phones use, where it isn't --host."
 )
+@click.option("--turn", is_flag=True, help="Also relay for people on other networks; needs coturn.")
 @json_option
 def run(
     *,
@@ -61,9 +62,11 @@ def run(
     host: str,
     port: int,
     public_host: str,
+    turn: bool,
     as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
+    from mart.platform.run.invitation import in_words, urls_for_others
     from mart.platform.run.plan import (
         PlatformOptions,
         processes,
@@ -71,6 +74,7 @@ def run(
     )
     from mart.platform.run.room_manager import opening_rooms
     from mart.platform.run.running import running_platform
+    from mart.platform.run.turn_server import relay_beside, with_relay
     from mart.protocol.tasks import get_task
     from mart.runtime.service import stop_requested
     from mart.runtime.settings import Settings
@@ -82,10 +86,20 @@ def run(
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)
+    if turn:
+        relay = relay_beside(options)
+        options, plan = with_relay(options, relay), (relay.process, *plan)
     click.echo("Starting MART …", err=True)
     with stop_requested() as stop, running_platform(options, plan) as platform, opening_rooms(platform):
-        result = {"url": platform.url, "join_code": platform.join_code, "room": room, "task": task}
-        text = f"\n  Lobby      {platform.url}\n  Join code  {platform.join_code}\n\nCtrl-C stops everything."
+        others = urls_for_others(options)
+        result = {
+            "url": platform.url,
+            "urls": others,
+            "join_code": platform.join_code,
+            "room": room,
+            "task": task,
+        }
+        text = in_words(platform.url, platform.join_code, others, with_picture=sys.stdout.isatty())
         print_result(result, text, as_json)
         stop.wait()
         with contextlib.suppress(OSError):  # a terminal that was closed

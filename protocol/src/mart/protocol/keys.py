@@ -128,6 +128,11 @@ def open_seat(gateway: str) -> Topic:
     return Topic(f"{ROOT}/@gateway/{_segment('gateway', gateway)}/open", Priority.NORMAL, must_arrive=True)
 
 
+def connection_check(gateway: str) -> Topic:
+    """Queryable: Offer → Answer, of a connection that tries the way to this gateway and is good for nothing else."""
+    return Topic(f"{ROOT}/@gateway/{_segment('gateway', gateway)}/check", Priority.LOW, must_arrive=True)
+
+
 def training(trainer: str) -> Topic:
     """Queryable: TrainerRequest → TrainerReply. `trainer` is the id of a trainer service."""
     return Topic(f"{ROOT}/@trainer/{_segment('trainer', trainer)}/jobs", Priority.LOW, must_arrive=True)

@@ -25,6 +25,7 @@ class ServiceKind(StrEnum):
     OPERATE = "operate"  # one policy in one seat, by hand
     PHONE = "phone"  # an emulated one
     WEB = "web"
+    TURN = "turn"  # coturn, which says nothing on the bus
 
 
 class OperatorKind(StrEnum):

@@ -13,17 +13,22 @@ from mart.protocol.vocabulary import ServiceKind
 if TYPE_CHECKING:
     from mart.protocol.messages import RoomsRequest
 
+_EVERY_ADDRESS = ("0.0.0.0", "::")  # noqa: S104  (only when asked for)
 DEFAULT_TASK = "two_arm_multi_cube_lifting"
 
 
 @dataclass(frozen=True)
 class Process:
-    """One `mart …` command; `kind` and `id` name its liveliness token. `awaited`: a session cannot begin without it."""
+    """One `mart …` command; `kind` and `id` name its liveliness token. `awaited`: a session cannot begin without it.
+
+    program: the path of another program than `mart`, which has no token.
+    """
 
     command: tuple[str, ...]
     kind: ServiceKind
     id: str
     awaited: bool = True
+    program: str = ""
 
     @property
     def name(self) -> str:
@@ -54,8 +59,14 @@ class PlatformOptions:
 
     @property
     def url(self) -> str:
-        name = self.public_host.split(",")[0] or self.host
-        return f"https://{'localhost' if name == '127.0.0.1' else name}:{self.port}/"
+        name = self.public_host.split(",")[0]
+        return f"https://{name}:{self.port}/" if name else self.local_url
+
+    @property
+    def local_url(self) -> str:
+        """The address by which this machine reaches the pages."""
+        here = "localhost" if self.host in ("127.0.0.1", *_EVERY_ADDRESS) else self.host
+        return f"https://{f'[{here}]' if ':' in here else here}:{self.port}/"
 
     @property
     def run_dir(self) -> Path:

@@ -167,7 +167,9 @@ serverurl=unix://{socket}
 
 
 def _program(options: PlatformOptions, process: Process, order: int) -> str:
-    command = " ".join(f'"{_escaped(word)}"' for word in (str(_BIN / "mart"), *process.command))
+    command = " ".join(
+        f'"{_escaped(word)}"' for word in (process.program or str(_BIN / "mart"), *process.command)
+    )
     return f"""
 [program:{process.name}]
 command={command}

@@ -16,11 +16,13 @@ def gateway(name: str) -> None:
     from mart.teleop_gateway.gateway import Gateway
     from mart.teleop_gateway.settings import GatewaySettings
 
+    settings = GatewaySettings()
+
     async def serve(service: AsyncService) -> None:
         with announced(service):
-            await Gateway(service.bus, name).run()
+            await Gateway(service.bus, name, settings).run()
 
-    run_async(GatewaySettings(), ServiceKind.GATEWAY, name, serve)
+    run_async(settings, ServiceKind.GATEWAY, name, serve)
 
 
 @click.command()

@@ -15,6 +15,8 @@ from mart.protocol.messages import RoomStatus
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.decoding_subscriber import DecodingSubscriber
+from mart.runtime.ice_servers import IceSettings
+from mart.teleop_gateway.process.check_handler import CheckHandler
 from mart.teleop_gateway.process.open_seat_handler import OpenSeatHandler
 from mart.teleop_gateway.process.seat_keeper import SeatKeeper
 from mart.teleop_gateway.served_seats import SeatRegister
@@ -25,13 +27,14 @@ ASK_EVERY_S = 2.0
 class Gateway:
     """Follow what rooms and other gateways say, and keep the processes that follow from it."""
 
-    def __init__(self, bus: AsyncBus, name: str) -> None:
+    def __init__(self, bus: AsyncBus, name: str, settings: IceSettings) -> None:
         """Make a gateway. `name` is what it is called on the bus."""
         self.name = name
         self._bus = bus
         self._register = SeatRegister(name)
         self._keeper = SeatKeeper(bus, name)
         self._opening = OpenSeatHandler(bus, self._register)
+        self._checks = CheckHandler(settings)
 
     async def run(self) -> None:
         """Serve until cancelled; every seat process has ended then."""
@@ -43,12 +46,14 @@ class Gateway:
                 bus.watch(keys.alive_of(ServiceKind.SIM), self._on_room_token),
                 bus.subscribe(keys.EVERY_STATUS, DecodingSubscriber(RoomStatus, self._on_status)),
                 bus.serve(keys.open_seat(self.name), self._opening.answer),
+                bus.serve(keys.connection_check(self.name), self._checks.answer),
             ):
                 stack.callback(opened.close)
             self._keeper.prepare()
             try:
                 await self._ask_periodically()
             finally:
+                await self._checks.close()
                 await self._keeper.close()
 
     def _on_status(self, status: RoomStatus) -> None:

@@ -14,6 +14,15 @@ class NotJoined(Forbidden):
         )
 
 
+class OnlyWatches(Forbidden):
+    """A spectator asked for what those do who joined."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "You came to watch; whoever wants to take part joins in the lobby with the join code."
+        )
+
+
 class WrongOrigin(Forbidden):
     """The request was not sent by a page of this site."""
 

@@ -78,7 +78,7 @@ class Peer:
         self._status: RTCDataChannel | None = None
         self._looking_up: asyncio.Task[None] | None = None
         # An empty list, or aiortc asks a public STUN server and waits for it.
-        self._connection = RTCPeerConnection(RTCConfiguration([*map(_as_aiortc, ice_servers)]))
+        self._connection = RTCPeerConnection(RTCConfiguration([*map(as_aiortc, ice_servers)]))
         self._connection.on("datachannel", self._on_channel)
         self._connection.on("connectionstatechange", self._on_state)
 
@@ -189,5 +189,6 @@ class Peer:
             self._listener.on_gone(self)
 
 
-def _as_aiortc(server: IceServer) -> RTCIceServer:
+def as_aiortc(server: IceServer) -> RTCIceServer:
+    """Return a server as aiortc takes it."""
     return RTCIceServer(server.url, server.username or None, server.credential or None)

@@ -31,7 +31,7 @@ def load_or_make_join_code(path: Path, fixed: str = "") -> str:
 
 
 def check_join_code(given: str, expected: str) -> None:
-    """Compare what was given with the join code; case, spaces and dashes do not matter.
+    """Compare what was given with the join code, or that for watching; case, spaces and dashes do not matter.
 
     Raises Forbidden where they differ, after equally long wherever the difference is.
     """
@@ -44,6 +44,13 @@ def check_join_code(given: str, expected: str) -> None:
 def digest_of(code: str, secret: bytes) -> bytes:
     """Return what tells one join code from another, and tells nothing of it to whoever lacks the secret."""
     return hmac.digest(secret, _plain(code).encode(), "sha256")
+
+
+def watch_code_of(code: str, secret: bytes) -> str:
+    """Return the code that lets people watch where `code` lets them in; it tells nothing of `code`."""
+    digest = hmac.digest(secret, b"watch " + _plain(code).encode(), "sha256")
+    letters = [_ALPHABET[byte % len(_ALPHABET)] for byte in digest[: 3 * _GROUP]]
+    return "-".join("".join(letters[start : start + _GROUP]) for start in range(0, 3 * _GROUP, _GROUP))
 
 
 def _make() -> str:

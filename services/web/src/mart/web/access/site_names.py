@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import ipaddress
 import socket
 from collections.abc import Sequence
 
-import ifaddr
+from mart.runtime.lan_addresses import lan_addresses
 
-_VIRTUAL = ("docker", "br-", "veth", "virbr", "cni")  # networks inside this machine, which come and go
 _EVERY_ADDRESS = ("0.0.0.0", "::")  # noqa: S104  (only when asked for)
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
@@ -16,19 +14,35 @@ LOOPBACK = ("localhost", "127.0.0.1", "::1")
 class SiteNames:
     """What this site is called now, and what a phone may call it: a laptop moves from network to network.
 
-    names: of the Host header. lan_host: empty where no phone can reach the site.
+    names: of the Host header. lan_host: empty where no phone can reach the site. mdns_host: its name on the local
+    network, as long as it is answered for.
     """
 
     def __init__(self, public_names: Sequence[str], listening_at: str) -> None:
         self._public_names, self._listening_at = public_names, listening_at
         self.names: tuple[str, ...] = ()
         self.lan_host = ""
+        self.mdns_host = ""
         self.look()
 
     def look(self) -> None:
         """Find out anew."""
-        self.names = site_names(self._public_names, self._listening_at)
+        names = site_names(self._public_names, self._listening_at)
+        self.names = tuple(dict.fromkeys((*names, self.mdns_host))) if self.mdns_host else names
         self.lan_host = _lan_host(self._public_names, self._listening_at)
+
+    def for_others(self, host_header: str) -> str:
+        """Return the host and port by which another device reaches what was asked for by `host_header`."""
+        name = host_name(host_header)
+        if self.lan_host and is_loopback(name):
+            return host_header.replace(in_url(name), in_url(self.lan_host), 1)
+        return host_header
+
+    def urls_for_others(self, host_header: str) -> list[str]:
+        """Return the addresses by which other devices reach the lobby, the one that most can use first."""
+        name = host_name(host_header)
+        hosts = [host for host in (self.lan_host, self.mdns_host) if host]
+        return [f"https://{host_header.replace(in_url(name), in_url(host), 1)}/" for host in hosts]
 
 
 def site_names(public_names: Sequence[str], listening_at: str) -> tuple[str, ...]:
@@ -51,20 +65,6 @@ def _lan_host(public_names: Sequence[str], listening_at: str) -> str:
 def _host_names() -> tuple[str, ...]:
     host = socket.gethostname()
     return (host, f"{host}.local") if "." not in host else (host,)
-
-
-def lan_addresses() -> tuple[str, ...]:
-    """Return the IPv4 addresses of this machine on its networks, the private ones first."""
-    found = [
-        ipaddress.IPv4Address(address.ip)
-        for adapter in ifaddr.get_adapters()
-        for address in adapter.ips
-        if isinstance(address.ip, str) and not adapter.name.startswith(_VIRTUAL)
-    ]
-    usable = {address for address in found if not (address.is_loopback or address.is_link_local)}
-    return tuple(
-        str(address) for address in sorted(usable, key=lambda address: (not address.is_private, address))
-    )
 
 
 def host_name(host_header: str) -> str:

@@ -18,6 +18,7 @@ _log = logging.getLogger(__name__)
 SESSION_S = 7 * 24 * 3600.0
 MAX_NAME_CHARACTERS = 32
 MAX_SESSIONS = 10_000
+_SPECTATOR = "spectator-"  # how their holder ids begin, which nobody chooses
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS joined (
     id_sha256 BLOB PRIMARY KEY,
@@ -36,6 +37,11 @@ class User:
 
     holder_id: str
     name: str
+
+    @property
+    def only_watches(self) -> bool:
+        """Whether they came by the link of spectators, who change nothing."""
+        return self.holder_id.startswith(_SPECTATOR)
 
 
 class UserSessions:
@@ -58,13 +64,17 @@ class UserSessions:
             self._database = _opened(path)
         self._database.execute("DELETE FROM joined WHERE code_digest <> ?", (code_digest,))
 
-    def join(self, name: str, now_s: float, known: User | None = None) -> tuple[str, User]:
+    def join(
+        self, name: str, now_s: float, known: User | None = None, *, only_watches: bool = False
+    ) -> tuple[str, User]:
         """Return a new session's id and its user; one already `known` keeps the seats and may change the name.
 
         The session before it ends. Raises InvalidInput where the name cannot be used, Unavailable where the session
         cannot be kept.
         """
-        user = User(known.holder_id if known else secrets.token_hex(16), clean_name(name))
+        keeps = known is not None and known.only_watches == only_watches
+        new_id = f"{_SPECTATOR if only_watches else ''}{secrets.token_hex(16)}"
+        user = User(known.holder_id if known and keeps else new_id, clean_name(name))
         session_id = secrets.token_urlsafe(32)
         with _told():
             self._database.execute("DELETE FROM joined WHERE expires_s < ?", (now_s,))

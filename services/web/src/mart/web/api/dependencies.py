@@ -9,9 +9,11 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from mart.protocol import clock
+from mart.protocol.errors import Forbidden
+from mart.web.access.join_code import check_join_code
 from mart.web.access.user_sessions import User
 from mart.web.api.app_state import AppState
-from mart.web.errors import NotJoined
+from mart.web.errors import NotJoined, OnlyWatches
 
 COOKIE = "__Host-mart-session"
 
@@ -45,10 +47,17 @@ async def maybe_user(connection: HTTPConnection, app: App) -> User | None:
 MaybeUser = Annotated[User | None, Depends(maybe_user)]
 
 
-async def joined_user(user: MaybeUser) -> User:
-    """Return who asks; raises NotJoined."""
+async def watching_user(user: MaybeUser) -> User:
+    """Return who asks, who may be a spectator; raises NotJoined."""
     if user is None:
         raise NotJoined
+    return user
+
+
+async def joined_user(user: Annotated[User, Depends(watching_user)]) -> User:
+    """Return who asks; raises NotJoined, and OnlyWatches for a spectator."""
+    if user.only_watches:
+        raise OnlyWatches
     return user
 
 
@@ -69,6 +78,16 @@ async def address_of(connection: HTTPConnection) -> str:
     return connection.client.host if connection.client else "unknown"
 
 
+def require_join_code(app: AppState, given: str, address: str, expected: str = "") -> None:
+    """Raise Forbidden, and count it for `address`, where the join code, or the one `expected`, is not right."""
+    try:
+        check_join_code(given, expected or app.join_code)
+    except Forbidden:
+        app.wrong_codes.count(address, clock.monotonic_s())
+        raise
+
+
+WatchingUser = Annotated[User, Depends(watching_user)]
 JoinedUser = Annotated[User, Depends(joined_user)]
 BrowsingUser = Annotated[User, Depends(browsing_user)]
 WritingUser = Annotated[User, Depends(writing_user)]

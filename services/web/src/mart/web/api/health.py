@@ -6,7 +6,7 @@ import os
 import shutil
 from dataclasses import asdict
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 
 from mart.protocol import clock
 from mart.protocol.vocabulary import ServiceKind
@@ -21,10 +21,17 @@ _EXPECTED = (ServiceKind.SIM, ServiceKind.GATEWAY, ServiceKind.RECORDER)
 
 
 @router.get("")
-async def health(app: App) -> Json:
-    """Send who is alive, and as `ok` whether everything that a collection session needs is there."""
+async def health(request: Request, app: App) -> Json:
+    """Send who is alive, and as `ok` whether everything that a collection session needs is there.
+
+    Also the addresses by which other devices reach the lobby; none where they do not.
+    """
     running = app.lobby.services.by_kind()
-    return {"ok": all(kind in running for kind in _EXPECTED), "services": running}
+    return {
+        "ok": all(kind in running for kind in _EXPECTED),
+        "services": running,
+        "urls": app.site.urls_for_others(request.headers["host"]),
+    }
 
 
 @router.get("/findings")

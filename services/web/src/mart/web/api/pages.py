@@ -54,6 +54,18 @@ async def health(request: Request) -> Response:
     return page("health", request)
 
 
+@router.get("/check", include_in_schema=False)
+async def check() -> FileResponse:
+    """Send the page that tells whether a device is ready for a session."""
+    return page("check")
+
+
+@router.get("/watch", include_in_schema=False)
+async def watch() -> FileResponse:
+    """Send the page of spectators."""
+    return page("watch")
+
+
 @router.get("/phone", include_in_schema=False)
 async def phone(request: Request) -> Response:
     """Send the phone's page."""

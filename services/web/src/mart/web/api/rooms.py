@@ -19,7 +19,7 @@ from mart.protocol.messages import (
 )
 from mart.protocol.tasks import MAX_ARMS, arm_counts, get_task, task_names
 from mart.protocol.vocabulary import OperatorKind
-from mart.web.api.dependencies import App, JoinedUser, WritingUser
+from mart.web.api.dependencies import App, JoinedUser, WatchingUser, WritingUser
 from mart.web.api.texts import Name, Word
 from mart.web.lobby.room_json import Json, seat_json
 
@@ -53,7 +53,7 @@ class EpisodeActionRequest(BaseModel):
 
 
 @router.get("/rooms")
-async def rooms(app: App, user: JoinedUser) -> Json:
+async def rooms(app: App, user: WatchingUser) -> Json:
     """Send all rooms as the user sees them."""
     return {"rooms": app.lobby.rooms_json(user.holder_id, clock.monotonic_s())}
 
@@ -73,7 +73,7 @@ async def open_room(body: NewRoom, app: App, _user: WritingUser) -> Json:
 
 
 @router.get("/rooms/{room}/still")
-async def still(room: str, app: App, _user: JoinedUser) -> Response:
+async def still(room: str, app: App, _user: WatchingUser) -> Response:
     """Send the room's newest small picture.
 
     Whoever asks for another one gives another query: this one may be kept.

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated
 
-import segno
 from fastapi import APIRouter, Header, Request
 from pydantic import BaseModel, Field
 
@@ -16,10 +15,12 @@ from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, OPERATOR_POLIC
 from mart.protocol.queryables import MAX_SDP_CHARACTERS
 from mart.protocol.tokens import Role, SeatToken, sign, verify
 from mart.web.access.pairing_codes import LIFETIME_S, PairingGrant
-from mart.web.access.site_names import host_name, in_url, is_loopback
+from mart.web.access.site_names import host_name, is_loopback
 from mart.web.access.user_sessions import User
 from mart.web.api.app_state import AppState
-from mart.web.api.dependencies import Address, App, JoinedUser, MaybeUser, now_unix_s
+from mart.web.api.dependencies import Address, App, JoinedUser, MaybeUser, WatchingUser, now_unix_s
+from mart.web.api.invitation import UNREACHABLE
+from mart.web.api.qr_codes import qr_svg
 from mart.web.api.texts import Word
 from mart.web.errors import NotJoined
 from mart.web.lobby.room_json import Json
@@ -32,10 +33,6 @@ MaybeAuthorization = Annotated[str | None, Header()]
 _BROWSER_TOKEN_S = 300.0  # a page asks for a new one whenever it connects
 _SEEN_OPERATORS = (OPERATOR_HUMAN, OPERATOR_POLICY)  # whose seats gateways draw
 _PHONE_TOKEN_S = 12 * 3600.0  # however often it is renewed
-_UNREACHABLE = (
-    "This service listens on this computer alone, so a phone cannot reach it. Start it with --host 0.0.0.0, or tell "
-    "it with --public-host the name that phones should use."
-)
 
 
 class PairingRequest(BaseModel):
@@ -51,7 +48,7 @@ class SdpOffer(BaseModel):
 
 
 @router.get("/rooms/{room}/seats/{arm}/token")
-async def token(room: str, arm: str, app: App, user: JoinedUser) -> Json:
+async def token(room: str, arm: str, app: App, user: WatchingUser) -> Json:
     """Send a token for a seat: its holder's drives, anybody else's watches."""
     claims = _page_claims(app, room, arm, user)
     return {"token": _sign(app, claims), **_told_with(app, claims)}
@@ -63,14 +60,14 @@ async def pair(room: str, arm: str, request: Request, app: App, user: JoinedUser
     seat = _own_seat(app, room, arm, user)
     pairing = PairingGrant(room, arm, seat.epoch, user.holder_id, user.name)
     code = app.pairing_codes.issue(pairing, clock.monotonic_s())
-    host = _host_for_phone(request.headers["host"], app.site.lan_host)
+    host = app.site.for_others(request.headers["host"])
     url = f"https://{host}/phone#{code}"
     return {
         "code": code,
         "url": url,
         "expires_s": LIFETIME_S,
-        "qr_svg": segno.make(url, error="m", micro=False).svg_inline(dark="#000", light="#fff", border=3),
-        "hint": _UNREACHABLE if is_loopback(host_name(host)) else "",
+        "qr_svg": qr_svg(url),
+        "hint": UNREACHABLE if is_loopback(host_name(host)) else "",
     }
 
 
@@ -88,7 +85,7 @@ async def redeem(body: PairingRequest, app: App) -> Json:
         "epoch": pairing.epoch,
         "name": pairing.name,
         "role": Role.PHONE.value,
-        "ice_servers": _ice_servers(app),
+        "ice_servers": ice_servers_json(app),
     }
 
 
@@ -108,7 +105,7 @@ async def phone_token(room: str, arm: str, app: App, authorization: Authorizatio
             f"{driver} drives {arm} now; this phone goes on when the person who paired it takes the seat again."
         )
     renewed = _sign(app, replace(paired, epoch=seat.epoch))
-    return {"token": renewed, "epoch": seat.epoch, "ice_servers": _ice_servers(app)}
+    return {"token": renewed, "epoch": seat.epoch, "ice_servers": ice_servers_json(app)}
 
 
 @router.post("/rooms/{room}/seats/{arm}/offer")
@@ -136,7 +133,7 @@ async def offer(
                 f"Nobody drives {arm} in {room} whose picture could be shown; take the seat first."
             )
     else:
-        claims, token, told = claims_of(app, room, arm, authorization), _bearer(authorization), {}
+        claims, token, told = claims_of(app, room, arm, authorization), bearer_of(authorization), {}
         if claims.epoch != _seat(app, room, arm).epoch:
             raise Forbidden(
                 "This seat has changed hands since you got your token; take a seat in the lobby again."
@@ -154,21 +151,22 @@ def _page_claims(app: AppState, room: str, arm: str, user: User) -> SeatToken:
 
 
 def _told_with(app: AppState, claims: SeatToken) -> Json:
-    return {"role": claims.role.value, "epoch": claims.epoch, "ice_servers": _ice_servers(app)}
+    return {"role": claims.role.value, "epoch": claims.epoch, "ice_servers": ice_servers_json(app)}
 
 
-def _ice_servers(app: AppState) -> list[dict[str, str]]:
-    """As a browser's RTCPeerConnection takes them, with credentials that are good for a session."""
+def ice_servers_json(app: AppState) -> list[dict[str, str]]:
+    """Return them as a browser's RTCPeerConnection takes them, with credentials that are good for a session."""
     return [server.as_json() for server in app.ice.ice_servers_at(now_unix_s())]
 
 
-def _bearer(authorization: str) -> str:
+def bearer_of(authorization: str) -> str:
+    """Return the token of an Authorization header; empty where there is none."""
     return authorization.removeprefix("Bearer ")
 
 
 def claims_of(app: AppState, room: str, arm: str, authorization: str) -> SeatToken:
     """Return what the sent token says; raises Forbidden where it is not good for this seat."""
-    claims = verify(_bearer(authorization), app.secret)
+    claims = verify(bearer_of(authorization), app.secret)
     if (claims.room, claims.arm) != (room, arm):
         raise Forbidden(f"This seat token is for {claims.arm} in {claims.room}, not for {arm} in {room}.")
     return claims
@@ -187,10 +185,3 @@ def _own_seat(app: AppState, room: str, arm: str, user: User) -> Seat:
 
 def _sign(app: AppState, token: SeatToken) -> str:
     return sign(token, app.secret)
-
-
-def _host_for_phone(host_header: str, lan_host: str) -> str:
-    name = host_name(host_header)
-    if lan_host and is_loopback(name):
-        return host_header.replace(in_url(name), in_url(lan_host), 1)
-    return host_header

@@ -21,6 +21,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from mart.protocol import clock
 from mart.runtime.rate_limit import RateLimit
 from mart.web.access.connection_table import ConnectionTable, Peer
+from mart.web.access.plain_http import is_plain_http, redirection
 
 _log = logging.getLogger(__name__)
 
@@ -81,6 +82,19 @@ class _Accepted(socket.socket):
     def __init__(self, accepted: socket.socket, on_close: Callable[[], None]) -> None:
         super().__init__(accepted.family, accepted.type, accepted.proto, fileno=accepted.detach())
         self._on_close: Callable[[], None] | None = on_close
+        self._has_begun = False
+
+    def recv_into(self, buffer: Any, *sizes: int) -> int:
+        """Read as a socket does; TLS reads so, and plain HTTP in its place is told where to go and ended."""
+        count = super().recv_into(buffer, *sizes)
+        if count and not self._has_begun:
+            self._has_begun = True
+            first = bytes(memoryview(buffer)[:count])
+            if is_plain_http(first):
+                with contextlib.suppress(OSError):  # it does not listen
+                    self.send(redirection(first))
+                return 0
+        return count
 
     def close(self) -> None:
         if self._on_close is not None:

@@ -29,6 +29,7 @@ from mart.web.app.guarded_listener import (
     quiet_when_full,
     raise_file_limit,
 )
+from mart.web.app.mdns_announcement import keep_announced
 from mart.web.app.relay_checks import keep_checking
 from mart.web.app.security_middleware import MAX_BODY_BYTES
 from mart.web.app.settings import WebSettings
@@ -38,6 +39,7 @@ from mart.web.lobby.lobby import Lobby
 
 MAX_CONNECTIONS = 2048
 _STOP_S = 2
+_NAME_TIMEOUT_S = 3.0  # a certificate made later takes the name up within a minute
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -62,7 +64,7 @@ async def serve(
     settings: WebSettings, service: AsyncService, listener: socket.socket, join_code: str
 ) -> None:
     """Serve the pages and the API at `listener` until cancelled, or stopped by a signal."""
-    lobby = Lobby()
+    lobby, listener_port = Lobby(), listener.getsockname()[1]
     with contextlib.ExitStack() as stack:
         secret = load_or_create_secret(settings.secret_path)
         sessions = UserSessions(settings.sessions_path, digest_of(join_code, secret))
@@ -84,6 +86,7 @@ async def serve(
         )
         guarded = stack.enter_context(contextlib.closing(GuardedListener(listener, table)))
         quiet_when_full()
+        tasks = await _announced(settings, service, listener_port, state.site)
         config, background = _configured(settings, state, table)
         background += [
             feed.keep_asking(),
@@ -92,7 +95,7 @@ async def serve(
             _missed(state),
             keep_checking(settings, state.relays),
         ]
-        tasks = [service.bus.spawn(work) for work in background]
+        tasks += [service.bus.spawn(work) for work in background]
         try:
             await feed.settled()
             # Whoever comes before the server is quite up waits in the listener's queue.
@@ -101,6 +104,21 @@ async def serve(
         finally:
             for task in tasks:
                 task.cancel()
+            await asyncio.wait(tasks)
+
+
+async def _announced(
+    settings: WebSettings, service: AsyncService, port: int, site: SiteNames
+) -> list[asyncio.Task[Any]]:
+    """Return what answers for the site's name on the local network, once the certificate can be made for it."""
+    if not settings.announced_name:
+        return []
+    settled = asyncio.Event()
+    task = service.bus.spawn(keep_announced(settings.announced_name, port, site, settled))
+    with contextlib.suppress(TimeoutError):
+        async with asyncio.timeout(_NAME_TIMEOUT_S):
+            await settled.wait()
+    return [task]
 
 
 def _configured(

@@ -7,6 +7,7 @@ from pathlib import Path
 from pydantic import Field
 
 from mart.runtime.ice_servers import IceSettings
+from mart.web.access.site_names import is_loopback
 
 
 class WebSettings(IceSettings):
@@ -17,6 +18,12 @@ class WebSettings(IceSettings):
     )
     web_port: int = Field(8443, ge=0, le=65535)
     public_host: str = Field("", description="Names and addresses that people use, separated by commas.")
+    mdns_name: str | None = Field(
+        None,
+        pattern=r"^([a-z0-9]([a-z0-9-]{0,30}[a-z0-9])?)?$",
+        description="Name on the local network, without .local; empty: none. Default: mart, where others are let in "
+        "and no public names are told.",
+    )
     join_code: str = Field("", description="Fixed join code; default: one made at first start.")
     trusted_proxy: str = Field(
         "", description="Addresses of proxies in front whose X-Forwarded-For is believed; default: none."
@@ -38,6 +45,13 @@ class WebSettings(IceSettings):
     def public_names(self) -> tuple[str, ...]:
         """The names and addresses that people use."""
         return tuple(name.strip() for name in self.public_host.split(",") if name.strip())
+
+    @property
+    def announced_name(self) -> str:
+        """The name to be answered for on the local network; empty: none."""
+        if is_loopback(self.web_host):
+            return ""
+        return ("" if self.public_names else "mart") if self.mdns_name is None else self.mdns_name
 
     @property
     def proxies(self) -> tuple[str, ...]:

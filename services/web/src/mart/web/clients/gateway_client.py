@@ -13,6 +13,7 @@ from mart.web.lobby.live_services import LiveServices
 
 _OPEN_TIMEOUT_S = 20.0  # a gateway may have to fetch and load the room's model first
 _OFFER_TIMEOUT_S = 10.0
+_CHECKED = "check"  # in place of a room and an arm: whoever checks has none yet
 
 
 class GatewayClient:
@@ -32,3 +33,12 @@ class GatewayClient:
         topic = keys.signal(seat.room, seat.arm, seat.role.value)
         offer = Offer(token=token, sdp=sdp)
         return (await ask_async(self._bus, topic, offer, Answer, timeout_s=_OFFER_TIMEOUT_S)).sdp
+
+    async def answer_check(self, sdp: str) -> str:
+        """Return the SDP of the answer to an offer that only tries the way to a gateway.
+
+        Raises Unavailable where no gateway runs, and whatever the gateway reports.
+        """
+        gateway = gateway_of(self._services.ids(ServiceKind.GATEWAY), _CHECKED, _CHECKED)
+        topic = keys.connection_check(gateway)
+        return (await ask_async(self._bus, topic, Offer(sdp=sdp), Answer, timeout_s=_OFFER_TIMEOUT_S)).sdp

@@ -64,6 +64,9 @@ const bearer = (token) => ({ Authorization: `Bearer ${token}` });
 /** Joins with the site's join code. @type {(code: string, name: string) => Promise<Api.Person>} */
 export const join = (code, name) => request("POST", "/join", { code, name });
 
+/** Comes in to watch, by the code of a link. @type {(code: string) => Promise<Api.Person>} */
+export const watch = (code) => request("POST", "/watch", { code });
+
 /** Who one is here; fails with 401 where one has not joined. @type {() => Promise<Api.Person>} */
 export const me = () => request("GET", "/me");
 
@@ -172,6 +175,33 @@ export const offer = (room, arm, sdp) => request("POST", `${seatPath(room, arm)}
  */
 export const sendOffer = (room, arm, token, sdp) =>
   request("POST", `${seatPath(room, arm)}/offer`, { sdp }, bearer(token));
+
+/** How others come in. @type {() => Promise<Api.Invitation>} */
+export const invitation = () => request("GET", "/invitation");
+
+// The check of a device
+
+/** The server's time, and how long its certificate is good. @type {() => Promise<Api.ServerTime>} */
+export const serverTime = () => request("GET", "/check");
+
+/**
+ * Who asks to try the way to the server, where they have no session: by the join code, or by a phone's token.
+ * @typedef {{ code: string, token: string }} Admission
+ */
+
+/**
+ * STUN and TURN servers for trying the way; fails with 401 where nothing admits.
+ * @type {(admission: Admission) => Promise<{ ice_servers: RTCIceServer[] }>}
+ */
+export const checkServers = ({ code, token }) =>
+  request("POST", "/check/servers", { code }, token ? bearer(token) : {});
+
+/**
+ * Hands the offer of a connection that only tries the way to a gateway.
+ * @type {(admission: Admission, sdp: string) => Promise<{ sdp: string }>}
+ */
+export const sendCheckOffer = ({ code, token }, sdp) =>
+  request("POST", "/check/offer", { code, sdp }, token ? bearer(token) : {});
 
 // Recorded episodes
 

@@ -2,6 +2,7 @@
 
 import * as api from "./api.js";
 import { byId, element, setText } from "./dom.js";
+import { findingRow } from "./finding-row.js";
 import { isMember, toLobby } from "./member.js";
 import { repeating } from "./repeating.js";
 
@@ -55,10 +56,9 @@ function headline(problems) {
  * What does not run and is not needed is neither well nor a problem.
  * @param {Api.Finding} finding
  */
-function lookOf({ found, mend }) {
-  if (mend) return { kind: "poor", sign: "!", words: "Problem" };
-  if (found === "not running") return { kind: "idle", sign: "–", words: "Not needed" };
-  return { kind: "well", sign: "✓", words: "Well" };
+function row({ name, found, mend }) {
+  const calm = found === "not running" ? "idle" : "well";
+  return findingRow({ kind: mend ? "poor" : calm, name, found, mend });
 }
 
 /**
@@ -71,17 +71,4 @@ function card(title, findings, empty) {
     ? element("ul", {}, ...findings.map(row))
     : element("p", { class: "soft" }, empty);
   return element("section", { class: "card" }, element("h2", {}, title), content);
-}
-
-/** @param {Api.Finding} finding */
-function row(finding) {
-  const { kind, sign, words } = lookOf(finding);
-  return element(
-    "li",
-    { class: `finding ${kind}` },
-    element("span", { class: "sign", "aria-label": words, role: "img" }, sign),
-    element("span", { class: "name" }, finding.name),
-    element("span", { class: "found soft figures" }, finding.found),
-    element("span", { class: "mend" }, finding.mend),
-  );
 }

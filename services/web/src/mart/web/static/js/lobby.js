@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { armName, isFree } from "./arms.js";
 import { byId, element, keepChildren, setShown, setText } from "./dom.js";
+import { offerInvitation } from "./invite.js";
 import { followRooms } from "./live.js";
 import { newRoom } from "./new-room.js";
 import { roomCard } from "./room-card.js";
@@ -38,11 +39,13 @@ start();
 async function start() {
   nameInput.value = localStorage.getItem(NAME_KEY) ?? "";
   codeInput.value = new URLSearchParams(location.hash.slice(1)).get("code") ?? "";
+  byId("check", HTMLAnchorElement).hash = location.hash; // who was given the code need not type it there either
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     submit(event.submitter instanceof HTMLButtonElement && event.submitter.value === "try");
   });
   tryButton.addEventListener("click", () => attempt(tryIt));
+  offerInvitation();
   byId("leave").addEventListener("click", () => attempt(signOut));
   const person = localStorage.getItem(NAME_KEY) && (await api.me().catch(() => null));
   if (person) enter(person);

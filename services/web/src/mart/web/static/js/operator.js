@@ -75,6 +75,7 @@ function begin() {
   for (const command of /** @type {const} */ (["gripper", "leave"])) {
     byId(command).addEventListener("click", () => run(command));
   }
+  byId("spacemouse").addEventListener("click", () => attempt(() => input.askForDevice()));
   byId("toggle").addEventListener("click", () => {
     byId("toggle").setAttribute("aria-pressed", String(input.toggleHold()));
   });

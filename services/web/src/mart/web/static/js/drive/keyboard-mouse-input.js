@@ -1,14 +1,17 @@
 // Keyboard and mouse as a full operator: sixty frames a second of a phone that is not there.
 
 import { encodeFrame, Flag } from "./frame.js";
+import { HandheldDevices } from "./handheld-devices.js";
 import { Keyboard } from "./keyboard.js";
 import { Pointer } from "./pointer.js";
 import { everyFrame } from "./ticker.js";
 import { VirtualPhone } from "./virtual-phone.js";
 
+/** @import { Motion } from "./gamepad-hand.js" */
 /** @import { Command } from "./keys.js" */
+/** @import { Vector } from "./quaternion.js" */
 
-/** @typedef {{ gripper: number, engaged: boolean, letGo: StatusChannel.LetGo }} HandView */
+/** @typedef {{ gripper: number, engaged: boolean, letGo: StatusChannel.LetGo, devices: string[] }} HandView */
 
 const LONGEST_STEP_S = 0.1;
 const STOP_TOLD_MS = 1000;
@@ -20,6 +23,7 @@ export class KeyboardMouseInput {
   #phone = new VirtualPhone();
   #keyboard;
   #pointer;
+  #devices;
   #gripper = 0;
   #stopPressedMs = -Infinity;
   #sequence = 0;
@@ -32,6 +36,7 @@ export class KeyboardMouseInput {
   constructor(picture, onCommand) {
     this.#keyboard = new Keyboard(onCommand);
     this.#pointer = new Pointer(picture, this.#phone);
+    this.#devices = new HandheldDevices(onCommand);
   }
 
   /**
@@ -42,8 +47,12 @@ export class KeyboardMouseInput {
   start(send, situation) {
     everyFrame((nowMs) => {
       const keys = this.#keyboard.sample();
-      const engaged = keys.engaged || this.#pointer.held;
-      this.#phone.step({ ...keys, engaged }, Math.min((nowMs - this.#lastMs) / 1000, LONGEST_STEP_S));
+      const { engaged, move, turn } = this.#devices.sample(nowMs).reduce(together, {
+        ...keys,
+        engaged: keys.engaged || this.#pointer.held,
+      });
+      const dtS = Math.min((nowMs - this.#lastMs) / 1000, LONGEST_STEP_S);
+      this.#phone.step({ slow: keys.slow, engaged, move, turn }, dtS);
       this.#lastMs = nowMs;
       const { epoch, drives, nowUs } = situation();
       if (drives) send(this.#frame(engaged, epoch, nowUs));
@@ -77,6 +86,11 @@ export class KeyboardMouseInput {
     return this.#keyboard.toggles;
   }
 
+  /** Lets the person choose a SpaceMouse; from a press. */
+  askForDevice() {
+    return this.#devices.ask();
+  }
+
   /**
    * What the input panel shows.
    * @param {StatusChannel.Tick | null} status
@@ -84,7 +98,7 @@ export class KeyboardMouseInput {
    */
   view(status) {
     const { engaged = false, let_go: letGo = "" } = status ?? {};
-    return { gripper: this.#gripper, engaged, letGo };
+    return { gripper: this.#gripper, engaged, letGo, devices: this.#devices.names };
   }
 
   /**
@@ -104,3 +118,18 @@ export class KeyboardMouseInput {
     return encodeFrame({ seatEpoch, sequence, seenTick, sentUs, position, quaternionWxyz, gripper, flags });
   }
 }
+
+/**
+ * What two hands ask for at once.
+ * @param {Motion} a
+ * @param {Motion} b
+ * @returns {Motion}
+ */
+const together = (a, b) => ({
+  engaged: a.engaged || b.engaged,
+  move: sum(a.move, b.move),
+  turn: sum(a.turn, b.turn),
+});
+
+/** @type {(a: Vector, b: Vector) => Vector} */
+const sum = ([ax, ay, az], [bx, by, bz]) => [ax + bx, ay + by, az + bz];

@@ -6,6 +6,8 @@ import { byId, element, setShown, setText } from "../dom.js";
 import { letGoText } from "../drive/let-go.js";
 import { CUES } from "../facts.js";
 import { seconds } from "../formatting.js";
+import { HandheldDevices } from "../drive/handheld-devices.js";
+import { showQrCode } from "../qr-code.js";
 
 /** @import { HandView } from "../drive/keyboard-mouse-input.js" */
 
@@ -28,6 +30,7 @@ const KEYS = [
   ["Q", "With space let go, twice: leave the seat"],
   [CUES.map((_, index) => index + 1).join(" "), `To your partners: ${CUES.map(cueText).join(", ")}`],
   ["?", "These keys"],
+  ["Gamepad", "Left stick and triggers: move. Right stick and LB RB: turn. A: gripper. Start: next. Back: stop"],
 ];
 
 const FINGERS = matchMedia("(hover: none) and (pointer: coarse)");
@@ -73,7 +76,7 @@ export class InputPanel {
   update(status, hand) {
     const phone = status?.phone ?? null;
     const byPhone = status?.input === "phone";
-    showInput(phone, byPhone);
+    showInput(phone, byPhone, hand.devices);
     showHand(hand, byPhone);
     if (phone && this.#countdown && byPhone) this.#closePairing();
   }
@@ -92,7 +95,7 @@ export class InputPanel {
     try {
       const { url, qr_svg: svg, expires_s: expiresS, hint } = await pairPhone(this.#room, this.#arm);
       const image = byId("qr", HTMLImageElement);
-      image.src = `data:image/svg+xml,${encodeURIComponent(withNamespace(svg))}`;
+      showQrCode(image, svg);
       image.title = url;
       image.classList.toggle("small", hint !== ""); // a phone could not get there
       setText(byId("pairing-address"), url);
@@ -139,9 +142,11 @@ export class InputPanel {
  * What drives, and the buttons that change it.
  * @param {StatusChannel.Tick["phone"]} phone
  * @param {boolean} byPhone
+ * @param {string[]} devices
  */
-function showInput(phone, byPhone) {
-  setText(byId("input"), byPhone ? phoneText(phone) : HAND_HERE);
+function showInput(phone, byPhone, devices) {
+  setText(byId("input"), byPhone ? phoneText(phone) : [HAND_HERE, ...devices].join(", "));
+  setShown(byId("spacemouse"), HandheldDevices.canAsk && !byPhone && !devices.includes("SpaceMouse"));
   setText(byId("switch"), byPhone ? "Use the keyboard" : "Use the phone");
   setText(byId("pair"), phone ? "Pair another phone" : "Pair a phone");
   setShown(byId("switch"), phone !== null || byPhone);
@@ -170,10 +175,6 @@ function phoneText(phone) {
 
 /** @param {string} keys */
 const caps = (keys) => keys.split(" ").flatMap((key) => [element("kbd", {}, key), " "]);
-
-/** @param {string} svg */
-const withNamespace = (svg) =>
-  svg.includes("xmlns=") ? svg : svg.replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"');
 
 /** @param {boolean} shown */
 function showKeys(shown) {

@@ -112,7 +112,7 @@ function rank({ mimeType, sdpFmtpLine = "" }) {
  * The offer goes out whole: without ICE servers gathering takes milliseconds, and for a silent one nobody waits longer.
  * @param {RTCPeerConnection} connection
  */
-async function gathered(connection) {
+export async function gathered(connection) {
   if (connection.iceGatheringState === "complete") return;
   const timeout = AbortSignal.timeout(GATHERING_MS);
   await new Promise((resolve) => {
