@@ -33,6 +33,7 @@ class StubPeer:
         self.heard_s = 0.0
         self.is_connected = False
         self.is_closed = False
+        self.draws = False
 
     async def answer(self, offer_sdp: str) -> str:
         await asyncio.sleep(0)

@@ -11,7 +11,19 @@ from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
 
 from mart.protocol.errors import InvalidInput, MartError, NotFound
-from mart.web.api import auth, datasets, episodes, health, live, pages, phones, rooms, signaling, training
+from mart.web.api import (
+    auth,
+    datasets,
+    episodes,
+    health,
+    live,
+    pages,
+    phones,
+    rooms,
+    scenes,
+    signaling,
+    training,
+)
 from mart.web.api.app_state import AppState
 from mart.web.app.security_middleware import SecurityMiddleware
 from mart.web.errors import TooMany, error_json, http_status
@@ -24,7 +36,7 @@ def create_app(state: AppState) -> FastAPI:
     app = FastAPI(title="MART", openapi_url=None, docs_url=None, redoc_url=None)
     app.state.app_state = state
     app.add_middleware(SecurityMiddleware, site=state.site)
-    for module in (auth, rooms, phones, signaling, live, health, episodes, datasets, training, pages):
+    for module in (auth, rooms, phones, signaling, scenes, live, health, episodes, datasets, training, pages):
         app.include_router(module.router)
     app.mount("/static", StaticFiles(directory=pages.STATIC))
     app.add_exception_handler(MartError, _on_mart_error)
