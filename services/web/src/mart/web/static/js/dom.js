@@ -115,3 +115,12 @@ export function keepChildren(parent, keys, made, make) {
     if (parent.children[index] !== child.node) parent.insertBefore(child.node, parent.children[index] ?? null);
   });
 }
+
+/**
+ * What was pressed with the pointer gives the keys back to the arm.
+ * @param {MouseEvent} event
+ */
+export function letGoOfButton({ detail, target }) {
+  const pressed = detail > 0 && target instanceof Element && target.closest("button, summary");
+  if (pressed instanceof HTMLElement) pressed.blur();
+}

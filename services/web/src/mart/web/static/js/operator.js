@@ -2,7 +2,7 @@
 
 import * as api from "./api.js";
 import { armName, badge, hasPicture } from "./arms.js";
-import { byId, setShown, setText } from "./dom.js";
+import { byId, letGoOfButton, setShown, setText } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
 import { CUES } from "./facts.js";
@@ -14,6 +14,7 @@ import { showHealth } from "./hud/health-figure.js";
 import { showPartners } from "./hud/partners.js";
 import { showPicture } from "./hud/picture.js";
 import { StatusBar } from "./hud/status-bar.js";
+import { DrawnPicture, pictureChoice } from "./scene/drawn-picture.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
@@ -48,9 +49,19 @@ const input = new KeyboardMouseInput(byId("picture"), onKey);
 const link = new SeatLink({
   fetchToken: async () => ({ room: roomName, arm: armId, ...(await api.seatToken(roomName, armId)) }),
   wantsVideo: true,
-  onState: () => render(),
+  onState: onLink,
   onStatus,
   onTrack: (stream) => (video.srcObject = stream),
+  onPoses: (message) => drawn.onPoses(message),
+});
+const drawn = new DrawnPicture({
+  host: byId("picture"),
+  room: roomName,
+  arm: armId,
+  choice: pictureChoice(),
+  send: (message) => link.send(message),
+  onShown,
+  onChange: () => render(),
 });
 const stop = emergencyStop({
   label: roomName,
@@ -83,23 +94,10 @@ function begin() {
   byId("health").addEventListener("toggle", () => render());
   video.addEventListener("resize", () => render());
   document.addEventListener("click", letGoOfButton);
-  watchTicks(video, (tick, nowMs) => {
-    if (tick !== input.seenTick) displayedMs = nowMs;
-    input.seenTick = tick; // a smaller one than before is of another run of the simulation
-    link.send({ type: "seen", tick, t_us: nowMs * 1000 });
-  });
+  watchTicks(video, onShown);
   setInterval(render, AGE_MS); // what grows old says so without any news
   input.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));
   followRooms({ onRooms, onEvent, onEnded: toLobby });
-}
-
-/**
- * What was pressed with the pointer gives the keys back to the arm.
- * @param {MouseEvent} event
- */
-function letGoOfButton({ detail, target }) {
-  const pressed = detail > 0 && target instanceof Element && target.closest("button, summary");
-  if (pressed instanceof HTMLElement) pressed.blur();
 }
 
 const ownSeat = () => room?.seats.find((seat) => seat.arm === armId);
@@ -134,8 +132,25 @@ function onEvent(event) {
   render();
 }
 
+function onLink() {
+  if (link.state === LinkState.LIVE) drawn.onLive();
+  render();
+}
+
+/**
+ * A tick is seen, in the video or drawn.
+ * @param {number} tick
+ * @param {number} nowMs
+ */
+function onShown(tick, nowMs) {
+  if (tick !== input.seenTick) displayedMs = nowMs;
+  input.seenTick = tick; // a smaller one than before is of another run of the simulation
+  link.send({ type: "seen", tick, t_us: nowMs * 1000 });
+}
+
 /** @param {StatusChannel.Tick} tick */
 function onStatus(tick) {
+  drawn.onTick(tick.tick);
   input.adoptGripper(tick, status);
   status = tick;
   if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
@@ -157,12 +172,12 @@ function render() {
   const isNew = !localStorage.getItem(RECORDED_KEY);
   statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches });
   const told = isTold();
-  showHealth({ told, live: link.state === LinkState.LIVE, still: standsStill(), status, room }, video);
+  showHealth({ told, live: link.state === LinkState.LIVE, still: standsStill(), status, room, drawn }, video);
   stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
   if (room) showRoom({ ...room, stale: !told });
-  showPicture(seat, status, link.state === LinkState.LIVE);
+  showPicture(seat, status, link.state === LinkState.LIVE, drawn.isShown);
   showHolder(mine);
 }
 

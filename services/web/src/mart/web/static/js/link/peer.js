@@ -8,6 +8,7 @@
  * @property {(sdp: string) => Promise<string>} exchange takes the offer to the gateway and returns its answer
  * @property {(stream: MediaStream) => void} onTrack
  * @property {(message: StatusChannel.FromGateway) => void} onMessage
+ * @property {(message: ArrayBuffer) => void} onPoses where the bodies are, for a page that draws
  * @property {() => void} onClosed
  */
 
@@ -44,11 +45,12 @@ export class Peer {
   }
 
   /** @param {PeerOptions} options */
-  async #connect({ wantsVideo, drives, exchange, onTrack, onMessage, onClosed }) {
+  async #connect({ wantsVideo, drives, exchange, onTrack, onMessage, onPoses, onClosed }) {
     const connection = this.#connection;
     this.#status.addEventListener("message", ({ data }) => onMessage(JSON.parse(data)));
     if (drives) this.#pose = connection.createDataChannel("pose", CHANNEL);
     if (wantsVideo) {
+      receivePoses(connection.createDataChannel("bodies", CHANNEL), onPoses);
       receiveVideo(connection);
       connection.addEventListener("track", ({ track }) => onTrack(new MediaStream([track])));
     }
@@ -82,6 +84,15 @@ export class Peer {
   close() {
     this.#connection.close();
   }
+}
+
+/**
+ * @param {RTCDataChannel} channel
+ * @param {(message: ArrayBuffer) => void} onPoses
+ */
+function receivePoses(channel, onPoses) {
+  channel.binaryType = "arraybuffer";
+  channel.addEventListener("message", ({ data }) => onPoses(data));
 }
 
 /** @param {RTCPeerConnection} connection */

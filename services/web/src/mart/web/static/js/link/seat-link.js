@@ -36,6 +36,7 @@ export const LinkState = Object.freeze({
  * @property {() => void} onState
  * @property {(status: StatusChannel.Tick) => void} onStatus
  * @property {(stream: MediaStream) => void} [onTrack]
+ * @property {(message: ArrayBuffer) => void} [onPoses]
  */
 
 /** Keeps a page connected to a seat. `problem`: why it does not connect, in words; `epoch`, `role`: the token's. */
@@ -126,13 +127,14 @@ export class SeatLink {
    * @param {number} attempt
    */
   #reach({ room, arm, token, role, ice_servers: iceServers }, attempt) {
-    const { wantsVideo, onTrack = () => {} } = this.#options;
+    const { wantsVideo, onTrack = () => {}, onPoses = () => {} } = this.#options;
     return Peer.connect({
       wantsVideo,
       drives: role !== "viewer",
       iceServers,
       exchange: async (sdp) => (await sendOffer(room, arm, token, sdp)).sdp,
       onTrack,
+      onPoses: (message) => attempt === this.#attempt && onPoses(message),
       onMessage: (message) => attempt === this.#attempt && this.#onMessage(message),
       onClosed: () => attempt === this.#attempt && this.#lose(),
     });

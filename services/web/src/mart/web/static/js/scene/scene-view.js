@@ -55,9 +55,9 @@ export class SceneView {
     for (const geom of description.geoms) (this.#bodies[geom.body] ?? world).add(this.#made(geom));
   }
 
-  /** The drawing context, for whoever watches over it. */
+  /** The drawing context, for whoever watches over it; three.js makes no other than of WebGL 2. */
   get context() {
-    return this.#renderer.getContext();
+    return /** @type {WebGL2RenderingContext} */ (this.#renderer.getContext());
   }
 
   /**
