@@ -120,6 +120,7 @@ function follow(seat) {
   if (!seat || seat.epoch === followed) return;
   followed = seat.epoch;
   status = null;
+  drawn.rest(); // it is told anew, and an old picture is never shown
   if (hasPicture(seat)) link.connect();
   else link.close();
 }

@@ -1,6 +1,6 @@
 // The picture, drawn in the page where the device draws fast enough; video is shown wherever it is not.
 
-import { fetchScene, messageOf } from "../api.js";
+import { fetchScene, messageOf, statusOf } from "../api.js";
 import { setShown } from "../dom.js";
 import { DrawTimes, drawn, timeDraws } from "./draw-times.js";
 import { parsePoses } from "./pose-message.js";
@@ -18,6 +18,7 @@ const RETRY_MS = 3000;
 const MOST_LOST = 3;
 const LARGEST_RATIO = 1.5; // pixels for each of the page's; more costs phones more than it shows
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i; // not worth twenty draws: it takes 100 ms each
+const BAD_REQUEST = 400; // this room cannot be drawn in a page
 const SLOW_KEY = "mart.drawsSlowly";
 const SLOW_FOR_MS = 24 * 60 * 60 * 1000;
 
@@ -108,6 +109,11 @@ export class DrawnPicture {
     this.#drawSoon();
   }
 
+  /** Nobody drives this seat now: what was drawn last would be an old picture. */
+  rest() {
+    if (this.#wanted) this.#leave();
+  }
+
   /** The gateway is heard, perhaps on a new connection: it is told again. */
   onLive() {
     this.#heardMs = performance.now();
@@ -125,7 +131,7 @@ export class DrawnPicture {
       else this.#want(true);
     } catch (error) {
       this.why = `It cannot be drawn here: ${messageOf(error)}`;
-      if (error instanceof WebGLMissing) this.#ended = true;
+      this.#ended = error instanceof WebGLMissing || statusOf(error) === BAD_REQUEST;
     } finally {
       this.#busy = false;
       this.#options.onChange();
@@ -225,7 +231,6 @@ export class DrawnPicture {
   #leave() {
     this.#want(false);
     this.#poses = null;
-    this.#sha256 = "";
     if (this.#canvas) setShown(this.#canvas, false);
     this.#options.onChange();
   }
