@@ -21,6 +21,10 @@ PROTO_DIR := protocol/proto
 PROTOS := $(wildcard $(PROTO_DIR)/mart/v1/*.proto)
 PROTOC = $(BIN)/python -m grpc_tools.protoc --proto_path=$(PROTO_DIR) --python_out=$(1) --pyi_out=$(1) $(PROTOS)
 
+# What the pages use of three.js, as one module; PAGE_LIBRARY bundles it to standard output.
+VENDOR := services/web/src/mart/web/static/vendor
+PAGE_LIBRARY := $(NODE_BIN)/esbuild services/web/vendor/three.js --bundle --format=esm --minify --legal-comments=eof --charset=utf8 --target=es2022
+
 BENCHMARKS := $(subst _,-,$(filter-out report,$(basename $(notdir $(wildcard benchmarks/*.py)))))
 
 # Unit tests share nothing but the machine, so they run on every core. Tests of processes mostly wait: two at a time, each
@@ -120,6 +124,8 @@ check-proto: $(VENV)/.tools
 check-pages: $(NODE)/.installed
 	@$(NODE_BIN)/eslint --max-warnings 0 .
 	@$(NODE_BIN)/tsc
+	@$(PAGE_LIBRARY) | cmp --quiet - $(VENDOR)/three.mjs && cmp --quiet $(NODE)/three/LICENSE $(VENDOR)/three.LICENSE.txt \
+	|| { echo "The bundle of three.js is stale: run 'make page-libraries' and commit the result." >&2; exit 1; }
 
 .PHONY: task-pages
 task-pages: $(VENV)/.tools ## Write docs/tasks.md and draw its pictures anew, from the catalogue and the scenes
@@ -128,6 +134,11 @@ task-pages: $(VENV)/.tools ## Write docs/tasks.md and draw its pictures anew, fr
 .PHONY: page-facts
 page-facts: $(VENV)/.tools ## Write what the pages know from the Python parts: lists, limits, colours, types
 	@$(BIN)/python tools/page_facts.py
+
+.PHONY: page-libraries
+page-libraries: $(NODE)/.installed ## Bundle anew what the pages use of three.js, with its licence
+	@$(PAGE_LIBRARY) > $(VENDOR)/three.mjs
+	@cp $(NODE)/three/LICENSE $(VENDOR)/three.LICENSE.txt
 
 .PHONY: operator-picture
 operator-picture: $(VENV)/.tools ## Take the picture of the operator's page anew, in a real browser

@@ -90,7 +90,7 @@ const documentation = {
 };
 
 export default [
-  { ignores: [".*/", "test-output/"] },
+  { ignores: [".*/", "test-output/", "services/web/src/mart/web/static/vendor/"] },
   { linterOptions: { reportUnusedDisableDirectives: "error" } },
   { files: [PAGES, TESTS, TOOLS], ...js.configs.recommended },
   { files: [PAGES, TESTS, TOOLS], rules },

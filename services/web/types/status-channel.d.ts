@@ -50,6 +50,7 @@ declare namespace StatusChannel {
     | { type: "ping"; t_us: number }
     | { type: "clock"; offset_ns: number }
     | { type: "seen"; tick: number; t_us: number }
+    | { type: "drawing"; on: boolean; p50_ms: number; p95_ms: number; per_s: number }
     | { type: "input"; input: Input }
     | { type: "cue"; cue: Messages.Cue; t_us: number };
 }

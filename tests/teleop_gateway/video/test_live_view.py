@@ -86,6 +86,19 @@ def test_a_small_still_of_it_follows(watched: Watched, world: World) -> None:
     assert np.mean(np.abs(seen[-4:] - 127.5) > 100) < 0.5  # not the strip, which is black and white
 
 
+def test_a_view_that_nobody_needs_draws_thumbnails_alone_and_goes_on_with_a_keyframe(
+    watched: Watched, world: World
+) -> None:
+    watched.view.set_resting(True)
+    watched.view.offer(state(world, 7), 0)
+    assert watched.stills.get(timeout=30.0).image_ns == 1007
+    watched.view.offer(state(world, 8), 0)
+    watched.view.request_keyframe(Codec.H264)
+    watched.view.set_resting(False)
+    assert watched.drawn(state(world, 9)).encoded.keyframe
+    assert watched.pictures.empty()
+
+
 def test_a_slow_renderer_leaves_states_out(watched: Watched, world: World) -> None:
     for tick in range(1, 101):
         watched.view.offer(state(world, tick), 0)

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mart.protocol.messages import ArmState, Command, CommandStamps, State, TickStamps
-from mart.teleop_gateway.video.motion_to_photon import STAGES, MotionToPhoton, PictureStamps
+from mart.teleop_gateway.video.motion_to_photon import STAGES, MotionToPhoton, PageDraws, PictureStamps
 
 MS = 1_000_000
 START_NS = 1_800_000_000_000_000_000
@@ -146,7 +146,8 @@ def test_the_event_names_every_stage() -> None:
     pass_through(latency, 1, START_NS, [1, 2, 3, 4, 5, 6, 7, 8])
     summary = latency.summary()
     assert summary is not None
-    event = summary.event("arm0")
+    event = summary.event("arm0", PageDraws(on=True, p50_ms=3.0, p95_ms=5.0, per_s=60.0))
     assert [(s.name, s.p50_ms) for s in event.stages] == [(name, i) for i, name in enumerate(STAGES, start=1)]
     assert (event.arm, event.p50_ms, event.p95_ms, event.frames) == ("arm0", 36, 36, 1)
+    assert (event.drawn_in_page, event.draw_p50_ms, event.draw_p95_ms, event.draws_per_s) == (True, 3, 5, 60)
     assert "tick wait 3.0" in str(summary)

@@ -14,6 +14,7 @@ from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryNetwork
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.video import view_manager
+from mart.teleop_gateway.video.page_drawing import PageDrawing
 from mart.teleop_gateway.video.quality import FAST
 from mart.teleop_gateway.video.view_manager import ViewManager
 
@@ -31,6 +32,9 @@ class StubView:
         self._loop = asyncio.get_running_loop()
 
     def set_codecs(self, codecs: object) -> None:
+        pass
+
+    def set_resting(self, resting: bool) -> None:
         pass
 
     def start(self) -> None:
@@ -54,7 +58,8 @@ class Room:
         network.connect().serve(
             keys.model(SEAT.room), lambda request: request.reply(codec.encode(Model(sha256=self.model)))
         )
-        monkeypatch.setattr(view_manager, "load_room_model", lambda message, quality: message.sha256)
+        monkeypatch.setattr(view_manager, "load_plain_model", lambda message: message.sha256)
+        monkeypatch.setattr(view_manager, "drawn_model", lambda model, quality: model)
         monkeypatch.setattr(view_manager, "camera_azimuth_rad", lambda message, model, arm: 0.0)
         monkeypatch.setattr(view_manager, "LiveView", self._make)
         self.used = asyncio.Event()
@@ -64,6 +69,7 @@ class Room:
             sink=lambda _: None,
             on_azimuth=lambda _: self.used.set(),
             quality=FAST,
+            pages=PageDrawing(asyncio.get_running_loop(), lambda _: None),
         )
 
     def _make(self, *arguments: Any) -> StubView:

@@ -28,11 +28,15 @@ NUMBERS = st.one_of(
     st.sampled_from([2**53, 2**63 - 1, 2**63, -(2**63), 10**400, 1e306, 1.7e308, True, None, "7"]),
 )
 MESSAGES = st.fixed_dictionaries(
-    {"type": st.sampled_from(["ping", "clock", "seen", "input", "cue", "other"])},
+    {"type": st.sampled_from(["ping", "clock", "seen", "drawing", "input", "cue", "other"])},
     optional={
         "t_us": NUMBERS,
         "offset_ns": NUMBERS,
         "tick": NUMBERS,
+        "on": st.sampled_from([True, False, 1, None]),
+        "p50_ms": NUMBERS,
+        "p95_ms": NUMBERS,
+        "per_s": NUMBERS,
         "input": st.sampled_from(["phone", "keyboard", "", 7]),
         "cue": st.sampled_from(["wait", "go", "", 7]),
     },
@@ -58,6 +62,8 @@ def test_no_message_is_more_than_a_seat_can_take(said: list[dict[str, Any]], now
     nobody = mock.MagicMock()
     seat_input, driving = driven(nobody)
     messages = PeerMessages(
+        peers=nobody,
+        pages=nobody,
         seat_input=seat_input,
         views=nobody,
         latency=MotionToPhoton("arm0"),

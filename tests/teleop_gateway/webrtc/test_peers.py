@@ -5,11 +5,19 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Set as AbstractSet
 from typing import Any, cast
+from unittest import mock
 
 import pytest
 
 from mart.protocol.errors import Conflict, InvalidInput
-from mart.protocol.messages import RoomStatus
+from mart.protocol.messages import (
+    EPISODE_PHASE_COUNTDOWN,
+    EPISODE_PHASE_ENDED,
+    EPISODE_PHASE_PRACTICE,
+    EPISODE_PHASE_RECORDING,
+    EpisodePhase,
+    RoomStatus,
+)
 from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryNetwork
@@ -25,7 +33,8 @@ CONNECTS = "an offer of a page that connects"
 class StubPeer:
     """A peer without a connection, last heard at 0 s."""
 
-    codec = track = None
+    codec: Codec | None = None
+    track = None
 
     def __init__(self, role: Role, _listener: object, _ice_servers: object, holder_id: str) -> None:
         self.role = role
@@ -33,6 +42,8 @@ class StubPeer:
         self.heard_s = 0.0
         self.is_connected = False
         self.is_closed = False
+        self.draws = False
+        self.poses = b""
 
     async def answer(self, offer_sdp: str) -> str:
         await asyncio.sleep(0)
@@ -44,6 +55,12 @@ class StubPeer:
 
     def send_status(self, text: str) -> None:
         """Nobody hears it."""
+
+    def set_draws(self, draws: bool) -> None:
+        self.draws = draws
+
+    def send_poses(self, message: bytes) -> None:
+        self.poses = message
 
 
 class Leavers:
@@ -111,6 +128,54 @@ def test_a_seat_that_changes_hands_keeps_its_viewers() -> None:
         peers.drop_driving()
         assert leavers.left == [Role.BROWSER, Role.PHONE]
         assert [peer.role for peer in peers] == [Role.VIEWER]
+
+    asyncio.run(body())
+
+
+def test_a_page_that_draws_watches_no_video_and_is_told_poses() -> None:
+    async def body() -> None:
+        peers, _ = await seated()
+        browser, _, viewer = cast("list[StubPeer]", list(peers))
+        browser.codec = viewer.codec = Codec.H264
+        assert (peers.any_draws, peers.holder_draws, peers.codecs()) == (
+            False,
+            False,
+            frozenset({Codec.H264}),
+        )
+        peers.set_draws(cast("Peer", viewer), True)
+        assert (peers.any_draws, peers.holder_draws, peers.codecs()) == (True, False, frozenset({Codec.H264}))
+        peers.set_draws(cast("Peer", browser), True)
+        assert (peers.any_draws, peers.holder_draws, peers.codecs()) == (True, True, frozenset())
+        peers.set_draws(cast("Peer", viewer), False)
+        peers.put_poses(b"poses")
+        assert (browser.poses, viewer.poses) == (b"poses", b"")
+
+    asyncio.run(body())
+
+
+@pytest.mark.parametrize(
+    ("draws", "watches", "phase", "rests"),
+    [
+        (True, False, EPISODE_PHASE_PRACTICE, True),
+        (True, True, EPISODE_PHASE_PRACTICE, False),
+        (False, False, EPISODE_PHASE_PRACTICE, False),
+        (True, False, EPISODE_PHASE_COUNTDOWN, False),
+        (True, False, EPISODE_PHASE_RECORDING, False),
+        (True, False, EPISODE_PHASE_ENDED, True),
+    ],
+)
+def test_a_view_rests_where_pages_draw_nobody_watches_and_nothing_is_recorded(
+    draws: bool, watches: bool, phase: EpisodePhase, rests: bool
+) -> None:
+    async def body() -> None:
+        peers, _ = await seated()
+        views = mock.MagicMock()
+        broadcaster = StatusBroadcaster(peers, cast("Any", None), views, cast("Any", None))
+        browser, _, viewer = cast("list[StubPeer]", list(peers))
+        browser.draws, viewer.codec = draws, Codec.H264 if watches else None
+        broadcaster.status = RoomStatus(episode={"phase": phase})
+        broadcaster.rest_where_unneeded()
+        views.set_resting.assert_called_once_with(rests)
 
     asyncio.run(body())
 

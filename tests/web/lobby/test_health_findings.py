@@ -76,6 +76,22 @@ def test_the_advice_is_for_the_cause(latency: Event.Latency, load: float, mend: 
     assert bool(finding.mend) == bool(mend)
 
 
+@pytest.mark.parametrize(
+    ("drawn_in_page", "draw_ms", "told"),
+    [
+        (True, 3.0, "drawn in the page, 3 ms a draw, 95 % under 6 ms, 60 a second"),
+        (False, 90.0, "video, since the page would need 90 ms a draw"),
+        (False, 0.0, ""),
+    ],
+)
+def test_who_draws_is_told_with_the_delay(drawn_in_page: bool, draw_ms: float, told: str) -> None:
+    latency = Event.Latency(arm="arm0", p50_ms=60, p95_ms=90, drawn_in_page=drawn_in_page, draws_per_s=60)
+    latency.draw_p50_ms, latency.draw_p95_ms = draw_ms, 2 * draw_ms
+    (finding,) = delays([("room-1", latency)])
+    assert told in finding.found
+    assert bool(told) == (";" in finding.found)
+
+
 def test_a_seat_that_cannot_be_drawn_is_a_finding() -> None:
     missing = Event.NoPicture(arm="arm0", reason="Nothing can be drawn on this machine.")
     (finding,) = pictures([("room-1", missing)])

@@ -123,6 +123,11 @@ def signal(room: str, arm: str, peer: str) -> Topic:
     return Topic(_key(room, "signal", arm, peer), Priority.NORMAL, must_arrive=True)
 
 
+def scene(room: str, arm: str) -> Topic:
+    """Queryable: SceneRequest → SceneReply, answered by the process of the arm's seat."""
+    return Topic(_key(room, "arm", arm, "scene"), Priority.LOW, must_arrive=True)
+
+
 def open_seat(gateway: str) -> Topic:
     """Queryable: OpenSeat → OpenSeatReply. `gateway` is the id of a gateway service."""
     return Topic(f"{ROOT}/@gateway/{_segment('gateway', gateway)}/open", Priority.NORMAL, must_arrive=True)

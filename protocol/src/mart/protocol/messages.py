@@ -71,7 +71,7 @@ from mart.v1.room_pb2 import (
     SeatRequest,
     Waiting,
 )
-from mart.v1.signal_pb2 import Answer, Offer, OpenSeat, OpenSeatReply
+from mart.v1.signal_pb2 import Answer, Offer, OpenSeat, OpenSeatReply, SceneReply, SceneRequest
 from mart.v1.state_pb2 import ArmState, Model, Numerics, Observation, Progress, State, Subtask, TickStamps
 from mart.v1.trainer_pb2 import (
     JOB_STATE_CANCELLED,
@@ -171,6 +171,8 @@ __all__ = [
     "RoomReply",
     "RoomStatus",
     "RoomsRequest",
+    "SceneReply",
+    "SceneRequest",
     "Seat",
     "SeatRequest",
     "Span",

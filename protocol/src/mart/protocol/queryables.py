@@ -29,6 +29,8 @@ from mart.protocol.messages import (
     RoomReply,
     RoomsRequest,
     RoomStatus,
+    SceneReply,
+    SceneRequest,
     SeatRequest,
     State,
     TrainerReply,
@@ -66,6 +68,7 @@ ROOMS = Queryable("rooms", keys.rooms, RoomsRequest, RoomReply, 1024)
 OPEN_SEAT = Queryable("open", keys.open_seat, OpenSeat, OpenSeatReply, 1024)
 SIGNAL = Queryable("signal", keys.signal, Offer, Answer, MAX_SDP_CHARACTERS + 4096)
 CONNECTION_CHECK = Queryable("check", keys.connection_check, Offer, Answer, MAX_SDP_CHARACTERS + 4096)
+SCENE = Queryable("scene", keys.scene, SceneRequest, SceneReply, 4096)
 ROLLOUT = Queryable("rollout", keys.rollout, RolloutRequest, RolloutReply, codec.MAX_MESSAGE_BYTES)
 CATALOGUE = Queryable("catalogue", keys.catalogue, CatalogueRequest, CatalogueReply, 64 * 1024)
 TRAINING = Queryable("jobs", keys.training, TrainerRequest, TrainerReply, 64 * 1024)
@@ -82,5 +85,5 @@ BROADCASTS = (
 )
 
 QUERYABLES: tuple[Queryable[Message, Message], ...] = (
-    SEAT, EPISODE, ROOMS, OPEN_SEAT, SIGNAL, CONNECTION_CHECK, ROLLOUT, CATALOGUE, TRAINING,
+    SEAT, EPISODE, ROOMS, OPEN_SEAT, SIGNAL, CONNECTION_CHECK, SCENE, ROLLOUT, CATALOGUE, TRAINING,
 )  # fmt: skip

@@ -421,7 +421,7 @@ class Event(_message.Message):
         text: str
         def __init__(self, level: _Optional[str] = ..., text: _Optional[str] = ..., **kwargs) -> None: ...
     class Latency(_message.Message):
-        __slots__ = ("arm", "p50_ms", "p95_ms", "frames", "stages")
+        __slots__ = ("arm", "p50_ms", "p95_ms", "frames", "stages", "drawn_in_page", "draw_p50_ms", "draw_p95_ms", "draws_per_s")
         class Stage(_message.Message):
             __slots__ = ("name", "p50_ms")
             NAME_FIELD_NUMBER: _ClassVar[int]
@@ -434,12 +434,20 @@ class Event(_message.Message):
         P95_MS_FIELD_NUMBER: _ClassVar[int]
         FRAMES_FIELD_NUMBER: _ClassVar[int]
         STAGES_FIELD_NUMBER: _ClassVar[int]
+        DRAWN_IN_PAGE_FIELD_NUMBER: _ClassVar[int]
+        DRAW_P50_MS_FIELD_NUMBER: _ClassVar[int]
+        DRAW_P95_MS_FIELD_NUMBER: _ClassVar[int]
+        DRAWS_PER_S_FIELD_NUMBER: _ClassVar[int]
         arm: str
         p50_ms: float
         p95_ms: float
         frames: int
         stages: _containers.RepeatedCompositeFieldContainer[Event.Latency.Stage]
-        def __init__(self, arm: _Optional[str] = ..., p50_ms: _Optional[float] = ..., p95_ms: _Optional[float] = ..., frames: _Optional[int] = ..., stages: _Optional[_Iterable[_Union[Event.Latency.Stage, _Mapping]]] = ...) -> None: ...
+        drawn_in_page: bool
+        draw_p50_ms: float
+        draw_p95_ms: float
+        draws_per_s: float
+        def __init__(self, arm: _Optional[str] = ..., p50_ms: _Optional[float] = ..., p95_ms: _Optional[float] = ..., frames: _Optional[int] = ..., stages: _Optional[_Iterable[_Union[Event.Latency.Stage, _Mapping]]] = ..., drawn_in_page: _Optional[bool] = ..., draw_p50_ms: _Optional[float] = ..., draw_p95_ms: _Optional[float] = ..., draws_per_s: _Optional[float] = ...) -> None: ...
     class CueGiven(_message.Message):
         __slots__ = ("arm", "cue")
         ARM_FIELD_NUMBER: _ClassVar[int]

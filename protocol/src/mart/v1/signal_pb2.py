@@ -25,7 +25,7 @@ _sym_db = _symbol_database.Default()
 from mart.v1 import room_pb2 as mart_dot_v1_dot_room__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14mart/v1/signal.proto\x12\x07mart.v1\x1a\x12mart/v1/room.proto\"#\n\x05Offer\x12\r\n\x05token\x18\x01 \x01(\t\x12\x0b\n\x03sdp\x18\x02 \x01(\t\"4\n\x06\x41nswer\x12\x1d\n\x05\x65rror\x18\x01 \x01(\x0b\x32\x0e.mart.v1.Error\x12\x0b\n\x03sdp\x18\x02 \x01(\t\"9\n\x08OpenSeat\x12\x0c\n\x04room\x18\x01 \x01(\t\x12\x0b\n\x03\x61rm\x18\x02 \x01(\t\x12\x12\n\nseat_epoch\x18\x03 \x01(\x04\".\n\rOpenSeatReply\x12\x1d\n\x05\x65rror\x18\x01 \x01(\x0b\x32\x0e.mart.v1.Errorb\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14mart/v1/signal.proto\x12\x07mart.v1\x1a\x12mart/v1/room.proto\"#\n\x05Offer\x12\r\n\x05token\x18\x01 \x01(\t\x12\x0b\n\x03sdp\x18\x02 \x01(\t\"4\n\x06\x41nswer\x12\x1d\n\x05\x65rror\x18\x01 \x01(\x0b\x32\x0e.mart.v1.Error\x12\x0b\n\x03sdp\x18\x02 \x01(\t\"9\n\x08OpenSeat\x12\x0c\n\x04room\x18\x01 \x01(\t\x12\x0b\n\x03\x61rm\x18\x02 \x01(\t\x12\x12\n\nseat_epoch\x18\x03 \x01(\x04\".\n\rOpenSeatReply\x12\x1d\n\x05\x65rror\x18\x01 \x01(\x0b\x32\x0e.mart.v1.Error\"$\n\x0cSceneRequest\x12\x14\n\x0cknown_sha256\x18\x01 \x03(\t\"O\n\nSceneReply\x12\x1d\n\x05\x65rror\x18\x01 \x01(\x0b\x32\x0e.mart.v1.Error\x12\x0e\n\x06sha256\x18\x02 \x01(\t\x12\x12\n\nscene_gzip\x18\x03 \x01(\x0c\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -40,4 +40,8 @@ if not _descriptor._USE_C_DESCRIPTORS:
   _globals['_OPENSEAT']._serialized_end=201
   _globals['_OPENSEATREPLY']._serialized_start=203
   _globals['_OPENSEATREPLY']._serialized_end=249
+  _globals['_SCENEREQUEST']._serialized_start=251
+  _globals['_SCENEREQUEST']._serialized_end=287
+  _globals['_SCENEREPLY']._serialized_start=289
+  _globals['_SCENEREPLY']._serialized_end=368
 # @@protoc_insertion_point(module_scope)

@@ -7,6 +7,8 @@
 from __future__ import annotations
 
 from mart.render.compiled_model import load_model, viewpoint_id
+from mart.render.moving_bodies import BodyPoses
 from mart.render.renderer import Image, Renderer
+from mart.render.scene_export import PageScene, export_scene
 
-__all__ = ["Image", "Renderer", "load_model", "viewpoint_id"]
+__all__ = ["BodyPoses", "Image", "PageScene", "Renderer", "export_scene", "load_model", "viewpoint_id"]

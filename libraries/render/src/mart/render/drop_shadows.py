@@ -19,6 +19,7 @@ _HIDDEN_GROUP = 3
 @dataclass(frozen=True)
 class _Spot:
     geom: int
+    own_body: int
     body: int  # what casts it
     site: int  # the tool, where an arm casts it, else -1
 
@@ -32,12 +33,14 @@ class DropShadows:
         self._surfaces = [geom for geom in range(model.ngeom) if _is_wide_box(model, geom)]
 
     def lift(self, data: mujoco.MjData) -> None:
-        """Lift the spots in `data`, whose kinematics are up to date."""
+        """Lift the spots in `data`, and their bodies; its kinematics are up to date."""
         for spot in self._spots:
             x, y, _ = data.geom_xpos[spot.geom].tolist()
             height_m = (data.site_xpos[spot.site] if spot.site >= 0 else data.xpos[spot.body])[2]
             tops = (self._top_m(data, geom, spot, x, y) for geom in self._surfaces)
-            data.geom_xpos[spot.geom, 2] += max((top for top in tops if top < height_m), default=0.0)
+            lift_m = max((top for top in tops if top < height_m), default=0.0)
+            data.geom_xpos[spot.geom, 2] += lift_m
+            data.xpos[spot.own_body, 2] += lift_m
 
     def _top_m(self, data: mujoco.MjData, geom: int, spot: _Spot, x: float, y: float) -> float:
         """Return how high the box's upper side is under (x, y); 0 where it is not there, or casts the spot itself."""
@@ -58,6 +61,7 @@ def _spot(model: mujoco.MjModel, body: int) -> _Spot | None:
     caster = name.removesuffix(_SUFFIX)
     return _Spot(
         int(model.body_geomadr[body]),
+        body,
         mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, caster),
         mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{caster}/tool"),
     )

@@ -14,6 +14,7 @@ from mart.protocol.messages import (
     OpenSeatReply,
     RolloutReply,
     RoomReply,
+    SceneReply,
     TrainerReply,
     raise_error,
 )
@@ -22,7 +23,8 @@ from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import Bus
 
 Reply = TypeVar(
-    "Reply", bound=Answer | CatalogueReply | OpenSeatReply | RolloutReply | RoomReply | TrainerReply
+    "Reply",
+    bound=Answer | CatalogueReply | OpenSeatReply | RolloutReply | RoomReply | SceneReply | TrainerReply,
 )
 
 

@@ -14,6 +14,7 @@ from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.seat_events import SeatEvents
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
+from mart.teleop_gateway.video.page_drawing import PageDrawing
 from mart.teleop_gateway.video.view_manager import ViewManager
 from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
 
@@ -27,12 +28,14 @@ class RoomFeed:
         *,
         seat_input: SeatInput,
         views: ViewManager,
+        pages: PageDrawing,
         latency: MotionToPhoton,
         events: SeatEvents,
         broadcaster: StatusBroadcaster,
     ) -> None:
         self._seat = seat
         self._input, self._views, self._latency = seat_input, views, latency
+        self._pages = pages
         self._events, self._broadcaster = events, broadcaster
         self._loop = asyncio.get_running_loop()
 
@@ -49,6 +52,7 @@ class RoomFeed:
     def _on_status(self, status: RoomStatus) -> None:
         self._broadcaster.status = status
         self._input.on_status(status)
+        self._broadcaster.rest_where_unneeded()
         self._broadcaster.tell_changes()
 
     def _on_state_arrival(self, state: State) -> None:
@@ -58,6 +62,7 @@ class RoomFeed:
             if arm.arm == self._seat.arm:
                 tool_in_base = pose_from_message(arm.tool_in_base)
                 self._views.offer(state, received_ns)
+                self._pages.offer(state, received_ns)
                 self._loop.call_soon_threadsafe(self._on_state, state, arm, tool_in_base)
 
     def _on_state(self, state: State, arm: ArmState, tool_in_base: Pose) -> None:

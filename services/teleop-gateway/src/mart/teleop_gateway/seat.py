@@ -4,6 +4,7 @@ Peers and rooms speak, pictures come out:
 - `room_feed` hands on what the room says, `webrtc.peer_messages` what peers say;
 - `input.seat_input` follows the holder and turns frames into commands;
 - `video.view_manager` draws and encodes, `video.picture_relay` hands pictures on;
+- `video.page_drawing` serves pages that draw by themselves;
 - `webrtc.offer_handler` lets peers in, `webrtc.status_broadcaster` tells them how things stand.
 """
 
@@ -14,15 +15,18 @@ import contextlib
 import logging
 
 from mart.protocol import keys
+from mart.protocol.queryables import SCENE
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import Bus, Closable
+from mart.runtime.serving import AsyncRequestAnswerer
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.room_feed import RoomFeed
 from mart.teleop_gateway.seat_events import SeatEvents
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.settings import GatewaySettings
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton, report_latency
+from mart.teleop_gateway.video.page_drawing import PageDrawing, PoseMessage
 from mart.teleop_gateway.video.picture_relay import PictureRelay
 from mart.teleop_gateway.video.quality import QUALITIES
 from mart.teleop_gateway.video.video_publisher import VideoPublisher
@@ -61,19 +65,29 @@ class Seat:
             on_new_holder=self._peers.drop_driving,
         )
         self._video = VideoPublisher(video_bus, address)
+        loop = asyncio.get_running_loop()
         relay = PictureRelay(
-            asyncio.get_running_loop(), self._peers.put, self._video, self._latency, self._input.on_drawn
+            loop,
+            self._peers.put,
+            self._video,
+            self._latency,
+            self._input.on_drawn,
+            holder_draws=lambda: self._peers.holder_draws,
         )
+        self._pages = PageDrawing(loop, self._send_poses)
         self._views = ViewManager(
             bus,
             address,
             sink=relay.put,
             on_azimuth=self._input.on_camera_azimuth,
             quality=QUALITIES[settings.quality],
+            pages=self._pages,
         )
         self._broadcaster = StatusBroadcaster(self._peers, self._input, self._views, self._latency)
         self._peers.attach(
             PeerMessages(
+                peers=self._peers,
+                pages=self._pages,
                 seat_input=self._input,
                 views=self._views,
                 latency=self._latency,
@@ -85,6 +99,7 @@ class Seat:
             address,
             seat_input=self._input,
             views=self._views,
+            pages=self._pages,
             latency=self._latency,
             events=self._events,
             broadcaster=self._broadcaster,
@@ -120,8 +135,16 @@ class Seat:
                 self._events.no_picture(failure)
             await asyncio.sleep(_NO_PICTURE_EVERY_S)
 
+    def _send_poses(self, message: PoseMessage) -> None:
+        self._peers.put_poses(message.data)
+        if self._peers.holder_draws:
+            self._latency.on_picture(message.tick, message.stamps)
+            self._input.on_drawn(message.tick)
+
     def _open(self) -> list[Closable]:
+        scene = AsyncRequestAnswerer(SCENE, self._pages.answer)
         return [
+            self._bus.serve(keys.scene(self._address.room, self._address.arm), scene),
             *self._offers.serve(self._bus),
             *self._feed.subscribe(self._bus),
             self._input,

@@ -106,6 +106,7 @@ class LiveView:
         self._times_s: deque[float] = deque(maxlen=_RATE_WINDOW)
         self.failure = ""  # why nothing can be drawn, in a sentence
         self._end = end
+        self._resting = False
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
@@ -125,6 +126,13 @@ class LiveView:
     def set_codecs(self, codecs: AbstractSet[Codec]) -> None:
         """Encode in these codecs. H.264 is always made: the recorder keeps what the operator saw."""
         self._queue.set_codecs(codecs)
+
+    def set_resting(self, resting: bool) -> None:
+        """Draw thumbnails alone; or draw every state again, from a keyframe on."""
+        self._resting = resting
+        if not resting:
+            for codec in Codec:
+                self._queue.request_keyframe(codec)
 
     def request_keyframe(self, codec: Codec) -> None:
         """Make the next picture in this codec a keyframe."""
@@ -161,6 +169,9 @@ class LiveView:
         while True:
             undrawn = self._queue.wait(_REPEAT_AFTER_S, _KEYFRAME_WITHIN_S)
             begun_s = clock.monotonic_s()
+            if self._resting and not thumbnails.is_due(begun_s):
+                drawn = None  # what is sent again must not be older than what pages have drawn
+                continue
             if undrawn is not None:
                 pipeline.resize(resolution.size)
                 try:
@@ -171,7 +182,7 @@ class LiveView:
                     continue
                 drawn, rendered_ns = undrawn, clock.wall_ns()
                 self._times_s.append(clock.monotonic_s())
-            if drawn is not None:
+            if drawn is not None and not self._resting:
                 self._encode(pipeline, drawn, rendered_ns)
             if undrawn is not None:
                 now_s = clock.monotonic_s()

@@ -47,6 +47,16 @@ class PictureStamps:
 
 
 @dataclass(frozen=True)
+class PageDraws:
+    """Hold what the holder's page last said of its drawing; 0 where it did not measure."""
+
+    on: bool = False
+    p50_ms: float = 0.0
+    p95_ms: float = 0.0
+    per_s: float = 0.0
+
+
+@dataclass(frozen=True)
 class LatencySummary:
     """Sum up the newest reports: `frames` pictures, and the median milliseconds of each of STAGES, in order."""
 
@@ -59,11 +69,19 @@ class LatencySummary:
         stages = ", ".join(f"{name} {ms:.1f}" for name, ms in zip(STAGES, self.stages, strict=True))
         return f"p50 {self.p50_ms:.1f} ms, p95 {self.p95_ms:.1f} ms of {self.frames} pictures ({stages})"
 
-    def event(self, arm: str) -> Event.Latency:
-        """Return the summary as the room is told of it."""
+    def event(self, arm: str, draws: PageDraws) -> Event.Latency:
+        """Return the summary as the room is told of it, with what the page says of its drawing."""
         named = [Event.Latency.Stage(name=n, p50_ms=ms) for n, ms in zip(STAGES, self.stages, strict=True)]
         return Event.Latency(
-            arm=arm, p50_ms=self.p50_ms, p95_ms=self.p95_ms, frames=self.frames, stages=named
+            arm=arm,
+            p50_ms=self.p50_ms,
+            p95_ms=self.p95_ms,
+            frames=self.frames,
+            stages=named,
+            drawn_in_page=draws.on,
+            draw_p50_ms=draws.p50_ms,
+            draw_p95_ms=draws.p95_ms,
+            draws_per_s=draws.per_s,
         )
 
 
@@ -73,6 +91,7 @@ class MotionToPhoton:
     def __init__(self, arm: str, window: int = 100, ticks: int = 256, commands: int = 256) -> None:
         self.reports = 0  # in all
         self.arm = arm
+        self.draws = PageDraws()
         self._ticks, self._commands = ticks, commands
         self._sent: dict[int, tuple[int, int]] = {}  # by sequence: input sent, gateway received
         self._until_state: dict[int, list[tuple[int, ...]]] = {}  # a row for each command of the tick
@@ -143,7 +162,7 @@ async def report_latency(latency: MotionToPhoton, tell: Callable[[Event.Latency]
         summary = latency.summary()
         if summary is not None and latency.reports > reported:
             reported = latency.reports
-            tell(summary.event(latency.arm))
+            tell(summary.event(latency.arm, latency.draws))
 
 
 def _keep(kept: dict[int, T], number: int, value: T, at_most: int) -> None:

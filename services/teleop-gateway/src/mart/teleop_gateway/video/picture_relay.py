@@ -22,8 +22,14 @@ class PictureRelay:
         publisher: VideoPublisher,
         latency: MotionToPhoton,
         on_drawn: Callable[[int], None],
+        *,
+        holder_draws: Callable[[], bool],
     ) -> None:
-        """Relay pictures. `to_peers`, and `on_drawn` with the picture's tick, are called on the loop."""
+        """Relay pictures. `to_peers`, and `on_drawn` with the picture's tick, are called on the loop.
+
+        Where `holder_draws`, these are not the pictures that the holder sees, and no account of its delays is theirs.
+        """
+        self._holder_draws = holder_draws
         self._loop, self._to_peers, self._publisher, self._latency = loop, to_peers, publisher, latency
         self._on_drawn = on_drawn
 
@@ -35,6 +41,6 @@ class PictureRelay:
 
     def _pass_on(self, picture: SeatPicture) -> None:
         self._to_peers(picture.encoded)
-        if picture.encoded.codec is Codec.H264:
+        if picture.encoded.codec is Codec.H264 and not self._holder_draws():
             self._latency.on_picture(picture.tick, picture.stamps)
             self._on_drawn(picture.tick)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+
 import mujoco
 import numpy as np
 
@@ -17,13 +19,23 @@ _SHADOW_MAP_PX = 4096
 
 
 def load_room_model(message: Model, quality: Quality = FAST) -> mujoco.MjModel:
-    """Return the compiled model that a room sent, to be drawn in this quality.
+    """Return the compiled model that a room sent, to be drawn in this quality; raises as `load_plain_model` does."""
+    return drawn_model(load_plain_model(message), quality)
+
+
+def load_plain_model(message: Model) -> mujoco.MjModel:
+    """Return the compiled model that a room sent, as it is.
 
     Raises Corrupt where its digest is wrong or this version of MuJoCo cannot load it.
     """
-    model = load_model(
+    return load_model(
         message.mjb, sha256=message.sha256, mujoco_version=message.mujoco_version, source="the room"
     )
+
+
+def drawn_model(model: mujoco.MjModel, quality: Quality) -> mujoco.MjModel:
+    """Return a model as it is drawn in this quality: a copy, where it looks different."""
+    model = copy.copy(model) if quality.shadows else model
     model.vis.quality.offsamples, model.vis.quality.shadowsize = quality.samples, _SHADOW_MAP_PX
     if quality.shadows:
         _cast_shadows(model)

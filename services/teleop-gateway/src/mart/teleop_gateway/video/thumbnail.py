@@ -27,9 +27,13 @@ class ThumbnailMaker:
     def __init__(self) -> None:
         self._due_s = 0.0
 
+    def is_due(self, now_s: float) -> bool:
+        """Tell whether the next view becomes a thumbnail."""
+        return now_s >= self._due_s
+
     def take(self, view_rgb: Image, image_ns: int, now_s: float) -> Thumbnail | None:
         """Return a thumbnail of a view, shape (height, width, 3); None where the last one is not old enough."""
-        if now_s < self._due_s:
+        if not self.is_due(now_s):
             return None
         self._due_s = now_s + EVERY_S
         small = cv2.resize(view_rgb, _SIZE_PX, interpolation=cv2.INTER_AREA)

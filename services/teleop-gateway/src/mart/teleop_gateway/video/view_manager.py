@@ -16,8 +16,9 @@ from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.video.live_view import LiveView, Sink
+from mart.teleop_gateway.video.page_drawing import PageDrawing
 from mart.teleop_gateway.video.quality import Quality
-from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, load_room_model
+from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, drawn_model, load_plain_model
 
 _log = logging.getLogger(__name__)
 
@@ -40,7 +41,10 @@ class ViewManager:
         sink: Sink,
         on_azimuth: Callable[[float], None],
         quality: Quality,
+        pages: PageDrawing,
     ) -> None:
+        self._pages = pages
+        self._resting = False
         self._bus, self._seat = bus, seat
         self._sink, self._on_azimuth, self._quality = sink, on_azimuth, quality
         self._boot = 0
@@ -70,6 +74,13 @@ class ViewManager:
         self._codecs = frozenset(codecs)
         if self._view is not None:
             self._view.set_codecs(self._codecs)
+
+    def set_resting(self, resting: bool) -> None:
+        """Draw nothing but thumbnails, now and in every later view, because nobody needs the pictures; or draw on."""
+        if resting != self._resting:
+            self._resting = resting
+            if self._view is not None:
+                self._view.set_resting(resting)
 
     def request_keyframe(self, codec: Codec) -> None:
         """Make the next picture in this codec a keyframe."""
@@ -112,10 +123,13 @@ class ViewManager:
         return DETAILED if self._quality.detailed else b""
 
     async def _use(self, message: Model) -> None:
-        model = await asyncio.to_thread(load_room_model, message, self._quality)
+        model = await asyncio.to_thread(load_plain_model, message)
         azimuth_rad = camera_azimuth_rad(message, model, self._seat.arm)
-        view = LiveView(model, self._seat.arm, message.control_hz, self._sink, self._quality)
+        self._pages.use(model)
+        drawn = drawn_model(model, self._quality)
+        view = LiveView(drawn, self._seat.arm, message.control_hz, self._sink, self._quality)
         view.set_codecs(self._codecs)
+        view.set_resting(self._resting)
         # Where this is cancelled half-way, no model is drawn: the next one that is fetched must be used.
         self._sha256 = ""
         await self._replace(view)

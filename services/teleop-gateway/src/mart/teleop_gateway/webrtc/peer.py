@@ -24,7 +24,7 @@ from mart.protocol.queryables import MAX_SDP_CHARACTERS
 from mart.protocol.tokens import Role
 from mart.runtime.ice_servers import IceServer
 from mart.runtime.rate_limit import RateLimit
-from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.encoder import Codec, EncodedPicture
 from mart.teleop_gateway.webrtc.aiortc_hooks import (
     close_connection,
     offer_playout_delay,
@@ -73,10 +73,12 @@ class Peer:
         self.track: EncodedTrack | None = None
         self.clock_offset_ns: int | None = None  # gateway clock minus the peer's, once it has told
         self.heard_s = clock.monotonic_s()
+        self.draws = False  # its page draws by itself: it wants poses and no video
         self._listener = listener
         self._status_rate = RateLimit(MAX_STATUS_PER_S)
         self._status: RTCDataChannel | None = None
         self._looking_up: asyncio.Task[None] | None = None
+        self._bodies: RTCDataChannel | None = None
         # An empty list, or aiortc asks a public STUN server and waits for it.
         self._connection = RTCPeerConnection(RTCConfiguration([*map(as_aiortc, ice_servers)]))
         self._connection.on("datachannel", self._on_channel)
@@ -102,9 +104,22 @@ class Peer:
 
     def send_status(self, text: str) -> None:
         """Send a message; it is dropped where the channel is not open, or still busy with older ones."""
-        channel = self._status
-        if channel is not None and channel.readyState == "open" and channel.bufferedAmount < _STALE_BYTES:
-            channel.send(text)
+        _send(self._status, text)
+
+    def send_poses(self, message: bytes) -> None:
+        """Send where the bodies are; dropped like a message of the status channel: the next tick's is newer."""
+        _send(self._bodies, message)
+
+    def show_video(self, encoded: EncodedPicture) -> None:
+        """Send a picture, unless this peer has another codec, or none, or draws by itself."""
+        if self.track is not None and self.codec is encoded.codec and not self.draws:
+            self.track.put(encoded)
+
+    def set_draws(self, draws: bool) -> None:
+        """Take whether its page draws by itself; where it does not any more, video begins with a keyframe."""
+        if self.draws and not draws and self.track is not None:
+            self.track.restart()
+        self.draws = draws
 
     async def close(self) -> None:
         """Return when the connection has ended."""
@@ -162,6 +177,8 @@ class Peer:
         if channel.label == "pose":
             if self.role is not Role.VIEWER:  # a page opens it before it knows whether it drives
                 channel.on("message", self._on_pose)
+        elif channel.label == "bodies" and self.role is not Role.PHONE:
+            self._bodies = channel
         elif channel.label == "status":
             self._status = channel
             channel.on("message", self._on_status)
@@ -187,6 +204,11 @@ class Peer:
         _log.debug("%s: %s", self.role, self._connection.connectionState)
         if self._connection.connectionState in _GONE:
             self._listener.on_gone(self)
+
+
+def _send(channel: RTCDataChannel | None, message: str | bytes) -> None:
+    if channel is not None and channel.readyState == "open" and channel.bufferedAmount < _STALE_BYTES:
+        channel.send(message)
 
 
 def as_aiortc(server: IceServer) -> RTCIceServer:

@@ -13,10 +13,12 @@ from mart.teleop_gateway.input.driving import InputDevice
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.seat_events import SeatEvents
 from mart.teleop_gateway.video.encoder import Codec
-from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
+from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton, PageDraws
+from mart.teleop_gateway.video.page_drawing import PageDrawing
 from mart.teleop_gateway.video.view_manager import ViewManager
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
+from mart.teleop_gateway.webrtc.peers import Peers
 from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
 
 _log = logging.getLogger(__name__)
@@ -30,12 +32,15 @@ class PeerMessages:
     def __init__(
         self,
         *,
+        peers: Peers,
+        pages: PageDrawing,
         seat_input: SeatInput,
         views: ViewManager,
         latency: MotionToPhoton,
         events: SeatEvents,
         broadcaster: StatusBroadcaster,
     ) -> None:
+        self._peers, self._pages = peers, pages
         self._input, self._views, self._latency = seat_input, views, latency
         self._events, self._broadcaster = events, broadcaster
         self._cues = CueFilter()
@@ -55,6 +60,8 @@ class PeerMessages:
     def on_watched(self, codecs: AbstractSet[Codec]) -> None:
         """Encode what somebody watches, and nothing else."""
         self._views.set_codecs(codecs)
+        self._pages.want(self._peers.any_draws)
+        self._broadcaster.rest_where_unneeded()
 
     def on_keyframe_wanted(self, codec: Codec) -> None:
         """Make the next picture one that needs none before it."""
@@ -80,8 +87,17 @@ class PeerMessages:
             case status_channel.SeenMessage(tick, t_us) if peer.clock_offset_ns is not None:
                 if peer.role is Role.BROWSER:
                     self._latency.on_seen(tick, int(t_us * 1000) + peer.clock_offset_ns)
+            case status_channel.DrawingMessage():
+                self._on_drawing(peer, message)
         if peer.role in _DEVICES:
             self._do_for_holder(_DEVICES[peer.role], message)
+
+    def _on_drawing(self, peer: Peer, message: status_channel.DrawingMessage) -> None:
+        if peer.role is Role.PHONE:
+            return
+        self._peers.set_draws(peer, message.on)
+        if peer.role is Role.BROWSER:
+            self._latency.draws = PageDraws(message.on, message.p50_ms, message.p95_ms, message.per_s)
 
     def _do_for_holder(self, device: InputDevice, message: status_channel.PeerMessage) -> None:
         match message:

@@ -110,13 +110,36 @@ class Peers:
 
     def codecs(self) -> frozenset[Codec]:
         """Return the codecs that are being watched."""
-        return frozenset(peer.codec for peer in self if peer.codec is not None)
+        return frozenset(peer.codec for peer in self if peer.codec is not None and not peer.draws)
+
+    @property
+    def any_draws(self) -> bool:
+        """Whether any page draws by itself."""
+        return any(peer.draws for peer in self)
+
+    @property
+    def holder_draws(self) -> bool:
+        """Whether the page of whoever drives draws by itself."""
+        browser = self._driving.get(Role.BROWSER)
+        return browser is not None and browser.draws
+
+    def set_draws(self, peer: Peer, draws: bool) -> None:
+        """Take that a peer's page draws by itself, or wants video."""
+        if peer.draws != draws:
+            peer.set_draws(draws)
+            if self._listener is not None:
+                self._listener.on_watched(self.codecs())
 
     def put(self, encoded: EncodedPicture) -> None:
         """Show a picture to all who watch its codec."""
         for peer in self:
-            if peer.track is not None and peer.codec is encoded.codec:
-                peer.track.put(encoded)
+            peer.show_video(encoded)
+
+    def put_poses(self, message: bytes) -> None:
+        """Tell all whose pages draw where the bodies are."""
+        for peer in self:
+            if peer.draws:
+                peer.send_poses(message)
 
     def tell(self, text: str) -> None:
         """Send a message to all on their status channels."""

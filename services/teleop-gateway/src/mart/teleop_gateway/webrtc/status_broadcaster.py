@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 
 from mart.protocol import clock
-from mart.protocol.messages import RoomStatus, State
+from mart.protocol.messages import EPISODE_PHASE_COUNTDOWN, EPISODE_PHASE_RECORDING, RoomStatus, State
 from mart.teleop_gateway.input.driving import Driving
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
@@ -14,6 +14,10 @@ from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peers import Peers
 
 STATUS_EVERY_S = 0.05
+_RECORDED = (
+    EPISODE_PHASE_COUNTDOWN,
+    EPISODE_PHASE_RECORDING,
+)  # a file begins with a key frame from before it
 
 
 class StatusBroadcaster:
@@ -26,6 +30,11 @@ class StatusBroadcaster:
         self.status = RoomStatus()
         self._peers, self._input, self._views, self._latency = peers, seat_input, views, latency
         self._told: tuple[object, ...] = ()
+
+    def rest_where_unneeded(self) -> None:
+        """Let the view rest where all who look draw by themselves, and nobody records what it sees."""
+        recorded = self.status.episode.phase in _RECORDED
+        self._views.set_resting(self._peers.any_draws and not self._peers.codecs() and not recorded)
 
     async def run(self) -> None:
         """Tell until cancelled; peers that have been silent for too long are dropped on the way."""

@@ -13,6 +13,7 @@ from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 
 MAX_CHARACTERS = 1100  # one SCTP packet
 _LARGEST = 2**63 - 1
+_LONGEST_DRAW_MS = 60_000
 _NAME_CHARACTERS = 24
 _REASON_CHARACTERS = 100
 
@@ -40,6 +41,19 @@ class SeenMessage:
 
 
 @dataclass(frozen=True)
+class DrawingMessage:
+    """Tell whether the sender's page draws by itself, and what a draw takes it: milliseconds, draws a second.
+
+    0 ms: it has not measured. A page that tried and was too slow tells its figures too.
+    """
+
+    on: bool
+    p50_ms: float
+    p95_ms: float
+    per_s: float
+
+
+@dataclass(frozen=True)
 class SelectInputMessage:
     """Ask for this device to drive."""
 
@@ -54,7 +68,7 @@ class CueMessage:
     press_us: float
 
 
-PeerMessage = PingMessage | ClockMessage | SeenMessage | SelectInputMessage | CueMessage
+PeerMessage = PingMessage | ClockMessage | SeenMessage | DrawingMessage | SelectInputMessage | CueMessage
 
 
 def parse(text: str | bytes) -> PeerMessage:
@@ -72,13 +86,17 @@ def parse(text: str | bytes) -> PeerMessage:
                 return ClockMessage(int(_finite(offset_ns)))
             case {"type": "seen", "tick": int(tick), "t_us": t_us} if 0 <= tick <= _LARGEST:
                 return SeenMessage(tick, _finite(t_us))
+            case {"type": "drawing", "on": bool(on), "p50_ms": p50, "p95_ms": p95, "per_s": per_s}:
+                return DrawingMessage(on, *(_bounded(value) for value in (p50, p95, per_s)))
             case {"type": "input", "input": name}:
                 return SelectInputMessage(InputDevice(name))
             case {"type": "cue", "cue": str(word), "t_us": t_us}:
                 return CueMessage(cue_from_word(word), _finite(t_us))
     except (ValueError, OverflowError, RecursionError) as error:
         raise InvalidInput(f"A status message was given that cannot be read: {error}.") from error
-    raise InvalidInput("A status message was given that is none of ping, clock, seen, input and cue.")
+    raise InvalidInput(
+        "A status message was given that is none of ping, clock, seen, drawing, input and cue."
+    )
 
 
 def pong(ping: PingMessage, gateway_ns: int) -> str:
@@ -160,3 +178,9 @@ def _finite(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LARGEST:
         raise ValueError(f"{value!r} is no finite number of at most 63 bits")
     return value
+
+
+def _bounded(value: Any) -> float:
+    if not 0 <= _finite(value) <= _LONGEST_DRAW_MS:
+        raise ValueError(f"{value!r} is not between 0 and {_LONGEST_DRAW_MS}")
+    return float(value)

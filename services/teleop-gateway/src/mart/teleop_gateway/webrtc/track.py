@@ -49,6 +49,12 @@ class EncodedTrack(MediaStreamTrack):
         self._queue.append(encoded)
         self._arrived.set()
 
+    def restart(self) -> None:
+        """Begin anew, after a while in which nothing was put: the next picture that is sent is a keyframe."""
+        self._queue.clear()
+        self._needs_keyframe = True
+        self._request_keyframe()
+
     async def recv(self) -> av.Packet[Any]:
         """Return the next picture as a packet; raises MediaStreamError once the track has ended."""
         if not self._started:

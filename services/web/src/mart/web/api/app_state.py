@@ -18,6 +18,7 @@ from mart.web.clients.gateway_client import GatewayClient
 from mart.web.clients.platform_client import PlatformClient
 from mart.web.clients.query_pools import QueryPools
 from mart.web.clients.room_client import RoomRequester
+from mart.web.clients.scene_store import SceneStore
 from mart.web.clients.trainer_client import TrainerClient
 from mart.web.lobby.health_findings import RelayCheck
 from mart.web.lobby.lobby import Lobby
@@ -76,6 +77,7 @@ class AppState:
     writes: RequestLimit = field(default_factory=_writes)
     browsing: TurnLimit = field(default_factory=_browsing)
     live_sockets: AtOnceLimit = field(default_factory=_live_sockets)
+    scenes: SceneStore = field(default_factory=SceneStore)
     ice: IceSettings = field(default_factory=IceSettings)
     relays: dict[str, RelayCheck] = field(default_factory=dict)
 

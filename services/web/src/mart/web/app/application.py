@@ -21,6 +21,7 @@ from mart.web.api import (
     pages,
     phones,
     rooms,
+    scenes,
     signaling,
     training,
 )
@@ -41,6 +42,7 @@ def create_app(state: AppState) -> FastAPI:
         rooms,
         phones,
         signaling,
+        scenes,
         device_check,
         invitation,
         live,

@@ -17,6 +17,7 @@ from mart.web.errors import TooLarge, TooSlow, WrongHost, WrongOrigin, error_jso
 
 MAX_BODY_BYTES = 64 * 1024
 BODY_TIMEOUT_S = 15.0
+_NAMED_BY_DIGEST = "/api/scenes/"
 _READING = {"GET", "HEAD", "OPTIONS"}
 _CONTENT_POLICY = (
     "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; img-src 'self' data:; "
@@ -97,13 +98,18 @@ async def _refuse(error: MartError, scope: Scope, receive: Receive, send: Send) 
 
 def _with_headers(scope: Scope, send: Send) -> Send:
     """Set the headers of every answer; what says how long it may be kept keeps its word."""
-    caching = "no-store" if scope["path"].startswith("/api/") else "no-cache"
 
     async def send_with_headers(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
             headers.update(_HEADERS)
-            headers.setdefault("Cache-Control", caching)
+            headers.setdefault("Cache-Control", _caching(scope["path"], message["status"]))
         await send(message)
 
     return send_with_headers
+
+
+def _caching(path: str, status: int) -> str:
+    if path.startswith(_NAMED_BY_DIGEST) and status == 200:
+        return "private, max-age=31536000, immutable"
+    return "no-store" if path.startswith("/api/") else "no-cache"

@@ -100,10 +100,18 @@ def delays(newest: Iterable[tuple[str, Event.Latency]], load: float = 0.0) -> It
     that shows pictures late looks like a network.
     """
     for room, latency in newest:
-        found = f"{latency.p50_ms:.0f} ms typical, 95 % under {latency.p95_ms:.0f} ms"
+        found = f"{latency.p50_ms:.0f} ms typical, 95 % under {latency.p95_ms:.0f} ms{_drawn_by(latency)}"
         late = latency.p50_ms > LATE_MS or latency.p95_ms > LATE_P95_MS
         mend = _mend_of_delay(latency, load) if late else ""
         yield HealthFinding("delays", f"{latency.arm} in {room}, hand to picture", found, mend)
+
+
+def _drawn_by(latency: Event.Latency) -> str:
+    """Return what a page that draws by itself needs for it, or would need, as an addition to its delay."""
+    draw = f"{latency.draw_p50_ms:.0f} ms a draw, 95 % under {latency.draw_p95_ms:.0f} ms"
+    if latency.drawn_in_page:
+        return f"; drawn in the page, {draw}, {latency.draws_per_s:.0f} a second"
+    return f"; video, since the page would need {draw}" if latency.draw_p50_ms else ""
 
 
 def _mend_of_delay(latency: Event.Latency, load: float) -> str:

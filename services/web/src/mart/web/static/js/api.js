@@ -170,6 +170,18 @@ export const phoneToken = (room, arm, token) =>
 export const offer = (room, arm, sdp) => request("POST", `${seatPath(room, arm)}/offer`, { sdp });
 
 /**
+ * The scene of a seat's room, for pages that draw it. The browser keeps it under its digest.
+ * @param {string} room
+ * @param {string} arm
+ */
+export async function fetchScene(room, arm) {
+  const { sha256 } = await /** @type {Promise<{ sha256: string }>} */ (request("GET", `${seatPath(room, arm)}/scene`));
+  const response = await fetch(`/api/scenes/${sha256}`);
+  if (!response.ok) throw new ApiError(response.status, "", `The scene could not be had (${response.status}).`);
+  return { sha256, bytes: await response.arrayBuffer() };
+}
+
+/**
  * Hands a phone's WebRTC offer to the seat's gateway; the answer is the gateway's.
  * @type {(room: string, arm: string, token: string, sdp: string) => Promise<{ sdp: string }>}
  */

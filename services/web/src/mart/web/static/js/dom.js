@@ -115,3 +115,23 @@ export function keepChildren(parent, keys, made, make) {
     if (parent.children[index] !== child.node) parent.insertBefore(child.node, parent.children[index] ?? null);
   });
 }
+
+/**
+ * What was pressed gives the keys back to the arm; by key, what may have to be pressed once more keeps them.
+ * @param {MouseEvent} event
+ */
+export function letGoOfButton({ detail, target }) {
+  const pressed = target instanceof Element && target.closest(detail > 0 ? "button, summary" : "button");
+  if (pressed instanceof HTMLElement && (detail > 0 || !pressed.closest("#actions, #emergency"))) pressed.blur();
+}
+
+/**
+ * Escape gives the keys back to the arm, and hides what was opened.
+ * @param {KeyboardEvent} event
+ * @param {() => void} hide
+ */
+export function letGoOnEscape({ code }, hide) {
+  if (code !== "Escape") return;
+  if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
+  hide();
+}

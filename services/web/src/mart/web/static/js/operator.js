@@ -2,19 +2,21 @@
 
 import * as api from "./api.js";
 import { armName, badge, hasPicture } from "./arms.js";
-import { byId, setShown, setText } from "./dom.js";
+import { byId, letGoOfButton, letGoOnEscape, setShown, setText } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
 import { CUES } from "./facts.js";
 import { waitingText } from "./formatting.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
+import { DisplayedTicks } from "./hud/displayed-ticks.js";
 import { InputPanel } from "./hud/input-panel.js";
 import { showHealth } from "./hud/health-figure.js";
 import { showPartners } from "./hud/partners.js";
 import { showPicture } from "./hud/picture.js";
 import { StatusBar } from "./hud/status-bar.js";
 import { approachAsPage } from "./link/page-approach.js";
+import { DrawnPicture, pictureChoice } from "./scene/drawn-picture.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
@@ -27,7 +29,6 @@ import { inPlainWords } from "./plain-words.js";
 const NOTICE_MS = 6000;
 const AGE_MS = 500;
 const NO_NEWS_MS = 2500; // rooms are told once a second at least
-const STILL_MS = 1000;
 const RECORDED_KEY = "mart.recorded";
 const FINGERS = matchMedia("(hover: none) and (pointer: coarse)");
 const [, , roomName = "", , armId = ""] = location.pathname.split("/").map(decodeURIComponent);
@@ -41,8 +42,8 @@ let noticeTimer = 0;
 let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
 let pictured = false; // by the present connection: its picture comes a round trip before its first word
-let displayedMs = -Infinity; // when a newer picture was last displayed
 
+const displayed = new DisplayedTicks();
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
 const panel = new InputPanel(roomName, armId, (error) => notice(api.messageOf(error)));
@@ -53,6 +54,16 @@ const link = new SeatLink({
   onState: onLinkState,
   onStatus,
   onTrack: (stream) => (video.srcObject = stream),
+  onPoses: (message) => drawn.onPoses(message),
+});
+const drawn = new DrawnPicture({
+  host: byId("picture"),
+  room: roomName,
+  arm: armId,
+  choice: pictureChoice(),
+  send: (message) => link.send(message),
+  onShown,
+  onChange: () => render(),
 });
 const stop = emergencyStop({
   label: roomName,
@@ -89,32 +100,12 @@ function begin() {
     render();
   });
   document.addEventListener("click", letGoOfButton);
-  document.addEventListener("keydown", letGoOnEscape);
-  watchTicks(video, (tick, nowMs) => {
-    if (tick !== input.seenTick) displayedMs = nowMs;
-    input.seenTick = tick; // a smaller one than before is of another run of the simulation
-    link.send({ type: "seen", tick, t_us: nowMs * 1000 });
-  });
+  document.addEventListener("keydown", (event) => letGoOnEscape(event, () => panel.hideHelp()));
+  watchTicks(video, onShown);
   setInterval(render, AGE_MS); // what grows old says so without any news
   input.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));
   followRooms({ onRooms, onEvent, onEnded: toLobby });
   link.connect(); // the seat's picture is wanted in nearly all cases: what the rooms say comes three round trips later
-}
-
-/**
- * What was pressed gives the keys back to the arm; by key, what may have to be pressed once more keeps them.
- * @param {MouseEvent} event
- */
-function letGoOfButton({ detail, target }) {
-  const pressed = target instanceof Element && target.closest(detail > 0 ? "button, summary" : "button");
-  if (pressed instanceof HTMLElement && (detail > 0 || !pressed.closest("#actions, #emergency"))) pressed.blur();
-}
-
-/** @param {KeyboardEvent} event */
-function letGoOnEscape({ code }) {
-  if (code !== "Escape") return;
-  if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
-  panel.hideHelp();
 }
 
 const ownSeat = () => room?.seats.find((seat) => seat.arm === armId);
@@ -139,6 +130,7 @@ function follow(seat) {
   followed = seat.epoch;
   if (hasPicture(seat) && isFirst && link.mayBeFor(seat.epoch)) return;
   status = null;
+  drawn.rest(); // it is told anew, and an old picture is never shown
   if (hasPicture(seat)) link.connect();
   else link.close();
 }
@@ -153,11 +145,24 @@ function onEvent(event) {
 
 function onLinkState() {
   if (link.state === LinkState.CONNECTING) pictured = false;
+  if (link.state === LinkState.LIVE) drawn.onLive();
   render();
+}
+
+/**
+ * A tick is seen, in the video or drawn.
+ * @param {number} tick
+ * @param {number} nowMs
+ */
+function onShown(tick, nowMs) {
+  displayed.see(tick, nowMs);
+  input.seenTick = tick;
+  link.send({ type: "seen", tick, t_us: nowMs * 1000 });
 }
 
 /** @param {StatusChannel.Tick} tick */
 function onStatus(tick) {
+  drawn.onTick(tick.tick);
   input.adoptGripper(tick, status);
   status = tick;
   if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
@@ -167,24 +172,20 @@ function onStatus(tick) {
 /** Whether the room is heard now. */
 const isTold = () => performance.now() - heardMs < NO_NEWS_MS && room !== null && !room.stale;
 
-/** Whether the world has gone on for a while and nothing newer was displayed. */
-function standsStill() {
-  const due = input.seenTick > 0 && (status?.tick ?? 0) > input.seenTick;
-  return due && performance.now() - displayedMs > STILL_MS;
-}
-
 function render() {
   const seat = ownSeat();
   const mine = seat?.mine ?? false;
   const isNew = !localStorage.getItem(RECORDED_KEY);
   statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches });
   const told = isTold();
-  showHealth({ told, live: link.state === LinkState.LIVE, still: standsStill(), status, room }, video);
+  const still = displayed.standStill(status?.tick ?? 0, performance.now());
+  showHealth({ told, live: link.state === LinkState.LIVE, still, status, room, drawn }, video);
   stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
   if (room) showRoom({ ...room, stale: !told });
-  showPicture(seat, status, link.state === LinkState.LIVE || (link.state === LinkState.CONNECTING && pictured));
+  const live = link.state === LinkState.LIVE || (link.state === LinkState.CONNECTING && pictured);
+  showPicture(seat, status, live, drawn.isShown);
   showHolder(mine);
 }
 

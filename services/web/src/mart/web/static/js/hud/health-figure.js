@@ -9,6 +9,7 @@ const FAIR_MS = 200;
 const GOOD_FACTOR = 0.95; // of real time: below it, people feel it
 const FAIR_FACTOR = 0.8;
 
+/** @import { DrawnPicture } from "../scene/drawn-picture.js" */
 /** @typedef {"good" | "fair" | "slow" | "none"} Grade */
 
 /**
@@ -19,11 +20,12 @@ const FAIR_FACTOR = 0.8;
  * @property {boolean} still
  * @property {StatusChannel.Tick | null} status
  * @property {Api.Room | null} room
+ * @property {DrawnPicture} drawn
  */
 
 /**
  * What the figure says. Pure.
- * @param {Known} known
+ * @param {Omit<Known, "drawn">} known
  * @returns {{ figure: string, grade: Grade, word: string, rate: string }}
  */
 export function healthOf({ told, live, still, status, room }) {
@@ -84,9 +86,9 @@ export function showHealth(known, video) {
  * @param {Known} known
  * @param {HTMLVideoElement} video
  */
-function showBreakdown({ told, live, status, room }, video) {
+function showBreakdown({ told, live, status, room, drawn }, video) {
   const factor = room && told ? `${room.real_time_factor.toFixed(2)}×` : "–";
-  const rows = [...breakdown(live ? status : null, video), ["Real time", factor]];
+  const rows = [...breakdown(live ? status : null, video, drawn), ["Real time", factor]];
   const cells = rows.map(([name = "", value = ""]) => [element("dt", {}, name), element("dd", {}, value)]);
   byId("breakdown").replaceChildren(...cells.flat());
 }
@@ -94,8 +96,9 @@ function showBreakdown({ told, live, status, room }, video) {
 /**
  * @param {StatusChannel.Tick | null} status
  * @param {HTMLVideoElement} video
+ * @param {DrawnPicture} drawn
  */
-function breakdown(status, video) {
+function breakdown(status, video, drawn) {
   if (!status) return [["No figures now", ""]];
   const { latency, fps, rejected } = status;
   const stages = Object.entries(latency?.stages ?? {}).map(([name, ms]) => [sentence(name), milliseconds(ms)]);
@@ -103,10 +106,29 @@ function breakdown(status, video) {
     ["Hand to picture, typical", milliseconds(latency?.p50_ms)],
     ["Hand to picture, 95 % under", milliseconds(latency?.p95_ms)],
     ...stages,
-    ["Pictures a second", fps.toFixed(0)],
-    ["Picture", sizeOf(video)],
+    ...pictureRows(fps, video, drawn),
     ["Frames refused", String(Object.values(rejected).reduce((sum, count) => sum + count, 0))],
   ];
+}
+
+/**
+ * Who draws, how large, how often, and why it is not the page where it is not.
+ * @param {number} fps of the video
+ * @param {HTMLVideoElement} video
+ * @param {DrawnPicture} drawn
+ * @returns {string[][]}
+ */
+function pictureRows(fps, video, drawn) {
+  const { p50Ms, perS } = drawn.figures;
+  if (drawn.isShown) {
+    return [
+      ["Pictures a second", perS.toFixed(0)],
+      ["Picture", `drawn here, ${drawn.size}`],
+      ["A draw takes", milliseconds(p50Ms)],
+    ];
+  }
+  const why = drawn.why ? [["Why video", drawn.why]] : [];
+  return [["Pictures a second", fps.toFixed(0)], ["Picture", `video, ${sizeOf(video)}`], ...why];
 }
 
 /**

@@ -25,11 +25,12 @@ function missingText(seat, failure, seen) {
  * @param {Api.Seat | undefined} seat
  * @param {StatusChannel.Tick | null} status
  * @param {boolean} live
+ * @param {boolean} drawn the page draws it
  */
-export function showPicture(seat, status, live) {
+export function showPicture(seat, status, live, drawn) {
   const video = byId("video", HTMLVideoElement);
-  const seen = video.videoWidth > 0;
-  const failure = status?.no_picture ?? "";
+  const seen = drawn || video.videoWidth > 0;
+  const failure = drawn ? "" : (status?.no_picture ?? "");
   const missing = seat ? missingText(seat, failure, seen) : "";
   setText(byId("no-picture"), missing);
   setShown(byId("no-picture"), missing !== "");

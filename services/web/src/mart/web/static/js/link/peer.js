@@ -8,6 +8,7 @@
  * @property {(stream: MediaStream) => void} onTrack
  * @property {() => void} onOpen messages can be sent from now on
  * @property {(message: StatusChannel.FromGateway) => void} onMessage
+ * @property {(message: ArrayBuffer) => void} onPoses where the bodies are, for a page that draws
  * @property {() => void} onClosed
  */
 
@@ -44,10 +45,11 @@ export class Peer {
   }
 
   /** @param {PeerOptions} options */
-  async #connect({ wantsVideo, exchange, onTrack, onOpen, onMessage, onClosed }) {
+  async #connect({ wantsVideo, exchange, onTrack, onOpen, onMessage, onPoses, onClosed }) {
     const connection = this.#connection;
     this.#status.addEventListener("message", ({ data }) => onMessage(JSON.parse(data)));
     if (wantsVideo) {
+      receivePoses(connection.createDataChannel("bodies", CHANNEL), onPoses);
       receiveVideo(connection);
       connection.addEventListener("track", ({ track }) => onTrack(new MediaStream([track])));
     }
@@ -82,6 +84,15 @@ export class Peer {
   close() {
     this.#connection.close();
   }
+}
+
+/**
+ * @param {RTCDataChannel} channel
+ * @param {(message: ArrayBuffer) => void} onPoses
+ */
+function receivePoses(channel, onPoses) {
+  channel.binaryType = "arraybuffer";
+  channel.addEventListener("message", ({ data }) => onPoses(data));
 }
 
 /** @param {RTCPeerConnection} connection */

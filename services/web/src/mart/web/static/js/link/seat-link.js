@@ -40,6 +40,7 @@ export const LinkState = Object.freeze({
  * @property {() => void} onState
  * @property {(status: StatusChannel.Tick) => void} onStatus
  * @property {(stream: MediaStream) => void} [onTrack]
+ * @property {(message: ArrayBuffer) => void} [onPoses]
  */
 
 /**
@@ -136,7 +137,7 @@ export class SeatLink {
    * @param {number} attempt
    */
   #reach({ iceServers, exchange }, attempt) {
-    const { wantsVideo, onTrack = () => {} } = this.#options;
+    const { wantsVideo, onTrack = () => {}, onPoses = () => {} } = this.#options;
     return Peer.connect({
       wantsVideo,
       iceServers,
@@ -147,6 +148,7 @@ export class SeatLink {
       },
       onTrack,
       onOpen: () => attempt === this.#attempt && this.#ping(),
+      onPoses: (message) => attempt === this.#attempt && onPoses(message),
       onMessage: (message) => attempt === this.#attempt && this.#onMessage(message),
       onClosed: () => attempt === this.#attempt && this.#lose(),
     });

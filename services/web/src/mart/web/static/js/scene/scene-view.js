@@ -1,0 +1,147 @@
+// Draws a scene into a canvas, like the server's renderer.
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  ColorManagement,
+  Group,
+  LinearSRGBColorSpace,
+  Mesh,
+  PerspectiveCamera,
+  Scene,
+  WebGLRenderer,
+} from "../../vendor/three.mjs";
+import { Materials } from "./materials.js";
+import { QUATERNION_STEP } from "./pose-message.js";
+import { meshArrays } from "./scene-file.js";
+
+const ASPECT = 4 / 3;
+const FIRST_DRAWN = 0; // planes, then whatever else is transparent
+const THEN_DRAWN = 1;
+
+ColorManagement.enabled = false; // MuJoCo computes in gamma space throughout
+
+/** One scene in one canvas. `camera` may be moved by whoever has it. */
+export class SceneView {
+  camera;
+  #renderer;
+  #scene = new Scene();
+  #materials;
+  /** @type {BufferGeometry[]} */
+  #geometries;
+  /** @type {Group[]} */
+  #bodies;
+  #cameras;
+
+  /**
+   * Raises an Error where there is no WebGL.
+   * @param {HTMLCanvasElement} canvas
+   * @param {SceneFile.Parsed} scene
+   * @param {{ smooth?: boolean }} [options] smooth: edges are
+   */
+  constructor(canvas, scene, { smooth = true } = {}) {
+    const { description } = scene;
+    const powerPreference = "high-performance";
+    this.#renderer = new WebGLRenderer({ canvas, alpha: false, antialias: smooth, powerPreference });
+    this.#renderer.outputColorSpace = LinearSRGBColorSpace;
+    this.#renderer.setClearColor(0, 1);
+    this.#cameras = description.cameras;
+    this.camera = new PerspectiveCamera(45, ASPECT, description.near_m, description.far_m);
+    this.#materials = new Materials(scene);
+    this.#geometries = description.meshes.map((mesh) => madeGeometry(scene, mesh));
+    this.#bodies = description.bodies.map(() => new Group());
+    const world = new Group();
+    this.#scene.add(world, ...this.#bodies);
+    for (const geom of description.geoms) (this.#bodies[geom.body] ?? world).add(this.#made(geom));
+  }
+
+  /** The drawing context, for whoever watches over it; three.js makes no other than of WebGL 2. */
+  get context() {
+    return /** @type {WebGL2RenderingContext} */ (this.#renderer.getContext());
+  }
+
+  /**
+   * Looks through a camera of the scene; through the first where there is none of that name.
+   * @param {string} name
+   */
+  lookThrough(name) {
+    const found = this.#cameras.find((one) => one.name === name) ?? this.#cameras[0];
+    if (!found) return;
+    place(this.camera, found);
+    this.camera.fov = found.fov_y_deg;
+    this.camera.updateProjectionMatrix();
+  }
+
+  /**
+   * Draws so many pixels from now on.
+   * @param {number} widthPx
+   * @param {number} heightPx
+   */
+  resize(widthPx, heightPx) {
+    this.#renderer.setSize(widthPx, heightPx, false);
+    this.camera.aspect = widthPx / heightPx;
+    this.camera.updateProjectionMatrix();
+  }
+
+  /**
+   * Puts the bodies where a message says.
+   * @param {SceneFile.Poses} poses
+   */
+  setPoses({ numbers, stepM }) {
+    for (const [index, body] of this.#bodies.entries()) {
+      const [x = 0, y = 0, z = 0, qw = 1, qx = 0, qy = 0, qz = 0] = numbers.subarray(7 * index, 7 * index + 7);
+      body.position.set(x * stepM, y * stepM, z * stepM);
+      const step = QUATERNION_STEP;
+      body.quaternion.set(qx * step, qy * step, qz * step, qw * step).normalize();
+    }
+  }
+
+  /** Draws what is there now. */
+  draw() {
+    this.camera.getWorldDirection(this.#materials.headlightDirection);
+    this.#renderer.render(this.#scene, this.camera);
+  }
+
+  /** Gives back what this holds of the graphics card. */
+  dispose() {
+    this.#materials.dispose();
+    for (const geometry of this.#geometries) geometry.dispose();
+    this.#renderer.dispose();
+    this.#renderer.forceContextLoss();
+  }
+
+  /** @param {SceneFile.Geom} geom */
+  #made(geom) {
+    const mesh = new Mesh(this.#geometries[geom.mesh], this.#materials.of(geom));
+    place(mesh, geom);
+    const [x = 1, y = 1, z = 1] = geom.scale;
+    mesh.scale.set(x, y, z);
+    mesh.renderOrder = geom.plane ? FIRST_DRAWN : THEN_DRAWN;
+    mesh.updateMatrix();
+    mesh.matrixAutoUpdate = false; // it stays where it is on its body
+    return mesh;
+  }
+}
+
+/**
+ * MuJoCo's quaternions are wxyz, three's xyzw.
+ * @param {Mesh | PerspectiveCamera} object
+ * @param {{ position_m: SceneFile.Numbers, quaternion: SceneFile.Numbers }} where
+ */
+function place(object, { position_m: [x = 0, y = 0, z = 0], quaternion: [qw = 1, qx = 0, qy = 0, qz = 0] }) {
+  object.position.set(x, y, z);
+  object.quaternion.set(qx, qy, qz, qw);
+}
+
+/**
+ * @param {SceneFile.Parsed} scene
+ * @param {SceneFile.MeshEntry} mesh
+ */
+function madeGeometry(scene, mesh) {
+  const { positions, normals, index } = meshArrays(scene, mesh);
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(positions, 3));
+  geometry.setAttribute("normal", new BufferAttribute(normals, 4, true));
+  geometry.setIndex(new BufferAttribute(index, 1));
+  return geometry;
+}

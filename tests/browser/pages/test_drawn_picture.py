@@ -1,0 +1,83 @@
+"""The operator's page draws by itself where that is asked for, and shows video wherever it cannot draw or must not."""
+
+from __future__ import annotations
+
+import queue
+
+from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
+from playwright.sync_api import Browser, Page, expect
+
+from mart.platform.run.running import Platform
+from mart.protocol import keys
+from mart.protocol.codec import decode
+from mart.protocol.messages import Event
+from mart.runtime.bus.base import Sample
+from tests.browser.pages.visits import driving, visit
+
+WAIT_S = 60.0
+SHOWN = "#drawn:not([hidden])"
+LOSE = (
+    "document.querySelector('#drawn').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()"
+)
+
+
+class Said:
+    """The latency events of a room, and its pictures."""
+
+    def __init__(self, platform: Platform) -> None:
+        self.latencies: queue.Queue[Event.Latency] = queue.Queue()
+        self.pictures: queue.Queue[CompressedVideo] = queue.Queue()
+        room = platform.options.room
+        platform.bus.subscribe(keys.event(room).key, self._on_event)
+        platform.bus.subscribe(keys.video(room, "arm0").key, self._on_picture)
+
+    def await_drawn(self, by_page: bool) -> Event.Latency:
+        """The next report of a picture that is drawn so."""
+        while (latency := self.latencies.get(timeout=WAIT_S)).drawn_in_page is not by_page:
+            pass
+        return latency
+
+    def pictures_from_now(self, page: Page) -> int:
+        """How many pictures the server makes in a second."""
+        while not self.pictures.empty():
+            self.pictures.get_nowait()
+        page.wait_for_timeout(1000)
+        return self.pictures.qsize()
+
+    def _on_event(self, sample: Sample) -> None:
+        event = decode(Event, sample.payload)
+        if event.WhichOneof("what") == "latency":
+            self.latencies.put(event.latency)
+
+    def _on_picture(self, sample: Sample) -> None:
+        self.pictures.put(decode(CompressedVideo, sample.payload))
+
+
+def test_a_page_that_draws_costs_the_server_no_picture_and_a_lost_context_brings_video(
+    browser: Browser, platform: Platform
+) -> None:
+    said = Said(platform)
+    with visit(browser, platform, "small") as at, driving(at):
+        page = at.page
+        page.goto(f"{page.url}?picture=drawn")
+        expect(page.locator(SHOWN)).to_be_visible()
+        assert said.await_drawn(by_page=True).draw_p50_ms > 0
+        assert said.pictures_from_now(page) <= 1
+        page.locator("#health summary").click()
+        expect(page.locator("#breakdown")).to_contain_text("drawn here")
+        page.evaluate(LOSE)
+        expect(page.locator("#drawn")).to_be_hidden()
+        expect(page.locator(SHOWN)).to_be_visible()  # on a new canvas
+        at.noise.clear()  # browsers and three.js tell of a lost context aloud
+
+
+def test_a_device_without_a_graphics_card_shows_video_and_says_why(
+    browser: Browser, platform: Platform
+) -> None:
+    said = Said(platform)
+    with visit(browser, platform, "small") as at, driving(at):
+        said.await_drawn(by_page=False)
+        at.page.locator("#health summary").click()
+        expect(at.page.locator("#breakdown")).to_contain_text("without a graphics card")
+        assert said.pictures_from_now(at.page) > 3
+        assert at.page.locator("#drawn").count() == 0
