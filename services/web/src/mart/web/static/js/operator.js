@@ -12,6 +12,7 @@ import { Cues } from "./hud/cues.js";
 import { DisplayedTicks } from "./hud/displayed-ticks.js";
 import { InputPanel } from "./hud/input-panel.js";
 import { showHealth } from "./hud/health-figure.js";
+import { showNotice } from "./hud/notice.js";
 import { showPartners } from "./hud/partners.js";
 import { showPicture } from "./hud/picture.js";
 import { StatusBar } from "./hud/status-bar.js";
@@ -26,7 +27,6 @@ import { inPlainWords } from "./plain-words.js";
 /** @import { Command } from "./drive/keys.js" */
 /** @import { ActionCommand } from "./hud/status-bar-view.js" */
 
-const NOTICE_MS = 6000;
 const AGE_MS = 500;
 const NO_NEWS_MS = 2500; // rooms are told once a second at least
 const RECORDED_KEY = "mart.recorded";
@@ -38,7 +38,6 @@ const video = byId("video", HTMLVideoElement);
 let room = null;
 /** @type {StatusChannel.Tick | null} */
 let status = null;
-let noticeTimer = 0;
 let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
 let pictured = false; // by the present connection: its picture comes a round trip before its first word
@@ -46,7 +45,7 @@ let pictured = false; // by the present connection: its picture comes a round tr
 const displayed = new DisplayedTicks();
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
-const panel = new InputPanel(roomName, armId, (error) => notice(api.messageOf(error)));
+const panel = new InputPanel(roomName, armId, (error) => showNotice(api.messageOf(error)));
 const input = new KeyboardMouseInput(byId("picture"), onKey);
 const link = new SeatLink({
   approach: () => approachAsPage(roomName, armId),
@@ -139,7 +138,7 @@ function follow(seat) {
 function onEvent(event) {
   if (event.room !== roomName) return;
   if (event.kind === "cue_given") cues.onGiven(event, room);
-  if (event.kind === "notice") notice(inPlainWords(event.text));
+  if (event.kind === "notice") showNotice(inPlainWords(event.text));
   render();
 }
 
@@ -294,13 +293,6 @@ async function attempt(action) {
   try {
     await action();
   } catch (error) {
-    notice(api.messageOf(error));
+    showNotice(api.messageOf(error));
   }
-}
-
-/** @param {string} text */
-function notice(text) {
-  setText(byId("notice"), text);
-  clearTimeout(noticeTimer);
-  noticeTimer = setTimeout(() => setText(byId("notice"), ""), NOTICE_MS);
 }
