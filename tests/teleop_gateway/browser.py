@@ -50,11 +50,11 @@ class Browser:
         await self.connection.setLocalDescription(await self.connection.createOffer())
         answer = await exchange(self.connection.localDescription.sdp)
         await self.connection.setRemoteDescription(RTCSessionDescription(answer, "answer"))
-        await asyncio.wait_for(self._opened.wait(), 10)
+        await asyncio.wait_for(self._opened.wait(), 30)
 
     async def next_frame(self) -> VideoFrame:
         assert self.receiver is not None
-        frame = await asyncio.wait_for(self.receiver.track.recv(), 10)
+        frame = await asyncio.wait_for(self.receiver.track.recv(), 30)
         assert isinstance(frame, VideoFrame)
         return frame
 
@@ -103,14 +103,21 @@ class Browser:
                 self._told_more.clear()
                 await self._told_more.wait()
 
-    async def synchronise(self) -> int:
-        """Pings once and tells the offset; returns it, nanoseconds."""
+    async def synchronise(self) -> float:
+        """Believes the quickest of several pings and tells the offset; returns by how much it may be wrong, ms."""
+        quickest_us, offset_ns = await self._ping()
+        for _ in range(7):
+            quickest_us, offset_ns = min((quickest_us, offset_ns), await self._ping())
+        self.status.send(status_channel.clock_offset(offset_ns))
+        return quickest_us / 2 / 1000
+
+    async def _ping(self) -> tuple[int, int]:
+        """The round trip, microseconds, and the offset that it says, nanoseconds."""
         sent_us = clock.monotonic_ns() // 1000
         self.status.send(status_channel.ping(sent_us))
         pong = await self.wait_told(lambda m: m["type"] == "pong")
-        offset_ns = int(pong["gateway_ns"] - (sent_us + clock.monotonic_ns() // 1000) / 2 * 1000)
-        self.status.send(status_channel.clock_offset(offset_ns))
-        return offset_ns
+        round_trip_us = clock.monotonic_ns() // 1000 - sent_us
+        return round_trip_us, int(pong["gateway_ns"] - (sent_us + round_trip_us / 2) * 1000)
 
     async def close(self) -> None:
         await self.connection.close()

@@ -220,7 +220,7 @@ def test_processes_end_with_the_seat_and_with_the_gateway(platform: Platform) ->
             await platform.claim(bus)
             await platform.open(bus)
             await platform.release(bus)
-            await asyncio.wait_for(gone.wait(), 10)
+            await asyncio.wait_for(gone.wait(), 30)
 
     on_platform(platform, body)
     pids = children(platform.gateway.process.pid)
@@ -241,6 +241,6 @@ def test_seat_processes_do_not_outlive_a_killed_gateway(platform: Platform) -> N
 
         with contextlib.closing(bus.watch(keys.alive(ServiceKind.SEAT, f"{ROOM}-arm0"), on_token)):
             platform.gateway.kill()
-            await asyncio.wait_for(ended.wait(), 5)
+            await asyncio.wait_for(ended.wait(), 30)
 
     on_platform(platform, body)

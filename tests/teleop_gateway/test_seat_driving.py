@@ -196,7 +196,7 @@ def test_a_new_holder_gets_a_clean_seat(on_seat: OnSeat) -> None:
             closed = asyncio.Event()
             former.connection.on("connectionstatechange", closed.set)
             seat.room.seat(epoch=2)
-            await asyncio.wait_for(closed.wait(), 5)
+            await asyncio.wait_for(closed.wait(), 30)
         with pytest.raises(Forbidden):
             async with connected(seat.exchange(Role.BROWSER)):
                 pass
@@ -214,7 +214,7 @@ def test_nobody_drives_a_freed_seat(on_seat: OnSeat) -> None:
             closed = asyncio.Event()
             browser.connection.on("connectionstatechange", closed.set)
             seat.room.seat(epoch=2, operator=OPERATOR_HOLD)
-            await asyncio.wait_for(closed.wait(), 5)
+            await asyncio.wait_for(closed.wait(), 30)
 
     on_seat(body)
 
@@ -256,7 +256,7 @@ def test_motion_to_photon_is_measured_told_and_published(on_seat: OnSeat) -> Non
     async def body(seat: SeatUnderTest) -> None:
         with MessageCollector(seat.bus.bus, keys.event(seat.room.name).key, Event) as events:
             async with connected(seat.exchange(Role.BROWSER)) as browser, in_background(browser.drive(1)):
-                await browser.synchronise()
+                clocks_differ_ms = await browser.synchronise()
                 for _ in range(30):
                     tick = await browser.next_tick()
                     t_us = clock.monotonic_ns() // 1000
@@ -265,7 +265,7 @@ def test_motion_to_photon_is_measured_told_and_published(on_seat: OnSeat) -> Non
                 event = await asyncio.to_thread(events.wait_for, lambda event: event.HasField("latency"))
             stages = told["latency"]["stages"]
             assert list(stages) == list(STAGES)
-            assert all(ms >= -1 for ms in stages.values())  # -1: two clocks meet at the ends
+            assert min(stages.values()) >= -1 - clocks_differ_ms  # two clocks meet at the ends
             assert 5 < told["latency"]["p50_ms"] < 1000
             assert event.latency.arm == "arm0"
             assert [stage.name for stage in event.latency.stages] == list(STAGES)

@@ -3,7 +3,7 @@
 declare namespace StatusChannel {
   type Input = "keyboard" | "phone";
 
-  type LetGo = "" | "new" | "tracking" | "gap" | "jump" | "age" | "picture" | "stop";
+  type LetGo = "" | "new" | "tracking" | "gap" | "jump" | "age" | "picture" | "stop" | "pause";
 
   interface Latency {
     p50_ms: number;

@@ -49,6 +49,6 @@ def test_a_replaced_phone_stays_away(on_seat: OnSeat) -> None:
             running = asyncio.ensure_future(phone_of(seat).run())
             await browser.wait_told(lambda told: told.get("phone") is not None)
             async with connected(seat.exchange(Role.PHONE), Role.PHONE):
-                await asyncio.wait_for(running, 10)
+                await asyncio.wait_for(running, 30)
 
     on_seat(body)

@@ -241,14 +241,15 @@ def test_the_device_that_takes_over_goes_on_with_the_gripper_as_it_is(seat: Seat
     assert seat.command(gripper=0.0).gripper == 1.0
 
 
-def test_an_emergency_stop_lets_go_of_every_clutch(seat: Seat) -> None:
+@pytest.mark.parametrize("reason", [LetGo.STOP, LetGo.PAUSE])
+def test_a_room_that_stands_still_lets_go_of_every_clutch(seat: Seat, reason: LetGo) -> None:
     seat.command()
     assert seat.command(clutch=True).engaged
-    seat.driving.stopped = True
+    seat.driving.held_by_room = reason
     assert not seat.command(clutch=True).engaged
-    seat.driving.stopped = False
+    seat.driving.held_by_room = None
     assert not seat.command(clutch=True).engaged
-    assert seat.driving.let_go(seat.now_s) is LetGo.STOP
+    assert seat.driving.let_go(seat.now_s) is reason
     seat.command()
     assert seat.command(clutch=True).engaged
 

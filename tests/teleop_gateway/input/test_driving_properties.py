@@ -9,6 +9,7 @@ from hypothesis.stateful import RuleBasedStateMachine, rule
 
 from mart.protocol.messages import ArmState, pose_from_message
 from mart.teleop_gateway.input.driving import Driving, InputDevice
+from mart.teleop_gateway.input.frame_validator import LetGo
 from mart.teleop_gateway.input.phone_frame import Flag
 from mart.teleop_gateway.input.picture_watch import STILL_AFTER_S
 from mart.teleop_gateway.input.retarget import Retarget
@@ -78,7 +79,7 @@ class DrivingMachine(RuleBasedStateMachine):
         if command is None:
             assert device is not self.driving.active
             return
-        if clutch and self.driving.stopped:
+        if clutch and self.driving.held_by_room:
             self.free.discard(device)
         assert command.engaged <= (clutch and tracking and device in self.free)
         assert pose_from_message(command.target_tool_in_base).distance_to(HOME)[0] < 1e-9
@@ -89,7 +90,7 @@ class DrivingMachine(RuleBasedStateMachine):
 
     @rule(on=st.booleans())
     def stop(self, on: bool) -> None:
-        self.driving.stopped = on
+        self.driving.held_by_room = LetGo.PAUSE if on else None
 
     @rule(device=devices)
     def select(self, device: InputDevice) -> None:

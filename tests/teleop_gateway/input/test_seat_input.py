@@ -9,12 +9,25 @@ import pytest
 
 from mart.protocol import clock, keys
 from mart.protocol.errors import Unavailable
-from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, ArmState, Command, Operator, RoomStatus
+from mart.protocol.messages import (
+    BARRIER_PHASE_PAUSED,
+    BARRIER_PHASE_RUNNING,
+    BARRIER_PHASE_STALLED,
+    BARRIER_PHASE_STOPPED,
+    OPERATOR_HOLD,
+    OPERATOR_HUMAN,
+    ArmState,
+    BarrierPhase,
+    Command,
+    Operator,
+    RoomStatus,
+)
 from mart.protocol.messages import Seat as SeatMessage
 from mart.protocol.pose import Pose
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryNetwork
 from mart.teleop_gateway.input.driving import InputDevice
+from mart.teleop_gateway.input.frame_validator import LetGo
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.served_seats import SeatAddress
 from tests.teleop_gateway.input.strategies import phone_frame
@@ -39,9 +52,10 @@ class InputUnderTest:
             on_new_holder=self._count,
         )
 
-    def tell(self, epoch: int, operator: int = OPERATOR_HUMAN) -> None:
+    def tell(self, epoch: int, operator: int = OPERATOR_HUMAN, barrier: int = BARRIER_PHASE_RUNNING) -> None:
         seat = SeatMessage(arm=SEAT.arm, operator=Operator.Name(operator), epoch=epoch)
-        self.input.on_status(RoomStatus(room=SEAT.room, seats=[seat]))
+        phase = BarrierPhase.Name(barrier)
+        self.input.on_status(RoomStatus(room=SEAT.room, seats=[seat], barrier=phase))
 
     def _count(self) -> None:
         self.holders += 1
@@ -53,6 +67,28 @@ def on_input(body: Callable[[InputUnderTest], Awaitable[None]]) -> None:
             await body(InputUnderTest())
 
     asyncio.run(main())
+
+
+@pytest.mark.parametrize(
+    ("barrier", "reason"),
+    [
+        (BARRIER_PHASE_RUNNING, None),
+        (BARRIER_PHASE_STALLED, None),  # for a moment
+        (BARRIER_PHASE_PAUSED, LetGo.PAUSE),
+        (BARRIER_PHASE_STOPPED, LetGo.STOP),
+    ],
+)
+def test_hands_count_while_the_world_runs(barrier: int, reason: LetGo | None) -> None:
+    async def body(seat: InputUnderTest) -> None:
+        seat.input.on_camera_azimuth(0.0)
+        seat.tell(epoch=1)
+        driving = await seat.input.await_driving(1, timeout_s=20.0)
+        seat.tell(epoch=1, barrier=barrier)
+        assert driving.held_by_room is reason
+        seat.tell(epoch=1)
+        assert driving.held_by_room is None
+
+    on_input(body)
 
 
 def test_a_token_newer_than_the_last_status_waits_for_the_next_one() -> None:

@@ -124,7 +124,7 @@ def test_pli_reaches_the_handler() -> None:
             assert isinstance(browser.receiver, RTCRtpReceiver)
             assert not sender.keyframe_wanted.is_set()
             await browser.receiver._send_rtcp_pli(sender.sender._ssrc)
-            await asyncio.wait_for(sender.keyframe_wanted.wait(), 5)
+            await asyncio.wait_for(sender.keyframe_wanted.wait(), 30)
 
     on_loop(body)
 

@@ -54,8 +54,8 @@ class Driving:
     `first_sequence` must be above every command's number of an earlier process for the same epoch: the sim takes only
     newer ones. `picture` is what the holder sees: while it stands still, no hand counts. gripper_told: what the gripper
     was asked for in the newest tick, by whoever drove then; None: unknown. holding: the gripper has taken hold of
-    something. stopped: an emergency stop is on. gripper_set: how often the gripper was set by other than the device in
-    use: by a reset of the world, or by the device before.
+    something. held_by_room: why the room lets no hand count now: an emergency stop, or a pause. gripper_set: how often
+    the gripper was set by other than the device in use: by a reset of the world, or by the device before.
     """
 
     arm: str
@@ -66,7 +66,7 @@ class Driving:
     active: InputDevice = InputDevice.KEYBOARD
     gripper_told: float | None = None
     holding: bool = False
-    stopped: bool = False
+    held_by_room: LetGo | None = None
     gripper_set: int = 0
     _tick: int = 0
     _grip: GripperSample | None = None
@@ -150,12 +150,12 @@ class Driving:
     def _unless_blind(
         self, validator: FrameValidator, hand: HandSample, sent_ns: int, now_s: float, now_ns: int
     ) -> HandSample:
-        """Return the hand, let go where it is too old, its person sees nothing move, or everything is stopped."""
+        """Return the hand, let go where it is too old, its person sees nothing move, or the room stands still."""
         if hand.clutch and sent_ns and now_ns - sent_ns > MAX_FRAME_AGE_NS:
             validator.rejected[FrameRejection.AGE] += 1
             return validator.let_go(hand, LetGo.AGE)
-        if self.stopped:
-            return validator.let_go(hand, LetGo.STOP)
+        if self.held_by_room is not None:
+            return validator.let_go(hand, self.held_by_room)
         if hand.clutch and self.picture.stands_still(now_s):
             return validator.let_go(hand, LetGo.PICTURE)
         return hand

@@ -52,6 +52,7 @@ class LetGo(enum.StrEnum):
     AGE = "age"  # the frame was on its way for too long
     PICTURE = "picture"  # what the person drives by stood still
     STOP = "stop"  # an emergency stop was on
+    PAUSE = "pause"  # the room waited for somebody, and the world stood still
 
 
 class _Rejected(Exception):

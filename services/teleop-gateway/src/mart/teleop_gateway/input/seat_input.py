@@ -8,14 +8,18 @@ from collections.abc import Callable
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import Unavailable
-from mart.protocol.messages import BARRIER_PHASE_STOPPED, ArmState, Command, RoomStatus
+from mart.protocol.messages import BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED, ArmState, Command, RoomStatus
 from mart.protocol.pose import Pose
 from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.change_signal import ChangeSignal
 from mart.teleop_gateway.input.driving import Driving, InputDevice
+from mart.teleop_gateway.input.frame_validator import LetGo
 from mart.teleop_gateway.input.retarget import Retarget
 from mart.teleop_gateway.input.tool_motion import ToolMotion
 from mart.teleop_gateway.served_seats import SeatAddress, served_epochs
+
+# In which phases no hand counts: the person would drive a world that does not move, and it would jump afterwards.
+_HOLDS = {BARRIER_PHASE_STOPPED: LetGo.STOP, BARRIER_PHASE_PAUSED: LetGo.PAUSE}
 
 
 class SeatInput:
@@ -64,11 +68,11 @@ class SeatInput:
     # What the room says
 
     def on_status(self, status: RoomStatus) -> None:
-        """Take who holds the seat, and whether everything is stopped."""
+        """Take who holds the seat, and whether everything is stopped or paused."""
         self._epoch = served_epochs(status).get(self._seat)
         self._renew()
         if self.driving is not None:
-            self.driving.stopped = status.barrier == BARRIER_PHASE_STOPPED
+            self.driving.held_by_room = _HOLDS.get(status.barrier)
 
     def on_camera_azimuth(self, azimuth_rad: float) -> None:
         """Take where the seat's camera looks: a hand's motion is turned by it."""

@@ -9,6 +9,7 @@ const WHY = {
   age: "Your hand arrives more than a second late.",
   picture: "The picture stood still.",
   stop: "Everything was stopped.",
+  pause: "The room was paused.",
 };
 
 /**
