@@ -21,9 +21,8 @@ PROTO_DIR := protocol/proto
 PROTOS := $(wildcard $(PROTO_DIR)/mart/v1/*.proto)
 PROTOC = $(BIN)/python -m grpc_tools.protoc --proto_path=$(PROTO_DIR) --python_out=$(1) --pyi_out=$(1) $(PROTOS)
 
-# What the pages use of three.js, as one module; PAGE_LIBRARY bundles it to standard output.
-VENDOR := services/web/src/mart/web/static/vendor
-PAGE_LIBRARY := $(NODE_BIN)/esbuild services/web/vendor/three.js --bundle --format=esm --minify --legal-comments=eof --charset=utf8 --target=es2022
+# What the pages use of three.js, as one module: made from its package, not in the repository.
+PAGE_LIBRARIES := services/web/src/mart/web/static/vendor/three.mjs
 
 BENCHMARKS := $(subst _,-,$(filter-out report,$(basename $(notdir $(wildcard benchmarks/*.py)))))
 
@@ -124,8 +123,6 @@ check-proto: $(VENV)/.tools
 check-pages: $(NODE)/.installed
 	@$(NODE_BIN)/eslint --max-warnings 0 .
 	@$(NODE_BIN)/tsc
-	@$(PAGE_LIBRARY) | cmp --quiet - $(VENDOR)/three.mjs && cmp --quiet $(NODE)/three/LICENSE $(VENDOR)/three.LICENSE.txt \
-	|| { echo "The bundle of three.js is stale: run 'make page-libraries' and commit the result." >&2; exit 1; }
 
 .PHONY: task-pages
 task-pages: $(VENV)/.tools ## Write docs/tasks.md and draw its pictures anew, from the catalogue and the scenes
@@ -134,11 +131,6 @@ task-pages: $(VENV)/.tools ## Write docs/tasks.md and draw its pictures anew, fr
 .PHONY: page-facts
 page-facts: $(VENV)/.tools ## Write what the pages know from the Python parts: lists, limits, colours, types
 	@$(BIN)/python tools/page_facts.py
-
-.PHONY: page-libraries
-page-libraries: $(NODE)/.installed ## Bundle anew what the pages use of three.js, with its licence
-	@$(PAGE_LIBRARY) > $(VENDOR)/three.mjs
-	@cp $(NODE)/three/LICENSE $(VENDOR)/three.LICENSE.txt
 
 .PHONY: operator-picture
 operator-picture: $(VENV)/.tools ## Take the picture of the operator's page anew, in a real browser
@@ -154,7 +146,7 @@ constraints: ## Pin the newest versions of everything anew, from a real installa
 
 .PHONY: clean
 clean: ## Remove everything that was built or recorded by tests; recorded episodes stay
-	@rm -rf $(VENV) $(NODE) build dist test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	@rm -rf $(VENV) $(NODE) $(PAGE_LIBRARIES) build dist test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	@find protocol libraries services platform -name '*.egg-info' -prune -exec rm -rf {} + -o -name '*.so' -delete
 
 .PHONY: help
@@ -173,7 +165,7 @@ $(VENV)/.build: $(VENV)/bin/python constraints.txt
 	@$(PIP) install --constraint constraints.txt pip setuptools wheel mujoco-core
 	@touch $@
 
-$(VENV)/.parts: $(VENV)/.build $(PART_SOURCES)
+$(VENV)/.parts: $(VENV)/.build $(PART_SOURCES) $(PAGE_LIBRARIES)
 	@tools/system-packages render
 	@tools/cpu-torch $(BIN)/python constraints.txt
 	@$(PIP) install --constraint constraints.txt --no-build-isolation $(addprefix --editable ,$(PARTS))
@@ -184,8 +176,11 @@ $(VENV)/.tools: $(VENV)/.parts pyproject.toml
 	@$(PIP) install --constraint constraints.txt --group dev
 	@touch $@
 
-# Nothing of these packages is run but eslint and tsc, and none of their install scripts.
+# Nothing of these packages is run but esbuild, eslint and tsc, and none of their install scripts.
 $(NODE)/.installed: package.json package-lock.json .npmrc
 	@tools/system-packages pages
 	@npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null
 	@touch $@
+
+$(PAGE_LIBRARIES): $(NODE)/.installed services/web/vendor/three.js tools/page-libraries
+	@tools/page-libraries

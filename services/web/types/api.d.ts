@@ -235,7 +235,7 @@ declare namespace Api {
 
   // Training
 
-  interface TrainingOrder extends Omit<Messages.Order, "model" | "task" | "score_episodes"> {
+  interface TrainingOrder extends Omit<Messages.Order, "model" | "task" | "score_episodes" | "control_hz"> {
     models: string[];
     tasks: string[];
     score_episodes: number | undefined;

@@ -1,4 +1,4 @@
-// What the pages use of three.js: `make page-libraries` bundles it, with what it needs, into static/js/vendor/three.js.
+// What the pages use of three.js: tools/page-libraries bundles it, with what it needs, into static/vendor/three.mjs.
 
 export {
   BufferAttribute,

@@ -21,6 +21,7 @@ from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.webrtc.aiortc_hooks import close_connection, on_unreadable
 from mart.teleop_gateway.webrtc.ice_candidates import bounded_candidates
 from mart.teleop_gateway.webrtc.ice_watch import IceWatch
+from mart.teleop_gateway.webrtc.named_candidates import add_named
 from mart.teleop_gateway.webrtc.peer import as_aiortc
 
 CHANNEL = "echo"
@@ -70,6 +71,7 @@ class _TriedConnection:
     def __init__(self) -> None:
         self.ended = asyncio.Event()
         self._connection: RTCPeerConnection | None = None
+        self._looking_up: asyncio.Task[None] | None = None
         self._rate = RateLimit(MAX_PER_S)
 
     async def live(self) -> None:
@@ -77,6 +79,8 @@ class _TriedConnection:
         with contextlib.suppress(TimeoutError):  # its time is over
             async with asyncio.timeout(LIFETIME_S):
                 await self.ended.wait()
+        if self._looking_up is not None:
+            self._looking_up.cancel()
         if self._connection is not None:
             await close_connection(self._connection)
 
@@ -86,9 +90,11 @@ class _TriedConnection:
         connection.on("datachannel", self._on_channel)
         connection.on("connectionstatechange", self._on_state)
         try:
-            await self._negotiate(connection, bounded_candidates(sdp))
+            bounded, named = bounded_candidates(sdp)
+            await self._negotiate(connection, bounded)
         except Exception as error:  # a malformed SDP raises whatever the parser trips over
             raise InvalidInput(f"An offer was given that cannot be answered: {error}") from error
+        self._looking_up = asyncio.create_task(add_named(connection, named)) if named else None
         return connection.localDescription.sdp
 
     async def _negotiate(self, connection: RTCPeerConnection, sdp: str) -> None:

@@ -15,8 +15,6 @@ from aiortc import (
     RTCRtpSender,
     RTCSessionDescription,
 )
-from aiortc.exceptions import InvalidStateError
-from aiortc.sdp import candidate_from_sdp
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
@@ -33,7 +31,8 @@ from mart.teleop_gateway.webrtc.aiortc_hooks import (
     sent_codec,
     show_at_once,
 )
-from mart.teleop_gateway.webrtc.ice_candidates import NamedCandidate, bounded_candidates
+from mart.teleop_gateway.webrtc.ice_candidates import bounded_candidates
+from mart.teleop_gateway.webrtc.named_candidates import add_named
 from mart.teleop_gateway.webrtc.track import EncodedTrack
 
 _log = logging.getLogger(__name__)
@@ -142,21 +141,7 @@ class Peer:
         if sender is not None:
             self.codec = Codec(sent_codec(self._connection.getTransceivers()[0]))
         if named:
-            self._looking_up = asyncio.create_task(self._look_up(named))
-
-    async def _look_up(self, named: Sequence[NamedCandidate]) -> None:
-        """Add candidates whose names must be looked up first: the answer is on its way meanwhile."""
-        for one in named:
-            try:
-                candidate = candidate_from_sdp(one.line)
-                candidate.sdpMLineIndex = one.media_index
-                await self._connection.addIceCandidate(candidate)
-            except (
-                InvalidStateError,
-                ValueError,
-                OSError,
-            ) as error:  # closed meanwhile, no multicast here, garbage
-                _log.debug("A candidate with a name is left out: %s", error)
+            self._looking_up = asyncio.create_task(add_named(self._connection, named))
 
     def _add_video(self) -> RTCRtpSender:
         self.track = EncodedTrack(self._want_keyframe)

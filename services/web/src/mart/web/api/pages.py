@@ -55,15 +55,15 @@ async def health(request: Request) -> Response:
 
 
 @router.get("/check", include_in_schema=False)
-async def check() -> FileResponse:
+async def check(request: Request) -> Response:
     """Send the page that tells whether a device is ready for a session."""
-    return page("check")
+    return page("check", request)
 
 
 @router.get("/watch", include_in_schema=False)
-async def watch() -> FileResponse:
+async def watch(request: Request) -> Response:
     """Send the page of spectators."""
-    return page("watch")
+    return page("watch", request)
 
 
 @router.get("/phone", include_in_schema=False)

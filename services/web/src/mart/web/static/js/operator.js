@@ -168,6 +168,9 @@ function onStatus(tick) {
   render();
 }
 
+/** Whether pictures come, or the last ones are still worth showing. */
+const isLive = () => link.state === LinkState.LIVE || (link.state === LinkState.CONNECTING && pictured);
+
 /** Whether the room is heard now. */
 const isTold = () => performance.now() - heardMs < NO_NEWS_MS && room !== null && !room.stale;
 
@@ -183,8 +186,7 @@ function render() {
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
   if (room) showRoom({ ...room, stale: !told });
-  const live = link.state === LinkState.LIVE || (link.state === LinkState.CONNECTING && pictured);
-  showPicture(seat, status, live, drawn.isShown);
+  showPicture(seat, status, isLive(), drawn.isShown);
   showHolder(mine);
 }
 

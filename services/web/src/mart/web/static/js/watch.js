@@ -5,6 +5,7 @@ import { armName, badge, hasPicture, holderName } from "./arms.js";
 import { cueText } from "./cues.js";
 import { byId, element, setShown, setText } from "./dom.js";
 import { seconds } from "./formatting.js";
+import { approachAsPage } from "./link/page-approach.js";
 import { SeatLink } from "./link/seat-link.js";
 import { followRooms } from "./live.js";
 
@@ -20,7 +21,7 @@ const said = new Map();
 let watched = "";
 
 const link = new SeatLink({
-  fetchToken: async () => ({ room: rooms.value, arm: views.value, ...(await api.seatToken(rooms.value, views.value)) }),
+  approach: () => approachAsPage(rooms.value, views.value),
   wantsVideo: true,
   onState: () => showPicture(),
   onStatus: () => {},

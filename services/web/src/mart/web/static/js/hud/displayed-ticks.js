@@ -1,4 +1,5 @@
-// Which tick was displayed last, and whether the picture stands still while the world goes on. Times: performance.now().
+// Which tick was displayed last, and whether the picture stands still while the world goes on.
+// Times: performance.now().
 
 const STILL_MS = 1000;
 
