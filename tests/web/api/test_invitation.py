@@ -29,5 +29,8 @@ async def test_strangers_are_not_told_the_code(enter: Enter) -> None:
     assert (await (await enter()).get("/api/invitation")).status_code == 401
 
 
-async def test_the_addresses_are_told_with_the_health(enter: Enter) -> None:
-    assert (await (await enter()).get("/api/health")).json()["urls"] == ["https://192.168.1.5/"]
+async def test_this_machine_alone_is_told_the_addresses_with_the_health(enter: Enter) -> None:
+    here = await enter(address="127.0.0.1")
+    assert (await here.get("/api/health")).json()["urls"] == ["https://192.168.1.5/"]
+    elsewhere = await enter(address="10.0.0.7")
+    assert "urls" not in (await elsewhere.get("/api/health")).json()

@@ -11,7 +11,8 @@ from fastapi import APIRouter, Request
 from mart.protocol import clock
 from mart.protocol.vocabulary import ServiceKind
 from mart.web.access.certificate import days_left
-from mart.web.api.dependencies import App, JoinedUser, now_unix_s
+from mart.web.access.site_names import is_loopback
+from mart.web.api.dependencies import Address, App, JoinedUser, now_unix_s
 from mart.web.lobby.health_findings import delays, machine, pictures, relays, rooms, services
 from mart.web.lobby.room_json import Json
 
@@ -21,17 +22,16 @@ _EXPECTED = (ServiceKind.SIM, ServiceKind.GATEWAY, ServiceKind.RECORDER)
 
 
 @router.get("")
-async def health(request: Request, app: App) -> Json:
+async def health(request: Request, app: App, address: Address) -> Json:
     """Send who is alive, and as `ok` whether everything that a collection session needs is there.
 
-    Also the addresses by which other devices reach the lobby; none where they do not.
+    Who asks from this machine is told as `urls` how other devices reach the lobby; others need not know its networks.
     """
     running = app.lobby.services.by_kind()
-    return {
-        "ok": all(kind in running for kind in _EXPECTED),
-        "services": running,
-        "urls": app.site.urls_for_others(request.headers["host"]),
-    }
+    told = {"ok": all(kind in running for kind in _EXPECTED), "services": running}
+    if is_loopback(address):
+        told["urls"] = app.site.urls_for_others(request.headers["host"])
+    return told
 
 
 @router.get("/findings")
