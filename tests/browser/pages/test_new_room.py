@@ -14,7 +14,7 @@ def test_a_room_is_opened_and_closed_from_the_lobby(browser: Browser, platform: 
         ana.join("Ana", "Join and choose a seat")
         cards = ana.page.locator("article.room")
         expect(cards).to_have_count(1)
-        ana.page.locator("summary").click()
+        ana.page.get_by_text("New room", exact=True).click()
         ana.page.get_by_label("Task").select_option("Lift and wipe")
         ana.page.get_by_label("Good episodes wanted").fill("50")
         ana.is_fine("lobby-new-room")
@@ -40,7 +40,7 @@ def test_where_nothing_opens_rooms_the_lobby_says_why_and_how(
     with visit(browser, platform, size, scheme) as ana:
         ana.page.route("**/api/tasks", without_platform)
         ana.join("Ana", "Join and choose a seat")
-        ana.page.locator("summary").click()
+        ana.page.get_by_text("New room", exact=True).click()
         expect(ana.page.locator("#rooms-elsewhere")).to_contain_text("none is allowed to start another")
         expect(ana.page.locator("#task-names")).to_contain_text("three_arm_lift_wiping")
         expect(ana.page.get_by_role("button", name="Close room-1")).to_be_hidden()

@@ -16,7 +16,7 @@ def test_good_episodes_are_counted_until_the_plan_is_reached(
     room = f"plan-{size}"
     with visit(browser, platform, size, scheme) as ana:
         ana.join("Ana", "Join and choose a seat")
-        ana.page.locator("summary").click()
+        ana.page.get_by_text("New room", exact=True).click()
         ana.page.get_by_label("Name", exact=True).fill(room)
         ana.page.get_by_label("Good episodes wanted").fill("1")
         ana.is_fine(f"lobby-new-room-{size}-{scheme}")
