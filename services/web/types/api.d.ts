@@ -42,6 +42,7 @@ declare namespace Api {
     mine: boolean;
     policy: string;
     relieved: string;
+    kept_s: number;
   }
 
   interface Waiting {

@@ -42,6 +42,7 @@ def view(run: Run, the_room: dict[str, Any] | None, **more: Any) -> dict[str, An
 
 MINE = seat(mine=True)
 RELIEVING = seat(mine=True, relieved="lifter")
+WAITING = {"arm": "arm1", "name": "Ben"}
 OUTCOMES = ["success", "failure", "discard"]
 READY = seat(mine=True, ready=True)
 SAVED = {"path": "episodes/x.mcap", "verified": True, "verdict": "", "size_bytes": 2_345_678}
@@ -103,6 +104,19 @@ def test_the_plan_is_told_and_stops_nobody(run: Run, plan: dict[str, int] | None
     shown = view(run, room(MINE) | {"plan": plan})
     assert shown["actions"] == ["ready", "reset"]
     assert ("you may go on" in shown["hint"]) == ("recorded" in words)
+
+
+def test_a_seat_that_is_kept_for_somebody_away_says_for_how_long(run: Run) -> None:
+    away = seat("arm1", name="Ben", kept_s=19.2)
+    assert view(run, room(READY, away))["detail"] == "Waiting for Ben (kept for 20 s more)."
+    assert view(run, room(seat(name="Ben", kept_s=19.2)))["detail"] == "Kept for Ben for 20 s more."
+    waiting_text = "({ waitingText }, room) => waitingText(room)"
+    paused = room(MINE, away) | {"barrier": "paused", "waiting_for": [WAITING | {"since_s": 10.8}]}
+    assert run("formatting.js", waiting_text, paused) == "Paused, waiting for Ben, at most 20 s more"
+    script = seat("arm1", operator="script", kept_s=0.0)
+    assert run("formatting.js", waiting_text, paused | {"seats": [MINE, script]}).endswith("arm, 10.8 s")
+    stalled = paused | {"barrier": "stalled", "waiting_for": [WAITING | {"since_s": 0.8}]}
+    assert run("formatting.js", waiting_text, stalled) == "Waiting for Ben, 0.8 s"
 
 
 def test_people_are_named_when_they_wait_for_each_other(run: Run) -> None:

@@ -36,6 +36,7 @@ def seat_json(seat: Seat, holder_id: str) -> Json:
         "mine": mine,
         "policy": seat.policy,
         "relieved": seat.relieved,
+        "kept_s": seat.kept_s,
     }
 
 

@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { armName, isFree } from "./arms.js";
 import { byId, element, keepChildren, setShown, setText } from "./dom.js";
+import { keptText } from "./formatting.js";
 import { followRooms } from "./live.js";
 import { newRoom } from "./new-room.js";
 import { roomCard } from "./room-card.js";
@@ -156,7 +157,14 @@ function nextActionText(mine, free) {
   if (free) return `${armName(free.seat.arm)}, with the keyboard. Nothing is recorded until you say so.`;
   if (rooms.length === 0) return "No room is open. Open one below, and sit down.";
   if (rooms.every((room) => room.stale)) return "The simulation does not answer; this goes on by itself when it does.";
-  return "Every seat is taken. You can watch until one is free.";
+  return `Every seat is taken. ${keptSeat()}You can watch until one is free.`;
+}
+
+/** "Blue arm: Kept for Ana for 20 s more. ": what may be free soonest; nothing where nobody is away. */
+function keptSeat() {
+  const away = seatsOf(rooms).map(({ seat }) => seat).filter((seat) => seat.kept_s > 0);
+  const soonest = away.sort((one, other) => one.kept_s - other.kept_s)[0];
+  return soonest ? `${armName(soonest.arm)}: ${keptText(soonest)}. ` : "";
 }
 
 /** @type {(list: Api.Room[]) => Place[]} */

@@ -2,7 +2,7 @@
 
 import { holderName, isMachine, theArm } from "../arms.js";
 import { LinkState } from "../link/seat-link.js";
-import { asSentence, clockTime, outcomeText, planText } from "../formatting.js";
+import { asSentence, clockTime, keptFor, keptText, outcomeText, planText } from "../formatting.js";
 import { canBeKept, lastEpisodeOf, lastLabel, lastText } from "./last-episode.js";
 
 /** @import { State } from "../link/seat-link.js" */
@@ -102,7 +102,7 @@ const PHASES = {
   practice(room, seat, looking) {
     const others = room.seats.filter((other) => other.operator === "human" && !other.mine);
     if (seat.ready) {
-      const late = others.filter((other) => !other.ready).map((other) => other.name);
+      const late = others.filter((other) => !other.ready).map(awaitedName);
       return view("Ready", late.length ? `Waiting for ${late.join(" and ")}.` : "Starting…", [ACTIONS.unready]);
     }
     const shown = practice(room, seat, looking);
@@ -126,6 +126,12 @@ const PHASES = {
     return view(outcomeText(room.episode.outcome), `${asSentence(room.episode.reason)} Saving…`.trim());
   },
 };
+
+/** "Ana", or "Ana (kept for 20 s more)" of somebody who is away. @param {Api.Seat} seat */
+function awaitedName(seat) {
+  const kept = keptFor(seat);
+  return kept ? `${seat.name} (${kept})` : seat.name;
+}
 
 /**
  * Before anybody is ready: the last episode until the next one begins, else the goal.
@@ -175,7 +181,7 @@ function watching(room, seat) {
     return view("Free seat", `Nobody drives ${theArm(seat.arm)}.`, [ACTIONS.take]);
   }
   if (isMachine(seat)) return besideMachine(room, seat);
-  return view("Watching", `${seat.name} drives.`, [ACTIONS.lobby]);
+  return view("Watching", asSentence(keptText(seat)) || `${seat.name} drives.`, [ACTIONS.lobby]);
 }
 
 /**
