@@ -102,6 +102,7 @@ declare namespace Api {
     instruction: string;
     time_limit_s: number | null;
     stale: boolean;
+    slow: boolean;
     control_hz: number;
     tick: number;
     real_time_factor: number;

@@ -209,6 +209,9 @@ def test_a_newcomer_is_told_the_first_moves(run: Run) -> None:
         ({"delay": 900}, ("slow", "slow", "900 ms")),
         ({"factor": 0.9}, ("fair", "slow world", "60 ms")),
         ({"factor": 0.03}, ("slow", "slow world", "60 ms")),
+        ({"factor": 0.03, "delay": 900, "forMs": 900}, ("none", "starting", "900 ms")),
+        ({"forMs": 900}, ("good", "good", "60 ms")),
+        ({"factor": 0.03, "slow": False}, ("good", "good", "60 ms")),
         ({"factor": 0.03, "delay": 900}, ("slow", "slow world", "900 ms")),
         ({"factor": 0.9, "delay": 900}, ("slow", "slow", "900 ms")),
         ({"still": True}, ("slow", "picture stands still", "60 ms")),
@@ -221,14 +224,15 @@ def test_a_newcomer_is_told_the_first_moves(run: Run) -> None:
 def test_the_health_figure_is_the_worst_of_what_is_known_now(
     run: Run, changes: dict[str, Any], shown: tuple[str, str, str]
 ) -> None:
-    script = """({ healthOf }, { told, live, still, delay, factor, barrier }) => {
+    script = """({ healthOf }, { told, live, still, forMs, slow, delay, factor, barrier }) => {
       const status = { latency: { p50_ms: delay, p95_ms: delay, stages: {} } };
       const { grade, word, figure } = healthOf({
-        told, live, still, status, room: { barrier, real_time_factor: factor },
+        told, live, still, forMs, status, room: { barrier, slow, real_time_factor: factor },
       });
       return [grade, word, figure];
     }"""
-    known = {"told": True, "live": True, "still": False, "delay": 60, "factor": 1.0, "barrier": "running"}
+    known = {"told": True, "live": True, "still": False, "slow": True, "barrier": "running"}
+    known |= {"delay": 60, "factor": 1.0, "forMs": 9000}
     assert run("hud/health-figure.js", script, known | changes) == list(shown)
 
 

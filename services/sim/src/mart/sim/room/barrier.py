@@ -49,13 +49,15 @@ class TickInputs:
     """Hold what a tick that fires now is stepped with.
 
     commands: the newest command of every arm that is not on hold. straggler: the arm that completed the barrier last,
-    None where nobody drives; late_s: how long the tick waited for it beyond the pace.
+    None where nobody drives; late_s: how long the tick waited for it beyond the pace. resumed: the world had stood
+    still until now, paused, stopped, or for the first command of a new holder.
     """
 
     commands: Mapping[str, ReceivedCommand]
     due_s: float
     straggler: str | None
     late_s: float
+    resumed: bool = False
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,7 @@ class _SeatState:
     unused: bool = False  # the newest command has not moved the world yet
     away: bool = False  # held since before a restart, and not a word since
     complete_s: float = 0.0  # when the first unused command arrived
+    begun: bool = False  # a command has moved the world
 
     @property
     def driven(self) -> bool:
@@ -100,6 +103,7 @@ class Barrier:
         self._seats = {arm: _SeatState(OPERATOR_HOLD, 0, now_s) for arm in arms}
         self._driven: dict[str, _SeatState] = {}  # those of them that are not on hold
         self._stop: tuple[str, float] | None = None  # arm, since when
+        self._stood = False  # paused or stopped since the last tick
 
     def seat(self, arm: str, operator: Operator, epoch: int, now_s: float, *, restored: bool = False) -> None:
         """Give a seat to a new holder: what the old one said no longer counts.
@@ -169,6 +173,7 @@ class Barrier:
         """
         awaited = {arm: seat for arm, seat in self._driven.items() if awaits_away or not seat.away}
         phase, waiting_for = self._phase(awaited, now_s)
+        self._stood |= phase in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED)
         world_may_run = gate_open and phase in (BARRIER_PHASE_RUNNING, BARRIER_PHASE_STALLED)
         due = world_may_run and _is_complete(awaited) and now_s >= self.pace.due_s
         inputs = self._fire(awaited, now_s) if due else None
@@ -216,15 +221,17 @@ class Barrier:
 
     def _fire(self, driven: Mapping[str, _SeatState], now_s: float) -> TickInputs:
         commands = {}
+        resumed = self._stood or not all(seat.begun for seat in driven.values())
         for arm, seat in driven.items():
             assert seat.newest is not None  # it is unused, so it is there
             commands[arm] = seat.newest
-            seat.unused = False
+            seat.unused, seat.begun = False, True
         straggler = max(driven, key=lambda arm: driven[arm].complete_s, default=None)
         due_s = self.pace.due_s
         late_s = max(0.0, driven[straggler].complete_s - due_s) if straggler is not None else 0.0
         self.pace.fired(now_s)
-        return TickInputs(commands, due_s, straggler, late_s)
+        self._stood = False
+        return TickInputs(commands, due_s, straggler, late_s, resumed)
 
     def _next_s(self, now_s: float, will_fire: bool) -> float:
         """Return when the answer may change without a new command; `now_s` where it has changed already."""

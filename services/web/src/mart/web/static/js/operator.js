@@ -39,6 +39,7 @@ let status = null;
 let noticeTimer = 0;
 let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
+let beganMs = -Infinity; // when the gateway first told of this holder's seat
 let displayedMs = -Infinity; // when a newer picture was last displayed
 
 const confirm = new Confirm(() => render());
@@ -145,6 +146,7 @@ function onEvent(event) {
 /** @param {StatusChannel.Tick} tick */
 function onStatus(tick) {
   input.adoptGripper(tick, status);
+  if (status === null) beganMs = performance.now();
   status = tick;
   if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
   render();
@@ -165,12 +167,13 @@ function render() {
   const isNew = !localStorage.getItem(RECORDED_KEY);
   statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches });
   const told = isTold();
-  showHealth({ told, live: link.state === LinkState.LIVE, still: standsStill(), status, room }, video);
+  const live = link.state === LinkState.LIVE;
+  showHealth({ told, live, still: standsStill(), forMs: performance.now() - beganMs, status, room }, video);
   stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
   if (room) showRoom({ ...room, stale: !told });
-  showPicture(seat, status, link.state === LinkState.LIVE);
+  showPicture(seat, status, live);
   showHolder(mine);
 }
 
