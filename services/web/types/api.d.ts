@@ -67,6 +67,7 @@ declare namespace Api {
   interface Subtask {
     name: string;
     title: string;
+    arms: string[];
     done: boolean;
   }
 

@@ -8,6 +8,7 @@ import pytest
 
 from tests.browser.pages.conftest import Run
 
+CUBE = {"title": "Cube 0 is up", "arms": ["arm0"], "done": False}
 LIVE = {"state": "live", "problem": "", "role": "browser"}
 
 
@@ -22,7 +23,7 @@ def room(*seats: dict[str, Any], phase: str = "practice", **episode: Any) -> dic
         "last_episode": None,
         "unrecorded": "",
         "plan": None,
-        "progress": {"subtasks": [{"title": "Cube 0 is up", "done": False}] * 3, "success": False},
+        "progress": {"subtasks": [CUBE] * 3, "success": False},
         "barrier": "running",
         "instruction": "Lift.",
         "time_limit_s": 15,
@@ -117,6 +118,24 @@ def test_a_seat_that_is_kept_for_somebody_away_says_for_how_long(run: Run) -> No
     assert run("formatting.js", waiting_text, paused | {"seats": [MINE, script]}).endswith("arm, 10.8 s")
     stalled = paused | {"barrier": "stalled", "waiting_for": [WAITING | {"since_s": 0.8}]}
     assert run("formatting.js", waiting_text, stalled) == "Waiting for Ben, 0.8 s"
+
+
+def test_an_arm_that_a_step_needs_and_nobody_drives_is_named_before_recording(run: Run) -> None:
+    idle = room(MINE, seat("arm1", operator="hold", name=""))
+    assert view(run, idle)["warning"] == ""  # no step needs it
+    column = {"title": "Column 1 stands", "arms": ["arm1"], "done": False}
+    tabletop = {"title": "The tabletop is up", "arms": ["arm0", "arm1"], "done": False}
+    idle["progress"]["subtasks"] = [CUBE, column, tabletop]
+    words = (
+        "Nobody drives the orange arm; without it there is no success: “Column 1 stands”, “The tabletop is up”. "
+        "Use a script there, or let somebody take the seat."
+    )
+    shown = view(run, idle)
+    assert (shown["warning"], shown["actions"]) == (words, ["ready", "reset"])
+    assert view(run, idle | {"episode": idle["episode"] | {"phase": "countdown"}})["warning"] == words
+    assert view(run, idle | {"episode": idle["episode"] | {"phase": "recording"}})["warning"] == ""
+    idle["seats"][1]["operator"] = "script"
+    assert view(run, idle)["warning"] == ""
 
 
 def test_people_are_named_when_they_wait_for_each_other(run: Run) -> None:

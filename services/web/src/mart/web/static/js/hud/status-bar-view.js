@@ -22,6 +22,7 @@ import { canBeKept, lastEpisodeOf, lastLabel, lastText } from "./last-episode.js
  * @property {string} limit
  * @property {string} detail
  * @property {string} [hint] what helps to begin
+ * @property {string} [warning] why the task could not be done now
  * @property {boolean} recording
  * @property {Action[]} actions
  */
@@ -62,7 +63,32 @@ const ACTIONS = {
  * @param {Known} known
  */
 export function statusBarView(known) {
-  return { ...whatHappens(known), plan: planText(known.room?.plan) };
+  const shown = whatHappens(known);
+  const warning = isBefore(known.room, shown) ? idleText(known.room) : "";
+  return { ...shown, plan: planText(known.room?.plan), warning };
+}
+
+/**
+ * Whether an episode can be begun here, or is about to begin.
+ * @param {Api.Room | null} room
+ * @param {View} view
+ * @returns {room is Api.Room}
+ */
+function isBefore(room, { actions }) {
+  if (!room || room.stale) return false;
+  return room.episode.phase === "countdown" || actions.some(({ command }) => ["ready", "unready"].includes(command));
+}
+
+/** Which arms the steps need and nobody drives, and what to do. @param {Api.Room} room */
+function idleText({ seats, progress: { subtasks } }) {
+  const idle = seats.filter((seat) => seat.operator === "hold").map((seat) => seat.arm);
+  const open = subtasks.filter((subtask) => subtask.arms.some((arm) => idle.includes(arm)));
+  const needed = idle.filter((arm) => open.some((subtask) => subtask.arms.includes(arm)));
+  if (needed.length === 0) return "";
+  const steps = open.map(({ title }) => `“${title}”`).join(", ");
+  const it = needed.length > 1 ? "them" : "it";
+  return `Nobody drives ${needed.map(theArm).join(" and ")}; without ${it} there is no success: ${steps}. `
+    + "Use a script there, or let somebody take the seat.";
 }
 
 /**
