@@ -109,7 +109,7 @@ def test_the_plan_is_told_and_stops_nobody(run: Run, plan: dict[str, int] | None
 
 def test_a_seat_that_is_kept_for_somebody_away_says_for_how_long(run: Run) -> None:
     away = seat("arm1", name="Ben", kept_s=19.2)
-    assert view(run, room(READY, away))["detail"] == "Waiting for Ben (kept for 20 s more)."
+    assert view(run, room(READY, away))["detail"] == "Waiting for Ben (away, seat kept for 20 s more)."
     assert view(run, room(seat(name="Ben", kept_s=19.2)))["detail"] == "Kept for Ben for 20 s more."
     waiting_text = "({ waitingText }, room) => waitingText(room)"
     paused = room(MINE, away) | {"barrier": "paused", "waiting_for": [WAITING | {"since_s": 10.8}]}

@@ -229,6 +229,8 @@ class Barrier:
         straggler = max(driven, key=lambda arm: driven[arm].complete_s, default=None)
         due_s = self.pace.due_s
         late_s = max(0.0, driven[straggler].complete_s - due_s) if straggler is not None else 0.0
+        if resumed:
+            self.pace.restart(now_s)  # nobody catches up with what was no slowness
         self.pace.fired(now_s)
         self._stood = False
         return TickInputs(commands, due_s, straggler, late_s, resumed)

@@ -153,10 +153,10 @@ const PHASES = {
   },
 };
 
-/** "Ana", or "Ana (kept for 20 s more)" of somebody who is away. @param {Api.Seat} seat */
+/** "Ana", or "Ana (away, seat kept for 20 s more)" of somebody who is away. @param {Api.Seat} seat */
 function awaitedName(seat) {
   const kept = keptFor(seat);
-  return kept ? `${seat.name} (${kept})` : seat.name;
+  return kept ? `${seat.name} (away, seat ${kept})` : seat.name;
 }
 
 /**
