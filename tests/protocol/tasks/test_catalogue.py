@@ -26,6 +26,8 @@ def test_a_row_is_sound(task: Task) -> None:
     for names in ([s.name for s in task.subtasks], [o.name for o in task.observations]):
         assert names
         assert len(set(names)) == len(names)
+    acting = {arm for subtask in task.subtasks for arm in subtask.arms or task.arm_names}
+    assert acting == set(task.arm_names)
     for observation in task.observations:
         assert observation.arms
         assert set(observation.arms) <= set(task.arm_names)

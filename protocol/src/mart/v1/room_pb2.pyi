@@ -77,7 +77,7 @@ CUE_SLOWER: Cue
 CUE_THANKS: Cue
 
 class Seat(_message.Message):
-    __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged", "policy", "relieved", "holder_tag")
+    __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged", "policy", "relieved", "holder_tag", "kept_s")
     ARM_FIELD_NUMBER: _ClassVar[int]
     OPERATOR_FIELD_NUMBER: _ClassVar[int]
     EPOCH_FIELD_NUMBER: _ClassVar[int]
@@ -88,6 +88,7 @@ class Seat(_message.Message):
     POLICY_FIELD_NUMBER: _ClassVar[int]
     RELIEVED_FIELD_NUMBER: _ClassVar[int]
     HOLDER_TAG_FIELD_NUMBER: _ClassVar[int]
+    KEPT_S_FIELD_NUMBER: _ClassVar[int]
     arm: str
     operator: _command_pb2.Operator
     epoch: int
@@ -98,7 +99,8 @@ class Seat(_message.Message):
     policy: str
     relieved: str
     holder_tag: str
-    def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., epoch: _Optional[int] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., ready: _Optional[bool] = ..., engaged: _Optional[bool] = ..., policy: _Optional[str] = ..., relieved: _Optional[str] = ..., holder_tag: _Optional[str] = ...) -> None: ...
+    kept_s: float
+    def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., epoch: _Optional[int] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., ready: _Optional[bool] = ..., engaged: _Optional[bool] = ..., policy: _Optional[str] = ..., relieved: _Optional[str] = ..., holder_tag: _Optional[str] = ..., kept_s: _Optional[float] = ...) -> None: ...
 
 class Waiting(_message.Message):
     __slots__ = ("arm", "since_s")

@@ -45,11 +45,15 @@ class Arm:
 
 @dataclass(frozen=True)
 class Subtask:
-    """A step on the way. `coordinated`: it takes more than one arm at the same time."""
+    """A step on the way. `coordinated`: it takes more than one arm at the same time.
+
+    arms: those that act in it, by name; empty: every arm of the task. It cannot be done while one of them is on hold.
+    """
 
     name: str
     title: str
     coordinated: bool
+    arms: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -38,9 +38,9 @@ def task(arms: int) -> Task:
         "Green takes the sponge and wipes away the dirt that was under it.",
         arms=placed,
         subtasks=(
-            Subtask("lift_tray", "The tray is up", coordinated=True),
-            Subtask("carry_tray", "The tray is aside", coordinated=True),
-            Subtask("wipe_table", "The table is clean", coordinated=False),
+            Subtask("lift_tray", "The tray is up", coordinated=True, arms=names[:2]),
+            Subtask("carry_tray", "The tray is aside", coordinated=True, arms=names[:2]),
+            Subtask("wipe_table", "The table is clean", coordinated=False, arms=(WIPER,)),
         ),
         observations=(
             *(o for name in names for o in proprioception(name)),

@@ -27,7 +27,8 @@ def task(arms: int) -> Task:
         instruction="Each of you picks up the cube in your arm's colour and holds it more than 10 cm above the table.",
         arms=placed,
         subtasks=tuple(
-            Subtask(f"lift_cube{i}", f"Cube {i} is up", coordinated=False) for i in range(len(placed))
+            Subtask(f"lift_cube{i}", f"Cube {i} is up", coordinated=False, arms=(arm.name,))
+            for i, arm in enumerate(placed)
         ),
         observations=tuple(o for arm in placed for o in (*proprioception(arm.name), *_cube(arm.name))),
         horizon_ticks=1200,  # a minute: scripts need 4 s, people at a keyboard half a minute

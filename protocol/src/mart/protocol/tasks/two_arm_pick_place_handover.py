@@ -26,11 +26,11 @@ def task(arms: int) -> Task:
         ),
         arms=(fetcher, receiver),
         subtasks=(
-            Subtask("lid_removed", "The container is open", coordinated=False),
-            Subtask("trash_cleared", "The trash is in the small tray", coordinated=False),
-            Subtask("hammer_fetched", "The hammer is out of the container", coordinated=False),
-            Subtask("hammer_handed_over", "Arm 1 has the hammer", coordinated=True),
-            Subtask("hammer_placed", "The hammer is in the bin", coordinated=True),
+            Subtask("lid_removed", "The container is open", coordinated=False, arms=both[:1]),
+            Subtask("trash_cleared", "The trash is in the small tray", coordinated=False, arms=both[1:]),
+            Subtask("hammer_fetched", "The hammer is out of the container", coordinated=False, arms=both[:1]),
+            Subtask("hammer_handed_over", "Arm 1 has the hammer", coordinated=True, arms=both),
+            Subtask("hammer_placed", "The hammer is in the bin", coordinated=True, arms=both[1:]),
         ),
         observations=(
             *proprioception(fetcher.name),

@@ -26,8 +26,8 @@ def task(arms: int) -> Task:
         ),
         arms=placed,
         subtasks=(
-            Subtask("column0_seated", "Column 0 stands in its socket", coordinated=False),
-            Subtask("column1_seated", "Column 1 stands in its socket", coordinated=False),
+            Subtask("column0_seated", "Column 0 stands in its socket", coordinated=False, arms=both[:1]),
+            Subtask("column1_seated", "Column 1 stands in its socket", coordinated=False, arms=both[1:]),
             Subtask("tabletop_lifted", "The tabletop is up", coordinated=True),
             Subtask("tabletop_seated", "The tabletop is on both columns", coordinated=True),
         ),

@@ -76,8 +76,11 @@ def progress(progress: TaskProgress) -> Fields:
     }
 
 
-def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None, salt: str) -> Seat:
-    """Return the message of a seat; `newest`: the newest command of its operator, `salt`: of its holder's tag."""
+def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None, salt: str, kept_s: float) -> Seat:
+    """Return the message of a seat.
+
+    newest: the newest command of its operator. salt: of its holder's tag. kept_s: see `Seat.kept_s`.
+    """
     return Seat(
         arm=holder.arm,
         operator=holder.operator,
@@ -88,6 +91,7 @@ def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None, salt: 
         engaged=newest is not None and newest.command.engaged,
         policy=holder.driver.policy,
         relieved=holder.relieved.called if holder.relieved else "",
+        kept_s=kept_s,
     )
 
 

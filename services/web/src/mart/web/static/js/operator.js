@@ -41,12 +41,13 @@ let status = null;
 let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
 let pictured = false; // by the present connection: its picture comes a round trip before its first word
+let beganMs = -Infinity; // when the gateway first told of this holder's seat
 
 const displayed = new DisplayedTicks();
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
 const panel = new InputPanel(roomName, armId, (error) => showNotice(api.messageOf(error)));
-const input = new KeyboardMouseInput(byId("picture"), onKey);
+const input = new KeyboardMouseInput(byId("picture"), onKey, () => confirm.withdraw());
 const link = new SeatLink({
   approach: () => approachAsPage(roomName, armId),
   wantsVideo: true,
@@ -163,6 +164,7 @@ function onShown(tick, nowMs) {
 function onStatus(tick) {
   drawn.onTick(tick.tick);
   input.adoptGripper(tick, status);
+  if (status === null) beganMs = performance.now();
   status = tick;
   if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
   render();
@@ -181,7 +183,8 @@ function render() {
   statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches });
   const told = isTold();
   const still = displayed.standStill(status?.tick ?? 0, performance.now());
-  showHealth({ told, live: link.state === LinkState.LIVE, still, status, room, drawn }, video);
+  const forMs = performance.now() - beganMs;
+  showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn }, video);
   stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());

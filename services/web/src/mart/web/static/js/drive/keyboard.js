@@ -4,7 +4,6 @@ import { commandOf, directionOf, isMotion } from "./keys.js";
 
 /** @import { Command } from "./keys.js" */
 
-const AFTER_RELEASE_MS = 500; // a key that was meant to move must not end the episode
 const CLUTCH = "Space";
 
 /** Which keys are held, and a call for each that commands. */
@@ -13,12 +12,16 @@ export class Keyboard {
   /** @type {Set<string>} */
   #held = new Set();
   #clutch = false;
-  #releasedMs = -Infinity;
   #onCommand;
+  #onClutch;
 
-  /** @param {(command: Command) => void} onCommand */
-  constructor(onCommand) {
+  /**
+   * @param {(command: Command) => void} onCommand
+   * @param {() => void} onClutch called when the clutch is pressed
+   */
+  constructor(onCommand, onClutch) {
     this.#onCommand = onCommand;
+    this.#onClutch = onClutch;
     addEventListener("keydown", (event) => this.#down(event));
     addEventListener("keyup", (event) => this.#up(event));
     addEventListener("blur", () => this.release());
@@ -40,20 +43,20 @@ export class Keyboard {
   /** @param {KeyboardEvent} event */
   #down(event) {
     if (isShortcut(event) || belongsToControl(event)) return;
-    const { code, repeat, timeStamp } = event;
+    const { code, repeat } = event;
     if (code === CLUTCH || isMotion(code) || commandOf(code)) event.preventDefault();
-    if (!repeat) this.#press(code, timeStamp);
+    if (!repeat) this.#press(code);
   }
 
   /**
+   * A key that both moves and commands moves while one drives.
    * @param {string} code
-   * @param {number} nowMs
    */
-  #press(code, nowMs) {
+  #press(code) {
     this.#held.add(code);
     const command = commandOf(code);
     if (code === CLUTCH) this.#setClutch(this.toggles ? !this.#clutch : true);
-    else if (command && !this.#moves(code, nowMs)) this.#onCommand(command);
+    else if (command && !(this.#clutch && isMotion(code))) this.#onCommand(command);
   }
 
   /** @param {KeyboardEvent} event */
@@ -62,18 +65,9 @@ export class Keyboard {
     if (code === CLUTCH && !this.toggles) this.#setClutch(false);
   }
 
-  /**
-   * A key that both moves and commands moves while one drives.
-   * @param {string} code
-   * @param {number} nowMs
-   */
-  #moves(code, nowMs) {
-    return isMotion(code) && (this.#clutch || nowMs - this.#releasedMs < AFTER_RELEASE_MS);
-  }
-
   /** @param {boolean} held */
   #setClutch(held) {
-    if (this.#clutch && !held) this.#releasedMs = performance.now();
+    if (held && !this.#clutch) this.#onClutch();
     this.#clutch = held;
   }
 }

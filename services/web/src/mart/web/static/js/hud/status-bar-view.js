@@ -2,7 +2,7 @@
 
 import { holderName, isMachine, theArm } from "../arms.js";
 import { LinkState } from "../link/seat-link.js";
-import { asSentence, clockTime, outcomeText, planText } from "../formatting.js";
+import { asSentence, clockTime, keptFor, keptText, outcomeText, planText } from "../formatting.js";
 import { canBeKept, lastEpisodeOf, lastLabel, lastText } from "./last-episode.js";
 
 /** @import { State } from "../link/seat-link.js" */
@@ -22,6 +22,7 @@ import { canBeKept, lastEpisodeOf, lastLabel, lastText } from "./last-episode.js
  * @property {string} limit
  * @property {string} detail
  * @property {string} [hint] what helps to begin
+ * @property {string} [warning] why the task could not be done now
  * @property {boolean} recording
  * @property {Action[]} actions
  */
@@ -62,7 +63,32 @@ const ACTIONS = {
  * @param {Known} known
  */
 export function statusBarView(known) {
-  return { ...whatHappens(known), plan: planText(known.room?.plan) };
+  const shown = whatHappens(known);
+  const warning = isBefore(known.room, shown) ? idleText(known.room) : "";
+  return { ...shown, plan: planText(known.room?.plan), warning };
+}
+
+/**
+ * Whether an episode can be begun here, or is about to begin.
+ * @param {Api.Room | null} room
+ * @param {View} view
+ * @returns {room is Api.Room}
+ */
+function isBefore(room, { actions }) {
+  if (!room || room.stale) return false;
+  return room.episode.phase === "countdown" || actions.some(({ command }) => ["ready", "unready"].includes(command));
+}
+
+/** Which arms the steps need and nobody drives, and what to do. @param {Api.Room} room */
+function idleText({ seats, progress: { subtasks } }) {
+  const idle = seats.filter((seat) => seat.operator === "hold").map((seat) => seat.arm);
+  const open = subtasks.filter((subtask) => subtask.arms.some((arm) => idle.includes(arm)));
+  const needed = idle.filter((arm) => open.some((subtask) => subtask.arms.includes(arm)));
+  if (needed.length === 0) return "";
+  const steps = open.map(({ title }) => `“${title}”`).join(", ");
+  const it = needed.length > 1 ? "them" : "it";
+  return `Nobody drives ${needed.map(theArm).join(" and ")}; without ${it} there is no success: ${steps}. `
+    + "Use a script there, or let somebody take the seat.";
 }
 
 /**
@@ -102,7 +128,7 @@ const PHASES = {
   practice(room, seat, looking) {
     const others = room.seats.filter((other) => other.operator === "human" && !other.mine);
     if (seat.ready) {
-      const late = others.filter((other) => !other.ready).map((other) => other.name);
+      const late = others.filter((other) => !other.ready).map(awaitedName);
       return view("Ready", late.length ? `Waiting for ${late.join(" and ")}.` : "Starting…", [ACTIONS.unready]);
     }
     const shown = practice(room, seat, looking);
@@ -126,6 +152,12 @@ const PHASES = {
     return view(outcomeText(room.episode.outcome), `${asSentence(room.episode.reason)} Saving…`.trim());
   },
 };
+
+/** "Ana", or "Ana (away, seat kept for 20 s more)" of somebody who is away. @param {Api.Seat} seat */
+function awaitedName(seat) {
+  const kept = keptFor(seat);
+  return kept ? `${seat.name} (away, seat ${kept})` : seat.name;
+}
 
 /**
  * Before anybody is ready: the last episode until the next one begins, else the goal.
@@ -175,7 +207,7 @@ function watching(room, seat) {
     return view("Free seat", `Nobody drives ${theArm(seat.arm)}.`, [ACTIONS.take]);
   }
   if (isMachine(seat)) return besideMachine(room, seat);
-  return view("Watching", `${seat.name} drives.`, [ACTIONS.lobby]);
+  return view("Watching", asSentence(keptText(seat)) || `${seat.name} drives.`, [ACTIONS.lobby]);
 }
 
 /**

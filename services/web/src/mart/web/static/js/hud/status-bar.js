@@ -37,6 +37,8 @@ export class StatusBar {
     setShown(byId("state-detail"), view.detail !== "");
     setText(byId("state-hint"), view.hint ?? "");
     setShown(byId("state-hint"), Boolean(view.hint));
+    setText(byId("state-warning"), view.warning);
+    setShown(byId("state-warning"), view.warning !== "");
     this.#showSubtasks(stepsOf(room, known.seat));
     this.#showActions(view.actions, pending);
   }
