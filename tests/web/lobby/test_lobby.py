@@ -56,7 +56,9 @@ def test_a_room_is_told_in_the_words_of_the_protocol() -> None:
     assert room["barrier"] == "stalled"
     assert room["waiting_for"] == [{"arm": "arm0", "name": "Ana", "since_s": 0.8}]
     assert room["episode"]["phase"] == "recording"
-    assert room["progress"]["subtasks"] == [{"name": "lift_cube0", "title": "Cube 0 is up", "done": True}]
+    assert room["progress"]["subtasks"] == [
+        {"name": "lift_cube0", "title": "The blue cube is up", "done": True}
+    ]
     assert room["time_limit_s"] > 0
     assert [seat["operator"] for seat in room["seats"]] == ["human", "script"]
     assert [seat["mine"] for seat in room["seats"]] == [True, False]

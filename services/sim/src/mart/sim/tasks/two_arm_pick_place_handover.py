@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from itertools import product
 
 import mujoco
@@ -42,6 +43,12 @@ _LID_AWAY_M, _RELEASED_WIDTH_M, _RELEASED_M = 0.20, 0.06, 0.20
 _GRIP_M = (HANDLE_HALF_M[0], 0.008, 0.020)
 _GRIP_WIDTH_M = (2 * HANDLE_HALF_M[1] - 0.005, 2 * HANDLE_HALF_M[1] + 0.006)
 _HELD_BY_BOTH, _HANDED_OVER = 1.0, 2.0
+
+_TOO_FAR_M = 0.01  # along the handle, away from its head: two hands would meet
+_BOTH_HOLD = {
+    "arm0": "Your partner has it: let go now.",
+    "arm1": "Hold it still until your partner has let go.",
+}
 
 _FIRM = {"solref": (0.004, 1.0)}
 _GHOST = {"contype": 0, "conaffinity": 0, "mass": 0.0}
@@ -112,6 +119,19 @@ class PickPlaceHandover(Scene):
             _HANDED_OVER,
             np.where(up & fetcher & receiver, _HELD_BY_BOTH, self._stage * (fetcher | receiver)),
         )
+
+    def now(self, arm: str, done: Container[str]) -> str:
+        """Return what this arm's operator is to do now; also from what no subtask tells: who holds the hammer, how."""
+        if "hammer_handed_over" in done:
+            return super().now(arm, done)
+        fetcher, receiver = self._tools.values()
+        held = bool(self._holds_hammer(fetcher))
+        if held and bool(self._holds_hammer(receiver)):
+            return _BOTH_HOLD[arm]
+        along_m = float(self._hammer.frame(fetcher.position)[0])
+        if arm == "arm0" and "hammer_fetched" in done and held and along_m > _TOO_FAR_M:
+            return "Lay the hammer down and grip it closer to its head: your partner needs the free end of the handle."
+        return super().now(arm, done)
 
     def task_status(self) -> TaskStatus:
         handed_over = self._stage == _HANDED_OVER

@@ -5,9 +5,9 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from mart.protocol.messages import Model
+from mart.protocol.messages import Model, State
 from mart.protocol.pose import Pose
-from mart.protocol.tasks import get_task
+from mart.protocol.tasks import Ghost, Task, get_task
 from mart.render import Image, Renderer, load_model, viewpoint_id
 from mart.teleop_gateway.input.retarget import azimuth_of_camera_rad
 from mart.teleop_gateway.video import tick_code
@@ -41,6 +41,13 @@ def camera_azimuth_rad(message: Model, model: mujoco.MjModel, arm: str) -> float
     return azimuth_of_camera_rad(base_in_world.inverse() @ camera_in_world)
 
 
+def ghost_in(state: State, task: Task, arm: str) -> Ghost | None:
+    """Return what the picture of this arm's operator shows beside what is there, from how far the task has come."""
+    done = {subtask.name for subtask in state.progress.subtasks if subtask.done}
+    step = task.next_step(arm, done)
+    return step.ghost if step else None
+
+
 class SeatRenderer:
     """Draw one camera with the tick below it. Build, use and close it on one thread."""
 
@@ -52,13 +59,17 @@ class SeatRenderer:
         """Draw pictures of this quality's size from now on."""
         self._renderer.resize(quality.width_px, quality.view_height_px)
 
-    def draw(self, integration_state: bytes, tick: int, picture_rgb: Image) -> None:
+    def draw(
+        self, integration_state: bytes, tick: int, picture_rgb: Image, ghost: Ghost | None = None
+    ) -> None:
         """Fill `picture_rgb`, shape (height_px, width_px, 3) of the quality: the view, and the tick in the strip below.
+
+        ghost: what else is shown in the view.
 
         Raises InvalidInput where the state is not one of this model.
         """
         height_px = self._renderer.height_px
-        self._renderer.draw(integration_state, out=picture_rgb[:height_px])
+        self._renderer.draw(integration_state, picture_rgb[:height_px], ghost)
         tick_code.write(tick, picture_rgb[height_px:])
 
     def close(self) -> None:
