@@ -22,7 +22,7 @@ def room(*seats: dict[str, Any], phase: str = "practice", **episode: Any) -> dic
         "last_episode": None,
         "unrecorded": "",
         "plan": None,
-        "progress": {"subtasks": [{"title": "Cube 0 is up", "done": False}] * 3, "success": False},
+        "progress": {"subtasks": [{"title": "The blue cube is up", "done": False}] * 3, "success": False},
         "barrier": "running",
         "instruction": "Lift.",
         "time_limit_s": 15,
@@ -167,6 +167,17 @@ def test_practice_says_the_goal_and_that_it_was_reached(run: Run) -> None:
     assert view(run, room(MINE))["detail"] == "Lift."
     reached = view(run, room(MINE), reached=True)
     assert (reached["label"], reached["primary"]) == ("That is it!", ["ready"])
+
+
+def test_what_to_do_now_is_said_while_one_can_do_it(run: Run) -> None:
+    told = {"now": {"arm0": "Grip the lid.", "arm1": "Wait."}}
+    practice, recording = (view(run, room(MINE, phase=phase) | told) for phase in ("practice", "recording"))
+    assert (practice["now"], practice["goal"], practice["detail"]) == ("Grip the lid.", "Lift.", "")
+    assert (recording["now"], recording["goal"]) == ("Grip the lid.", "Lift.")
+    assert "Success is seen" in recording["hint"]
+    assert not view(run, room(READY, seat("arm1", name="Ben")) | told).get("now")
+    assert not view(run, after() | told).get("now")
+    assert not view(run, room(MINE) | told | {"barrier": "stopped"}).get("now")
 
 
 def test_a_lost_connection_is_said(run: Run) -> None:

@@ -8,7 +8,8 @@ from itertools import product
 import mujoco
 import numpy as np
 
-from mart.protocol.tasks import MAX_ARMS
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import MAX_ARMS, Arm
 from mart.sim.scene.data import Array, Data, Flags, length, within
 from mart.sim.scene.gripper import GRASPABLE
 from mart.sim.scene.palette import rgba
@@ -49,6 +50,9 @@ _BOTH_HOLD = {
     "arm0": "Your partner has it: let go now.",
     "arm1": "Hold it still until your partner has let go.",
 }
+
+# From where an arm usually begins, in its base: to where its hand hides neither knob nor trash from its camera.
+_ASIDE_M = {"arm0": (0.0, -0.16, 0.06), "arm1": (0.0, 0.16, 0.06)}
 
 _FIRM = {"solref": (0.004, 1.0)}
 _GHOST = {"contype": 0, "conaffinity": 0, "mass": 0.0}
@@ -102,6 +106,10 @@ class PickPlaceHandover(Scene):
         self._hammer.put((x, y, SHELF_Z_M + _HEAD_HALF_M[2]), random.uniform(-0.2, 0.2))
         x, y = bin_ + random.uniform(-1.0, 1.0, 2) * (0.06, 0.03)
         self._trash.put((x, y, SHELF_Z_M + TRASH_HALF_M), random.uniform(-0.6, 0.6))
+
+    def start_pose_in_base(self, arm: Arm, random: np.random.Generator) -> Pose:
+        start = super().start_pose_in_base(arm, random)
+        return Pose(start.position + _ASIDE_M[arm.name], start.quaternion_wxyz)
 
     def observe(self) -> dict[str, Array]:
         observations = {f"{arm}/tool_position_in_world": tool.position for arm, tool in self._tools.items()}

@@ -122,9 +122,9 @@ const PHASES = {
     if (room.unrecorded) return view("Not recorded", asSentence(room.unrecorded), RECORDING);
     const limit = room.time_limit_s ? `of ${clockTime(room.time_limit_s)}` : "";
     const figure = clockTime(room.episode.elapsed_s);
-    const detail = pending === "success" ? askedText(room) : now ? "" : "Success is seen by itself.";
+    const detail = pending === "success" ? askedText(room) : "";
     const shown = { ...view("Recording", detail, RECORDING), figure, limit, recording: true };
-    return { ...shown, now, goal: room.instruction };
+    return { ...shown, now, goal: room.instruction, hint: "Success is seen by itself." };
   },
   ended(room) {
     return view(outcomeText(room.episode.outcome), `${asSentence(room.episode.reason)} Saving…`.trim());
@@ -144,13 +144,16 @@ function practice(room, seat, { isNew = false, touch = false, reached = false })
     const keep = canBeKept(last) ? [ACTIONS.keep] : [];
     return view(lastLabel(last), lastText(last), [ACTIONS.again, ...keep, ACTIONS.reset]);
   }
-  const moves = touch ? FIRST_TOUCHES : FIRST_MOVES;
-  const rest = isReached(room.plan) ? "All that was planned is recorded; you may go on." : UNRECORDED;
-  const hint = isNew ? moves : rest;
   const now = nowText(room, seat);
   const shown = view("Practice", now ? "" : room.instruction, [ACTIONS.ready, ACTIONS.reset]);
-  return { ...shown, now, goal: room.instruction, hint };
+  return { ...shown, now, goal: room.instruction, hint: isNew ? firstMoves(touch) : restText(room) };
 }
+
+/** @param {boolean} touch */
+const firstMoves = (touch) => (touch ? FIRST_TOUCHES : FIRST_MOVES);
+
+/** @param {Api.Room} room */
+const restText = ({ plan }) => (isReached(plan) ? "All that was planned is recorded; you may go on." : UNRECORDED);
 
 /** What the task wants of this arm now; nothing where nobody says. @param {Api.Room} room @param {Api.Seat} seat */
 const nowText = ({ now }, { arm }) => now?.[arm] ?? "";

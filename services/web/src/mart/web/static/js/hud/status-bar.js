@@ -63,12 +63,12 @@ export class StatusBar {
     return this.#actions.some((action) => action.command === command);
   }
 
-  /** Leaves of the strip its first line, so that more of the picture is seen. @param {boolean} folded */
+  /** Leaves of the strip what one needs now, so that more of the picture is seen. @param {boolean} folded */
   #fold(folded) {
     localStorage.setItem(FOLDED_KEY, folded ? "yes" : "no");
     setShown(byId("more"), !folded);
     byId("fold").setAttribute("aria-expanded", String(!folded));
-    setText(byId("fold"), folded ? "Show what to do" : "Hide");
+    setText(byId("fold"), folded ? "More" : "Less");
   }
 
   /** In practice the goal counts for as long as it takes to read it. @param {Api.Room | null} room */
@@ -81,9 +81,9 @@ export class StatusBar {
 
   /** @param {Api.Subtask[]} subtasks */
   #showSubtasks(subtasks) {
-    const done = subtasks.filter((subtask) => subtask.done).length;
+    const reached = subtasks.filter((subtask) => subtask.done).length;
     setShown(byId("steps"), subtasks.length > 0);
-    setText(byId("steps-done"), `${done} of ${subtasks.length} steps done`);
+    setText(byId("steps-done"), `${reached} of ${subtasks.length} steps done`);
     byId("subtasks").replaceChildren(
       ...subtasks.map(({ title, done }) => element("li", { class: done ? "done" : "" }, title)),
     );
