@@ -66,7 +66,7 @@ class Room:
             quality=FAST,
         )
 
-    def _make(self, *arguments: Any) -> StubView:
+    def _make(self, *arguments: Any, **_: object) -> StubView:
         view = StubView(*arguments)
         self.made.append(view)
         return view

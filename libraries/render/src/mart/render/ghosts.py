@@ -8,15 +8,14 @@ from __future__ import annotations
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Ghost
+from mart.render.decor import add_column, add_shape
 
 # Okabe & Ito's yellow: no arm has it.
 _COLOR = np.array([0.94, 0.89, 0.26, 0.60], np.float32)
-_EMISSION = 0.3
-_PLUMB_RADIUS_M, _FOOT_RADIUS_M, _FOOT_THICKNESS_M = 0.004, 0.04, 0.0005
+_PLUMB_RADIUS_M, _FOOT_RADIUS_M, _FOOT_THICKNESS_M = 0.004, 0.04, 0.001
 _HIDDEN_GROUP = 3
 
 
@@ -30,25 +29,12 @@ def add_ghost(scene: mujoco.MjvScene, model: mujoco.MjModel, ghost: Ghost) -> No
         if model.geom_group[geom] < _HIDDEN_GROUP and model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_MESH:
             in_body = Pose(model.geom_pos[geom].copy(), model.geom_quat[geom].copy())
             pose_in_world = ghost.pose_in_world @ in_body
-            _add(scene, int(model.geom_type[geom]), model.geom_size[geom], pose_in_world)
+            add_shape(scene, int(model.geom_type[geom]), model.geom_size[geom], pose_in_world, _COLOR)
     _add_plumb_line(scene, ghost)
 
 
 def _add_plumb_line(scene: mujoco.MjvScene, ghost: Ghost) -> None:
     x, y, top = ghost.pose_in_world.position.tolist()
-    half = (top - ghost.floor_z_m) / 2
-    for radius, half_height, z in (
-        (_PLUMB_RADIUS_M, half, ghost.floor_z_m + half),
-        (_FOOT_RADIUS_M, _FOOT_THICKNESS_M, ghost.floor_z_m + _FOOT_THICKNESS_M),
-    ):
-        place = Pose(np.array([x, y, z]), Pose.identity().quaternion_wxyz)
-        _add(scene, int(mujoco.mjtGeom.mjGEOM_CYLINDER), np.array([radius, half_height, 0.0]), place)
-
-
-def _add(scene: mujoco.MjvScene, kind: int, size: NDArray[np.float64], pose_in_world: Pose) -> None:
-    if scene.ngeom >= scene.maxgeom:
-        return
-    drawn, rotation = scene.geoms[scene.ngeom], pose_in_world.rotation_matrix().ravel()
-    mujoco.mjv_initGeom(drawn, kind, size, pose_in_world.position, rotation, _COLOR)
-    drawn.category, drawn.transparent, drawn.emission = mujoco.mjtCatBit.mjCAT_DECOR, 1, _EMISSION
-    scene.ngeom += 1
+    foot = (x, y, ghost.floor_z_m)
+    add_column(scene, foot, top - ghost.floor_z_m, _PLUMB_RADIUS_M, _COLOR)
+    add_column(scene, foot, _FOOT_THICKNESS_M, _FOOT_RADIUS_M, _COLOR)

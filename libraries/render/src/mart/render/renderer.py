@@ -78,6 +78,7 @@ class Renderer:
             mujoco.mjtCatBit.mjCAT_ALL,
             self._scene,
         )
+        self._shadows.add_plumb_lines(self._scene, self._data)
         if ghost is not None:
             add_ghost(self._scene, self._model, ghost)
         mujoco.mjr_render(self._viewport, self._scene, self._context)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import mujoco
 import numpy as np
 
+from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import Model, State
 from mart.protocol.pose import Pose
-from mart.protocol.tasks import Ghost, Task, get_task
+from mart.protocol.tasks import Ghost, get_task
 from mart.render import Image, Renderer, load_model, viewpoint_id
 from mart.teleop_gateway.input.retarget import azimuth_of_camera_rad
 from mart.teleop_gateway.video import tick_code
@@ -41,11 +44,21 @@ def camera_azimuth_rad(message: Model, model: mujoco.MjModel, arm: str) -> float
     return azimuth_of_camera_rad(base_in_world.inverse() @ camera_in_world)
 
 
-def ghost_in(state: State, task: Task, arm: str) -> Ghost | None:
-    """Return what the picture of this arm's operator shows beside what is there, from how far the task has come."""
-    done = {subtask.name for subtask in state.progress.subtasks if subtask.done}
-    step = task.next_step(arm, done)
-    return step.ghost if step else None
+def ghosts_for(message: Model, arm: str) -> Callable[[State], Ghost | None]:
+    """Return what finds what the picture of `arm`'s operator shows beside what is there, from how far the task is.
+
+    Of a task that this version does not know, nothing.
+    """
+    try:
+        task = get_task(message.task, len(message.arms))
+    except (NotFound, InvalidInput):
+        return lambda _: None
+
+    def ghost_in(state: State) -> Ghost | None:
+        step = task.next_step(arm, {subtask.name for subtask in state.progress.subtasks if subtask.done})
+        return step.ghost if step else None
+
+    return ghost_in
 
 
 class SeatRenderer:

@@ -12,13 +12,12 @@ from mart.protocol.errors import MartError
 from mart.protocol.keys import DETAILED
 from mart.protocol.messages import Model, State
 from mart.protocol.received import decode_received
-from mart.protocol.tasks import get_task
 from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.video.live_view import LiveView, Sink
 from mart.teleop_gateway.video.quality import Quality
-from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, ghost_in, load_room_model
+from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, ghosts_for, load_room_model
 
 _log = logging.getLogger(__name__)
 
@@ -115,14 +114,9 @@ class ViewManager:
     async def _use(self, message: Model) -> None:
         model = await asyncio.to_thread(load_room_model, message, self._quality)
         azimuth_rad = camera_azimuth_rad(message, model, self._seat.arm)
-        task, arm = get_task(message.task, len(message.arms)), self._seat.arm
+        arm = self._seat.arm
         view = LiveView(
-            model,
-            arm,
-            message.control_hz,
-            self._sink,
-            self._quality,
-            ghost_in=lambda state: ghost_in(state, task, arm),
+            model, arm, message.control_hz, self._sink, self._quality, ghost_in=ghosts_for(message, arm)
         )
         view.set_codecs(self._codecs)
         # Where this is cancelled half-way, no model is drawn: the next one that is fetched must be used.
