@@ -124,6 +124,8 @@ declare namespace Api {
     barrier: Messages.BarrierPhase;
     waiting_for: Waiting[];
     seats: Seat[];
+    /** By arm. */
+    now: Record<string, string>;
     episode: RoomEpisode;
     progress: { subtasks: Subtask[]; success: boolean; failed: boolean };
     episodes_saved: number;

@@ -144,6 +144,22 @@ def test_what_was_looked_at_gives_space_back_to_the_arm(browser: Browser, platfo
         assert not page.locator("#health").evaluate("details => details.open")
 
 
+def test_the_strip_leaves_the_picture_and_can_be_made_smaller(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        now, strip = page.locator("#state-now"), page.locator(".strip")
+        expect(now).to_have_text("Grip the blue cube from above and lift it more than 10 cm.")
+        whole = strip.bounding_box()
+        assert whole is not None
+        assert whole["height"] < 0.2 * 900
+        page.get_by_role("button", name="Less").click()
+        page.reload()  # it stays as it was left
+        expect(page.get_by_role("button", name="More")).to_be_visible()
+        expect(now).to_be_visible()
+        less = strip.bounding_box()
+        assert less is not None
+        assert less["height"] < whole["height"] - 30
+
+
 def test_practice_is_reset_by_a_key(browser: Browser, platform: Platform) -> None:
     with visit(browser, platform) as ana, driving(ana) as page:
         expect(page.locator("#subtasks li")).to_have_count(2)

@@ -8,7 +8,7 @@ import pytest
 
 from tests.browser.pages.conftest import Run
 
-CUBE = {"title": "Cube 0 is up", "arms": ["arm0"], "done": False}
+CUBE = {"title": "The blue cube is up", "arms": ["arm0"], "done": False}
 LIVE = {"state": "live", "problem": "", "role": "browser"}
 
 
@@ -200,6 +200,17 @@ def test_practice_says_the_goal_and_that_it_was_reached(run: Run) -> None:
     assert view(run, room(MINE))["detail"] == "Lift."
     reached = view(run, room(MINE), reached=True)
     assert (reached["label"], reached["primary"]) == ("That is it!", ["ready"])
+
+
+def test_what_to_do_now_is_said_while_one_can_do_it(run: Run) -> None:
+    told = {"now": {"arm0": "Grip the lid.", "arm1": "Wait."}}
+    practice, recording = (view(run, room(MINE, phase=phase) | told) for phase in ("practice", "recording"))
+    assert (practice["now"], practice["goal"], practice["detail"]) == ("Grip the lid.", "Lift.", "")
+    assert (recording["now"], recording["goal"]) == ("Grip the lid.", "Lift.")
+    assert "Success is seen" in recording["hint"]
+    assert not view(run, room(READY, seat("arm1", name="Ben")) | told).get("now")
+    assert not view(run, after() | told).get("now")
+    assert not view(run, room(MINE) | told | {"barrier": "stopped"}).get("now")
 
 
 def test_a_lost_connection_is_said(run: Run) -> None:

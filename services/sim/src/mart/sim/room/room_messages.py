@@ -76,6 +76,12 @@ def progress(progress: TaskProgress) -> Fields:
     }
 
 
+def now(world: World, progress: TaskProgress) -> dict[str, str]:
+    """Return by arm what its operator is to do now, where the task says so."""
+    lines = {arm: world.now(arm, progress) for arm in world.arms}
+    return {arm: line for arm, line in lines.items() if line}
+
+
 def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None, salt: str, kept_s: float) -> Seat:
     """Return the message of a seat.
 

@@ -5,8 +5,8 @@ import { armName, badge, hasPicture } from "./arms.js";
 import { byId, letGoOfButton, letGoOnEscape, setShown, setText } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
-import { CUES } from "./facts.js";
 import { waitingText } from "./formatting.js";
+import { isCue, isOffered } from "./hud/command-kinds.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
 import { DisplayedTicks } from "./hud/displayed-ticks.js";
@@ -222,9 +222,6 @@ function onKey(command) {
   else if (!isOffered(wanted) || statusBar.offers(wanted)) press(wanted);
 }
 
-/** Whether it can be done only while a button for it is shown. @param {string} command */
-const isOffered = (command) => ["success", "failure", "discard", "back"].includes(command);
-
 /**
  * A key or a button of the status bar was pressed: some have to be pressed twice.
  * @param {Exclude<Command, "next"> | ActionCommand} command
@@ -286,12 +283,6 @@ function perform(command) {
  * @returns {command is PageCommand}
  */
 const isPageCommand = (command) => command in ACTIONS;
-
-/**
- * @param {string} command
- * @returns {command is Messages.Cue}
- */
-const isCue = (command) => CUES.some((cue) => cue === command);
 
 /** @param {() => unknown} action */
 async function attempt(action) {

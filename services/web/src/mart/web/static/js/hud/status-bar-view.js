@@ -21,6 +21,8 @@ import { canBeKept, lastEpisodeOf, lastLabel, lastText } from "./last-episode.js
  * @property {string} figure
  * @property {string} limit
  * @property {string} detail
+ * @property {string} [now] what the task wants of this arm now
+ * @property {string} [goal] what everybody is to do in all
  * @property {string} [hint] what helps to begin
  * @property {string} [warning] why the task could not be done now
  * @property {boolean} recording
@@ -135,18 +137,20 @@ const PHASES = {
     const eager = others.filter((other) => other.ready).map((other) => other.name);
     if (eager.length === 0) return shown;
     const are = eager.length > 1 ? "are" : "is";
-    return { ...shown, detail: `${eager.join(" and ")} ${are} ready to record. ${shown.detail}` };
+    return { ...shown, detail: `${eager.join(" and ")} ${are} ready to record. ${shown.detail}`.trim() };
   },
   countdown(room) {
     const figure = String(Math.max(1, Math.ceil(room.episode.remaining_s)));
     return { ...view("Starts in", room.instruction), figure };
   },
-  recording(room, _seat, { pending }) {
+  recording(room, seat, { pending }) {
+    const now = nowText(room, seat);
     if (room.unrecorded) return view("Not recorded", asSentence(room.unrecorded), RECORDING);
     const limit = room.time_limit_s ? `of ${clockTime(room.time_limit_s)}` : "";
     const figure = clockTime(room.episode.elapsed_s);
-    const detail = pending === "success" ? askedText(room) : "Success is seen by itself.";
-    return { ...view("Recording", detail, RECORDING), figure, limit, recording: true };
+    const detail = pending === "success" ? askedText(room) : "";
+    const shown = { ...view("Recording", detail, RECORDING), figure, limit, recording: true };
+    return { ...shown, now, goal: room.instruction, hint: "Success is seen by itself." };
   },
   ended(room) {
     return view(outcomeText(room.episode.outcome), `${asSentence(room.episode.reason)} Saving…`.trim());
@@ -172,11 +176,19 @@ function practice(room, seat, { isNew = false, touch = false, reached = false })
     const keep = canBeKept(last) ? [ACTIONS.keep] : [];
     return view(lastLabel(last), lastText(last), [ACTIONS.again, ...keep, ACTIONS.reset]);
   }
-  const moves = touch ? FIRST_TOUCHES : FIRST_MOVES;
-  const rest = isReached(room.plan) ? "All that was planned is recorded; you may go on." : UNRECORDED;
-  const hint = isNew ? moves : rest;
-  return { ...view("Practice", room.instruction, [ACTIONS.ready, ACTIONS.reset]), hint };
+  const now = nowText(room, seat);
+  const shown = view("Practice", now ? "" : room.instruction, [ACTIONS.ready, ACTIONS.reset]);
+  return { ...shown, now, goal: room.instruction, hint: isNew ? firstMoves(touch) : restText(room) };
 }
+
+/** @param {boolean} touch */
+const firstMoves = (touch) => (touch ? FIRST_TOUCHES : FIRST_MOVES);
+
+/** @param {Api.Room} room */
+const restText = ({ plan }) => (isReached(plan) ? "All that was planned is recorded; you may go on." : UNRECORDED);
+
+/** What the task wants of this arm now; nothing where nobody says. @param {Api.Room} room @param {Api.Seat} seat */
+const nowText = ({ now }, { arm }) => now?.[arm] ?? "";
 
 /** What a success by hand is asked, where the task does not see it. @param {Api.Room} room */
 function askedText({ progress }) {
