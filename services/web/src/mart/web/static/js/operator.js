@@ -45,7 +45,9 @@ let displayedMs = -Infinity; // when a newer picture was last displayed
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
 const panel = new InputPanel(roomName, armId, (error) => notice(api.messageOf(error)));
-const input = new KeyboardMouseInput(byId("picture"), onKey, () => confirm.withdraw());
+const input = new KeyboardMouseInput(byId("picture"), (command, hasMoved) => {
+  if (!hasMoved || room?.episode.phase !== "recording") onKey(command); // a key that has just moved is still meant to
+}, () => confirm.withdraw());
 const link = new SeatLink({
   fetchToken: async () => ({ room: roomName, arm: armId, ...(await api.seatToken(roomName, armId)) }),
   wantsVideo: true,
