@@ -122,7 +122,6 @@ def test_an_outcome_takes_two_presses_and_a_moving_hand_none(browser: Browser, p
         expect(page.locator("#clutch")).to_contain_text("Hold space")
         expect(label).to_have_text("Recording")
         page.locator("#state-label").click()
-        page.wait_for_timeout(600)  # the time after which letters command again is what is tested
         page.keyboard.press("r")
         expect(page.get_by_role("button", name="Press again: Discard")).to_be_visible()
         expect(label).to_have_text("Recording")
@@ -132,6 +131,18 @@ def test_an_outcome_takes_two_presses_and_a_moving_hand_none(browser: Browser, p
         page.get_by_role("button", name="Keep it, as failed").click()
         expect(label).to_have_text("Failed")
         expect(page.locator("#state-detail")).to_contain_text("Saved and verified")
+
+
+def test_q_twice_right_after_driving_leaves_the_seat(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        page.keyboard.down("Space")
+        page.keyboard.down("KeyQ")
+        expect(page.locator("#clutch")).to_have_text("Moving")
+        page.keyboard.up("KeyQ")
+        page.keyboard.up("Space")
+        page.keyboard.press("q")
+        page.keyboard.press("q")
+        expect(page.locator("#rooms-section")).to_be_visible()
 
 
 def test_what_was_looked_at_gives_space_back_to_the_arm(browser: Browser, platform: Platform) -> None:

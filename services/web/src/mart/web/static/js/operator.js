@@ -47,7 +47,9 @@ const displayed = new DisplayedTicks();
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
 const panel = new InputPanel(roomName, armId, (error) => showNotice(api.messageOf(error)));
-const input = new KeyboardMouseInput(byId("picture"), onKey, () => confirm.withdraw());
+const input = new KeyboardMouseInput(byId("picture"), (command, hasMoved) => {
+  if (!hasMoved || room?.episode.phase !== "recording") onKey(command); // a key that has just moved is still meant to
+}, () => confirm.withdraw());
 const link = new SeatLink({
   approach: () => approachAsPage(roomName, armId),
   wantsVideo: true,

@@ -31,7 +31,7 @@ export class KeyboardMouseInput {
 
   /**
    * @param {HTMLElement} picture where the pointer drags
-   * @param {(command: Command) => void} onCommand
+   * @param {(command: Command, hasMoved: boolean) => void} onCommand told whether the same key has just moved the arm
    * @param {() => void} onClutch called when the clutch is pressed by key
    */
   constructor(picture, onCommand, onClutch) {

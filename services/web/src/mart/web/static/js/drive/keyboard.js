@@ -4,6 +4,7 @@ import { commandOf, directionOf, isMotion } from "./keys.js";
 
 /** @import { Command } from "./keys.js" */
 
+const JUST_MS = 500;
 const CLUTCH = "Space";
 
 /** Which keys are held, and a call for each that commands. */
@@ -12,11 +13,13 @@ export class Keyboard {
   /** @type {Set<string>} */
   #held = new Set();
   #clutch = false;
+  /** When a key last moved the arm. @type {Map<string, number>} */
+  #movedMs = new Map();
   #onCommand;
   #onClutch;
 
   /**
-   * @param {(command: Command) => void} onCommand
+   * @param {(command: Command, hasMoved: boolean) => void} onCommand told whether the same key has just moved the arm
    * @param {() => void} onClutch called when the clutch is pressed
    */
   constructor(onCommand, onClutch) {
@@ -36,8 +39,8 @@ export class Keyboard {
 
   /** Lets go of every key. */
   release() {
-    this.#held.clear();
     this.#setClutch(false);
+    this.#held.clear();
   }
 
   /** @param {KeyboardEvent} event */
@@ -55,12 +58,14 @@ export class Keyboard {
   #press(code) {
     this.#held.add(code);
     const command = commandOf(code);
+    const hasMoved = performance.now() - (this.#movedMs.get(code) ?? -Infinity) < JUST_MS;
     if (code === CLUTCH) this.#setClutch(this.toggles ? !this.#clutch : true);
-    else if (command && !(this.#clutch && isMotion(code))) this.#onCommand(command);
+    else if (command && !(this.#clutch && isMotion(code))) this.#onCommand(command, hasMoved);
   }
 
   /** @param {KeyboardEvent} event */
   #up({ code }) {
+    this.#noteMoves();
     this.#held.delete(code);
     if (code === CLUTCH && !this.toggles) this.#setClutch(false);
   }
@@ -68,7 +73,12 @@ export class Keyboard {
   /** @param {boolean} held */
   #setClutch(held) {
     if (held && !this.#clutch) this.#onClutch();
+    this.#noteMoves();
     this.#clutch = held;
+  }
+
+  #noteMoves() {
+    if (this.#clutch) for (const code of this.#held) this.#movedMs.set(code, performance.now());
   }
 }
 
