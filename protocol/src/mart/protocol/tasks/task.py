@@ -52,7 +52,7 @@ class Arm:
 
 @dataclass(frozen=True)
 class Ghost:
-    """Where a thing is to be held: live pictures show it there, yellow and see-through, with a plumb line under it.
+    """A mark where a thing is to be held: live pictures show it there, yellow and see-through, over a plumb line.
 
     body: its name in the scene's model. floor_z_m: how high the line ends, in the world.
     """
@@ -66,14 +66,14 @@ class Ghost:
 class Subtask:
     """A step on the way. `coordinated`: it takes more than one arm at the same time.
 
-    now: by arm, what its operator is to do until it is done, in one line; arms that have nothing to do with it are
+    to_do: by arm, what its operator is to do until it is done, in one line; arms that have nothing to do with it are
     left out. ghost: what their pictures show meanwhile.
     """
 
     name: str
     title: str
     coordinated: bool
-    now: Mapping[str, str] = field(default_factory=dict)
+    to_do: Mapping[str, str] = field(default_factory=dict)
     ghost: Ghost | None = None
 
 
@@ -212,7 +212,7 @@ class Task:
 
     def next_step(self, arm: str, done: Container[str]) -> Subtask | None:
         """The first subtask that has something to do for this arm and is not among those done; None after the last."""
-        own = (subtask for subtask in self.subtasks if arm in subtask.now and subtask.name not in done)
+        own = (subtask for subtask in self.subtasks if arm in subtask.to_do and subtask.name not in done)
         return next(own, None)
 
     def observations_of(self, arm: str) -> tuple[Observation, ...]:

@@ -47,7 +47,7 @@ def task(arms: int) -> Task:
                 "lift_tray",
                 "The tray is up",
                 coordinated=True,
-                now={
+                to_do={
                     **{
                         arm.name: f"Come down onto the {arm.color_name} handle from straight above and grip it; when "
                         "your partner holds the other one, lift slowly. Do not tip the drinks."
@@ -61,7 +61,7 @@ def task(arms: int) -> Task:
                 "carry_tray",
                 "The tray is aside",
                 coordinated=True,
-                now={
+                to_do={
                     **dict.fromkeys(CARRIERS, _CARRY),
                     WIPER: _TAKE_SPONGE,
                 },
@@ -70,7 +70,7 @@ def task(arms: int) -> Task:
                 "wipe_table",
                 "The table is clean",
                 coordinated=False,
-                now={
+                to_do={
                     WIPER: "Press the sponge lightly onto the table and rub over the dirt until it is gone."
                 },
             ),

@@ -31,7 +31,7 @@ def task(arms: int) -> Task:
                 f"lift_cube{i}",
                 f"The {arm.color_name} cube is up",
                 coordinated=False,
-                now={arm.name: f"Grip the {arm.color_name} cube from above and lift it more than 10 cm."},
+                to_do={arm.name: f"Grip the {arm.color_name} cube from above and lift it more than 10 cm."},
             )
             for i, arm in enumerate(placed)
         ),
