@@ -125,7 +125,7 @@ declare namespace Api {
     waiting_for: Waiting[];
     seats: Seat[];
     /** By arm. */
-    now: Record<string, string>;
+    to_do: Record<string, string>;
     episode: RoomEpisode;
     progress: { subtasks: Subtask[]; success: boolean; failed: boolean };
     episodes_saved: number;

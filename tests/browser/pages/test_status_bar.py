@@ -203,7 +203,7 @@ def test_practice_says_the_goal_and_that_it_was_reached(run: Run) -> None:
 
 
 def test_what_to_do_now_is_said_while_one_can_do_it(run: Run) -> None:
-    told = {"now": {"arm0": "Grip the lid.", "arm1": "Wait."}}
+    told = {"to_do": {"arm0": "Grip the lid.", "arm1": "Wait."}}
     practice, recording = (view(run, room(MINE, phase=phase) | told) for phase in ("practice", "recording"))
     assert (practice["now"], practice["goal"], practice["detail"]) == ("Grip the lid.", "Lift.", "")
     assert (recording["now"], recording["goal"]) == ("Grip the lid.", "Lift.")

@@ -36,15 +36,15 @@ def test_a_row_is_sound(task: Task) -> None:
 
 @pytest.mark.parametrize("task", every_task(), ids=lambda task: f"{task.name}-{len(task.arms)}")
 def test_every_operator_is_told_in_a_line_what_to_do(task: Task) -> None:
-    lines = [line for subtask in task.subtasks for line in subtask.now.values()]
+    lines = [line for subtask in task.subtasks for line in subtask.to_do.values()]
     assert all(line.endswith(".") and len(line) < 150 for line in (*lines, task.afterwards))
     for arm in task.arm_names:
         done: set[str] = set()
         while (step := task.next_step(arm, done)) is not None:
             done.add(step.name)
-        assert done == {subtask.name for subtask in task.subtasks if arm in subtask.now} != set()
+        assert done == {subtask.name for subtask in task.subtasks if arm in subtask.to_do} != set()
     for subtask in task.subtasks:
-        assert subtask.now.keys() <= set(task.arm_names)
+        assert subtask.to_do.keys() <= set(task.arm_names)
         assert not re.search(r"[Aa]rm \d|[Cc]ube \d|[Cc]olumn \d", subtask.title)
 
 

@@ -66,7 +66,7 @@ class Person:
         return Pose(here.position + (UP if gone else 0.0), here.quaternion_wxyz), 0.0
 
     def _both_hold(self) -> bool:
-        return "Your partner has it" in self._world.now("arm0")
+        return "Your partner has it" in self._world.to_do("arm0")
 
 
 def receive(world: World, holding: Holding, skill: str, seed: int) -> TaskProgress:

@@ -33,7 +33,7 @@ def status(room: str = "room-1", task: str = "two_arm_multi_cube_lifting") -> Ro
     told.waiting_for.add(arm="arm0", since_s=0.8)
     told.episode.phase = EPISODE_PHASE_RECORDING
     told.progress.subtasks.add(name="lift_cube0", done=True)
-    told.now["arm0"] = "Hold it."
+    told.to_do["arm0"] = "Hold it."
     return told
 
 
@@ -57,7 +57,7 @@ def test_a_room_is_told_in_the_words_of_the_protocol() -> None:
     assert room["barrier"] == "stalled"
     assert room["waiting_for"] == [{"arm": "arm0", "name": "Ana", "since_s": 0.8}]
     assert room["episode"]["phase"] == "recording"
-    assert room["now"] == {"arm0": "Hold it."}
+    assert room["to_do"] == {"arm0": "Hold it."}
     assert room["progress"]["subtasks"] == [
         {"name": "lift_cube0", "title": "The blue cube is up", "arms": ["arm0"], "done": True}
     ]

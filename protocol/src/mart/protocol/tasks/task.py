@@ -52,7 +52,7 @@ class Arm:
 
 @dataclass(frozen=True)
 class Ghost:
-    """Where a thing is to be held: live pictures show it there, yellow and see-through, with a plumb line under it.
+    """A mark where a thing is to be held: live pictures show it there, yellow and see-through, over a plumb line.
 
     body: its name in the scene's model. floor_z_m: how high the line ends, in the world.
     """
@@ -66,8 +66,8 @@ class Ghost:
 class Subtask:
     """A step on the way. `coordinated`: it takes more than one arm at the same time.
 
-    arms: those that act in it, by name; empty: every arm of the task. It cannot be done while one of them is on hold.
-    now: by arm, what its operator is to do until it is done, in one line; arms that have nothing to do with it are
+    arms: tuple[str, ...] = ()
+    to_do: Mapping[str, str] = field(default_factory=dict)
     left out. ghost: what their pictures show meanwhile.
     """
 
@@ -75,7 +75,7 @@ class Subtask:
     title: str
     coordinated: bool
     arms: tuple[str, ...] = ()
-    now: Mapping[str, str] = field(default_factory=dict)
+    to_do: Mapping[str, str] = field(default_factory=dict)
     ghost: Ghost | None = None
 
 
@@ -220,7 +220,7 @@ class Task:
 
     def next_step(self, arm: str, done: Container[str]) -> Subtask | None:
         """The first subtask that has something to do for this arm and is not among those done; None after the last."""
-        own = (subtask for subtask in self.subtasks if arm in subtask.now and subtask.name not in done)
+        own = (subtask for subtask in self.subtasks if arm in subtask.to_do and subtask.name not in done)
         return next(own, None)
 
     def observations_of(self, arm: str) -> tuple[Observation, ...]:

@@ -47,8 +47,8 @@ def task(arms: int) -> Task:
                 "lift_tray",
                 "The tray is up",
                 coordinated=True,
-                arms=names[:2],
-                now={
+                arms=CARRIERS,
+                to_do={
                     **{
                         arm.name: f"Come down onto the {arm.color_name} handle from straight above and grip it; when "
                         "your partner holds the other one, lift slowly. Do not tip the drinks."
@@ -62,18 +62,15 @@ def task(arms: int) -> Task:
                 "carry_tray",
                 "The tray is aside",
                 coordinated=True,
-                arms=names[:2],
-                now={
-                    **dict.fromkeys(CARRIERS, _CARRY),
-                    WIPER: _TAKE_SPONGE,
-                },
+                arms=CARRIERS,
+                to_do={**dict.fromkeys(CARRIERS, _CARRY), WIPER: _TAKE_SPONGE},
             ),
             Subtask(
                 "wipe_table",
                 "The table is clean",
                 coordinated=False,
                 arms=(WIPER,),
-                now={
+                to_do={
                     WIPER: "Press the sponge lightly onto the table and rub over the dirt until it is gone."
                 },
             ),

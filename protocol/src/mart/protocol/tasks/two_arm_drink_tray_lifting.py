@@ -29,7 +29,7 @@ def task(arms: int) -> Task:
                 "lift_tray",
                 "The tray is up",
                 coordinated=True,
-                now={
+                to_do={
                     arm.name: f"Grip the {arm.color_name} handle; when your partner holds the other one, lift slowly, "
                     "level, more than 10 cm."
                     for arm in placed

@@ -32,7 +32,7 @@ def task(arms: int) -> Task:
                 f"The {arm.color_name} cube is up",
                 coordinated=False,
                 arms=(arm.name,),
-                now={arm.name: f"Grip the {arm.color_name} cube from above and lift it more than 10 cm."},
+                to_do={arm.name: f"Grip the {arm.color_name} cube from above and lift it more than 10 cm."},
             )
             for i, arm in enumerate(placed)
         ),

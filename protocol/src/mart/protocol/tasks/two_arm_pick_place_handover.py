@@ -22,6 +22,53 @@ OFFER_M = (0.0, 0.0, 0.25)
 _AWAIT = "Wait until your partner holds the hammer out still, then grip the free end of its handle."
 
 
+_SUBTASKS = (
+    Subtask(
+        "lid_removed",
+        "The container is open",
+        coordinated=False,
+        arms=("arm0",),
+        to_do={"arm0": "Grip the lid by its knob, lift it off and lay it on the empty half of your shelf."},
+    ),
+    Subtask(
+        "trash_cleared",
+        "The trash is in the small tray",
+        coordinated=False,
+        arms=("arm1",),
+        to_do={"arm1": "Take the trash cube out of the orange bin and lay it into the small tray."},
+    ),
+    Subtask(
+        "hammer_fetched",
+        "The hammer is out of the container",
+        coordinated=False,
+        arms=("arm0",),
+        to_do={
+            "arm0": "Grip the hammer's handle close to its head and lift it out of the container.",
+            "arm1": _AWAIT,
+        },
+    ),
+    Subtask(
+        "hammer_handed_over",
+        "The orange arm has the hammer",
+        coordinated=True,
+        arms=("arm0", "arm1"),
+        to_do={
+            "arm0": "Hold the hammer still over the middle of the table, where you see a yellow one, "
+            "its handle towards your partner.",
+            "arm1": _AWAIT,
+        },
+        ghost=Ghost("hammer", Pose(np.array(OFFER_M), np.array([1.0, 0.0, 0.0, 0.0])), floor_z_m=0.062),
+    ),
+    Subtask(
+        "hammer_placed",
+        "The hammer is in the bin",
+        coordinated=True,
+        arms=("arm1",),
+        to_do={"arm1": "Lay the hammer into the orange bin and let go."},
+    ),
+)
+
+
 def task(arms: int) -> Task:
     fetcher, receiver = Arm.at(0, -_BASE_DISTANCE_M, 0.0, 0.0), Arm.at(1, _BASE_DISTANCE_M, 0.0, math.pi)
     both = (fetcher.name, receiver.name)
@@ -33,55 +80,7 @@ def task(arms: int) -> Task:
             "bin into the small tray. Then blue hands the hammer over, and orange lays it into the bin."
         ),
         arms=(fetcher, receiver),
-        subtasks=(
-            Subtask(
-                "lid_removed",
-                "The container is open",
-                coordinated=False,
-                arms=both[:1],
-                now={
-                    "arm0": "Grip the lid by its knob, lift it off and lay it on the empty half of your shelf."
-                },
-            ),
-            Subtask(
-                "trash_cleared",
-                "The trash is in the small tray",
-                coordinated=False,
-                arms=both[1:],
-                now={"arm1": "Take the trash cube out of the orange bin and lay it into the small tray."},
-            ),
-            Subtask(
-                "hammer_fetched",
-                "The hammer is out of the container",
-                coordinated=False,
-                arms=both[:1],
-                now={
-                    "arm0": "Grip the hammer's handle close to its head and lift it out of the container.",
-                    "arm1": _AWAIT,
-                },
-            ),
-            Subtask(
-                "hammer_handed_over",
-                "The orange arm has the hammer",
-                coordinated=True,
-                arms=both,
-                now={
-                    "arm0": "Hold the hammer still over the middle of the table, where you see a yellow one, "
-                    "its handle towards your partner.",
-                    "arm1": _AWAIT,
-                },
-                ghost=Ghost(
-                    "hammer", Pose(np.array(OFFER_M), np.array([1.0, 0.0, 0.0, 0.0])), floor_z_m=0.062
-                ),
-            ),
-            Subtask(
-                "hammer_placed",
-                "The hammer is in the bin",
-                coordinated=True,
-                arms=both[1:],
-                now={"arm1": "Lay the hammer into the orange bin and let go."},
-            ),
-        ),
+        subtasks=_SUBTASKS,
         afterwards="Let go and draw your hand up and back.",
         observations=(
             *proprioception(fetcher.name),

@@ -32,7 +32,7 @@ def task(arms: int) -> Task:
                     f"The {arm.color_name} column stands in its socket",
                     coordinated=False,
                     arms=(arm.name,),
-                    now={
+                    to_do={
                         arm.name: f"Grip the {arm.color_name} column by its round neck and stand it in the "
                         f"{arm.color_name} socket."
                     },
@@ -43,7 +43,7 @@ def task(arms: int) -> Task:
                 "tabletop_lifted",
                 "The tabletop is up",
                 coordinated=True,
-                now={
+                to_do={
                     arm.name: f"Grip the tabletop's {arm.color_name} knob; lift when your partner holds the other one."
                     for arm in placed
                 },
@@ -52,7 +52,7 @@ def task(arms: int) -> Task:
                 "tabletop_seated",
                 "The tabletop is on both columns",
                 coordinated=True,
-                now=dict.fromkeys(
+                to_do=dict.fromkeys(
                     both,
                     "Keep the tabletop level, bring it over the columns together and lower it onto them.",
                 ),

@@ -184,7 +184,7 @@ class Room:
             seats=[self._seat_message(seat, now_s) for seat in self._seats],
             episode=room_messages.episode(self._episode, self._world.control_period_s, now_s),
             progress=room_messages.progress(progress) if progress is not None else None,
-            now=room_messages.now(self._world, progress) if progress is not None else None,
+            to_do=room_messages.to_do(self._world, progress) if progress is not None else None,
             episodes_saved=self._record.saved,
             episodes_good=self._record.good,
             wall_ns=clock.wall_ns(),

@@ -76,9 +76,9 @@ def progress(progress: TaskProgress) -> Fields:
     }
 
 
-def now(world: World, progress: TaskProgress) -> dict[str, str]:
+def to_do(world: World, progress: TaskProgress) -> dict[str, str]:
     """Return by arm what its operator is to do now, where the task says so."""
-    lines = {arm: world.now(arm, progress) for arm in world.arms}
+    lines = {arm: world.to_do(arm, progress) for arm in world.arms}
     return {arm: line for arm, line in lines.items() if line}
 
 

@@ -128,10 +128,10 @@ class PickPlaceHandover(Scene):
             np.where(up & fetcher & receiver, _HELD_BY_BOTH, self._stage * (fetcher | receiver)),
         )
 
-    def now(self, arm: str, done: Container[str]) -> str:
+    def to_do(self, arm: str, done: Container[str]) -> str:
         """Return what this arm's operator is to do now; also from what no subtask tells: who holds the hammer, how."""
         if "hammer_handed_over" in done:
-            return super().now(arm, done)
+            return super().to_do(arm, done)
         fetcher, receiver = self._tools.values()
         held = bool(self._holds_hammer(fetcher))
         if held and bool(self._holds_hammer(receiver)):
@@ -139,7 +139,7 @@ class PickPlaceHandover(Scene):
         along_m = float(self._hammer.frame(fetcher.position)[0])
         if arm == "arm0" and "hammer_fetched" in done and held and along_m > _TOO_FAR_M:
             return "Lay the hammer down and grip it closer to its head: your partner needs the free end of the handle."
-        return super().now(arm, done)
+        return super().to_do(arm, done)
 
     def task_status(self) -> TaskStatus:
         handed_over = self._stage == _HANDED_OVER

@@ -37,7 +37,7 @@ export class KeyboardMouseInput {
   constructor(picture, onCommand, onClutch) {
     this.#keyboard = new Keyboard(onCommand, onClutch);
     this.#pointer = new Pointer(picture, this.#phone);
-    this.#devices = new HandheldDevices(onCommand);
+    this.#devices = new HandheldDevices((command) => onCommand(command, false));
   }
 
   /**

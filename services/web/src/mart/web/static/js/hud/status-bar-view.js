@@ -188,7 +188,7 @@ const firstMoves = (touch) => (touch ? FIRST_TOUCHES : FIRST_MOVES);
 const restText = ({ plan }) => (isReached(plan) ? "All that was planned is recorded; you may go on." : UNRECORDED);
 
 /** What the task wants of this arm now; nothing where nobody says. @param {Api.Room} room @param {Api.Seat} seat */
-const nowText = ({ now }, { arm }) => now?.[arm] ?? "";
+const nowText = ({ to_do: toDo }, { arm }) => toDo?.[arm] ?? "";
 
 /** What a success by hand is asked, where the task does not see it. @param {Api.Room} room */
 function askedText({ progress }) {
