@@ -17,6 +17,7 @@ from mart.protocol import clock
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
 from mart.runtime.cli import cli, json_option, print_result
 from mart.runtime.progress import counted, progress
+from mart.runtime.rate_option import room_rate_option
 
 if TYPE_CHECKING:
     from mart.platform.collect.collection import CollectionSpec
@@ -36,7 +37,7 @@ _CONTROL_HZ_OPTION = click.option(
 @click.command()
 @click.option("--task", default=DEFAULT_TASK, show_default=True, help="Name of the task.")
 @click.option("--room", default="room-1", show_default=True, help="Id of the room.")
-@_CONTROL_HZ_OPTION
+@room_rate_option
 @click.option(
     "--episodes",
     type=click.IntRange(1, 10_000),
@@ -57,7 +58,7 @@ def run(
     *,
     task: str,
     room: str,
-    control_hz: float,
+    control_hz: float | None,
     episodes: int | None,
     host: str,
     port: int,

@@ -7,7 +7,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
+from mart.protocol.control_rate import MAX_CONTROL_HZ, MIN_CONTROL_HZ
 from mart.runtime.settings import Settings
 
 DEFAULT_TASK = "two_arm_multi_cube_lifting"
@@ -25,8 +25,11 @@ class SimSettings(_WorldSettings):
 
     room: str = Field("room-1", description="Id of the room.")
     task: str = Field(DEFAULT_TASK, description="Name of the task.")
-    control_hz: float = Field(
-        DEFAULT_CONTROL_HZ, ge=MIN_CONTROL_HZ, le=MAX_CONTROL_HZ, description="Ticks a second, at most."
+    control_hz: float | None = Field(
+        None,
+        ge=MIN_CONTROL_HZ,
+        le=MAX_CONTROL_HZ,
+        description="Ticks a second, at most; default: as many as this machine holds, 20 in lockstep.",
     )
     arms: int | None = Field(None, ge=1, description="How many arms; default: the task's own number.")
     pace: float = Field(1.0, gt=0.0, le=1.0, description="Real-time factor that the world may reach at most.")

@@ -85,7 +85,8 @@ class CountedEpisode(BaseModel):
 class SavedRoom(BaseModel):
     """Store one room: `episodes` is the newest number; `saved` and `good` count what the recorder reported.
 
-    counted: the newest of them, so that what is told again counts once.
+    counted: the newest of them, so that what is told again counts once. picture_s: what a seat's picture took here; 0:
+    nobody has said, or nobody asked.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -98,6 +99,7 @@ class SavedRoom(BaseModel):
     seats: tuple[SavedSeat, ...] = ()
     plan: SavedPlan | None = None
     stop: SavedStop | None = None
+    picture_s: float = Field(0.0, ge=0.0, le=10.0)
 
     def planned(self, task: str, episodes: int | None) -> SavedRoom:
         """Return it with so many good episodes of this task wanted: the same plan goes on, another begins anew."""
