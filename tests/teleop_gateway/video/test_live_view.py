@@ -99,6 +99,15 @@ def test_a_view_that_nobody_needs_draws_thumbnails_alone_and_goes_on_with_a_keyf
     assert watched.pictures.empty()
 
 
+def test_what_a_picture_takes_is_known_while_pictures_are_made(watched: Watched, world: World) -> None:
+    assert watched.view.picture_s() == 0.0
+    begun_s = clock.monotonic_s()
+    for tick in range(1, 4):
+        watched.drawn(state(world, tick))
+    watched.stills.get(timeout=30.0)  # made after the first was measured
+    assert 0.0 < watched.view.picture_s() < clock.monotonic_s() - begun_s
+
+
 def test_a_slow_renderer_leaves_states_out(watched: Watched, world: World) -> None:
     for tick in range(1, 101):
         watched.view.offer(state(world, tick), 0)

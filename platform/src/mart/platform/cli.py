@@ -58,7 +58,7 @@ def run(
     *,
     task: str,
     room: str,
-    control_hz: float | None,
+    control_hz: float | str | None,
     episodes: int | None,
     host: str,
     port: int,
@@ -82,8 +82,9 @@ def run(
 
     get_task(task)
     settings = Settings()
+    given_hz = control_hz if isinstance(control_hz, float) else None
     options = PlatformOptions(
-        settings.data_dir, settings.router, host, port, public_host, room, task, control_hz, episodes=episodes
+        settings.data_dir, settings.router, host, port, public_host, room, task, given_hz, episodes=episodes
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)

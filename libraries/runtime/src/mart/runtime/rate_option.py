@@ -34,12 +34,12 @@ control_hz_option = click.option(
 
 
 class _RoomRate(click.FloatRange):
-    """Take ticks a second, or the word that leaves them to the room."""
+    """Take ticks a second as a float, or AUTO, the word that leaves them to the room."""
 
     name = "rate"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        return None if value == AUTO else super().convert(value, param, ctx)
+        return value if value == AUTO else super().convert(value, param, ctx)
 
 
 room_rate_option = click.option(

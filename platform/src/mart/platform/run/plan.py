@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.rate_option import AUTO
 
 if TYPE_CHECKING:
     from mart.protocol.messages import RoomsRequest
@@ -119,9 +120,9 @@ _TRAINER = Process(("trainer", "--name", "trainer-1"), ServiceKind.TRAINER, "tra
 
 
 def _sim(options: PlatformOptions, room: str, *more: str) -> Process:
-    command = ["sim", "--room", room, "--task", options.task]
+    rate = AUTO if options.control_hz is None else f"{options.control_hz:g}"
+    command = ["sim", "--room", room, "--task", options.task, "--control-hz", rate]
     chosen = {
-        "--control-hz": None if options.control_hz is None else f"{options.control_hz:g}",
         "--seed": options.seed,
         "--skill": options.skill,
         "--time-limit-s": options.time_limit_s,

@@ -87,7 +87,7 @@ class World:
 
         What it compiles to differs in the timestep alone, so nothing is compiled: it takes milliseconds.
         """
-        return World(scene_of(self.task), control_hz, compiled=copy.copy(self.model))
+        return World(type(self._scene)(self.task), control_hz, compiled=copy.copy(self.model))
 
     @property
     def task(self) -> Task:

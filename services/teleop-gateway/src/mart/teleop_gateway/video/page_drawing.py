@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import mujoco
 
 from mart.protocol import clock
-from mart.protocol.errors import InvalidInput, Unavailable
+from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import SceneReply, SceneRequest, State
 from mart.render import BodyPoses, export_scene
 from mart.runtime.rate_limit import RateLimit
@@ -49,13 +49,23 @@ class PageDrawing:
         self._model: mujoco.MjModel | None = None
         self._exported: _ExportedScene | None = None
         self._making = asyncio.Lock()
+        self._remaking: asyncio.Future[None] | None = None  # kept, or it might be collected
         self._wanted = False
         self._poses: BodyPoses | None = None
         self._log_limit = RateLimit(1)
 
     def use(self, model: mujoco.MjModel) -> None:
-        """Take a new model of the room; poses go on once a page has asked for its scene."""
+        """Take a new model of the room; poses go on where a page draws, else when one has asked for its scene."""
         self._model, self._exported, self._poses = model, None, None
+        if self._wanted:
+            self._remaking = asyncio.ensure_future(self._remake())
+
+    async def _remake(self) -> None:
+        async with self._making:
+            try:
+                await self._scene()
+            except MartError as error:  # pages hear no poses, ask for the scene, and are told the same
+                _log.warning("Pages do not draw the room's new model: %s", error)
 
     def want(self, wanted: bool) -> None:
         """Write poses from now on, or write none."""
