@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import click
@@ -39,7 +40,10 @@ class _RoomRate(click.FloatRange):
     name = "rate"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        return value if value == AUTO else super().convert(value, param, ctx)
+        if value == AUTO:
+            return value
+        rate_hz = super().convert(value, param, ctx)
+        return rate_hz if math.isfinite(rate_hz) else self.fail(f"{value} is no rate.", param, ctx)
 
 
 room_rate_option = click.option(
