@@ -10,6 +10,7 @@ import pytest
 
 from mart.protocol import codec, keys
 from mart.protocol.messages import (
+    EPISODE_PHASE_COUNTDOWN,
     EPISODE_PHASE_PRACTICE,
     OPERATOR_HUMAN,
     OPERATOR_POLICY,
@@ -112,6 +113,19 @@ def test_a_policys_seat_is_first_told_at_a_rate_that_suits_it(world: World) -> N
     stand.pass_time(0.2)
     with_it = [s for s in stand.publisher.statuses[told:] if s.seats[1].operator == OPERATOR_POLICY]
     assert {status.control_hz for status in with_it} == {20.0}
+
+
+def test_an_episode_that_was_just_asked_for_is_not_lost(world: World) -> None:
+    """The room has said nothing since: what it told last is that it practises."""
+    stand = Stand(world)
+    stand.claim("arm0")
+    stand.slow_pictures()
+    stand.now_s += LOOK_EVERY_S
+    ready = EpisodeRequest.Ready(arm="arm0", holder_id="arm0", ready=True)
+    assert not stand.live.room.answer_episode(EpisodeRequest(ready=ready), stand.now_s).error.code
+    stand.pass_time(0.5)
+    status = stand.publisher.statuses[-1]
+    assert (status.episode.phase, status.control_hz) == (EPISODE_PHASE_COUNTDOWN, 60.0)
 
 
 def test_a_rate_that_was_given_stays(world: World) -> None:

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from mart.protocol.control_rate import OFFERED_CONTROL_HZ
 from mart.sim.room.rate_choice import (
     FIRST_WAIT_S,
+    HELD_FACTOR,
     HOLDS_BELOW,
     LONGEST_WAIT_S,
     RISES_BELOW,
@@ -99,10 +100,10 @@ def test_it_offers_what_is_offered_falls_when_it_must_and_never_swings_up_early(
         if after > before:
             assert cost.use_at(after) <= RISES_BELOW
             assert now_s - fell_s >= FIRST_WAIT_S
-        if held < 0.97:
+        if held < HELD_FACTOR:
             assert after <= before
         if after < before:
-            fell_s = now_s if held < 0.97 or cost.use_at(before) > HOLDS_BELOW else fell_s
+            fell_s = now_s if held < HELD_FACTOR or cost.use_at(before) > HOLDS_BELOW else fell_s
 
 
 @given(cost=COSTS, more=st.floats(1.0, 5.0))

@@ -68,8 +68,13 @@ class LiveRoom:
         return now_s if self._change_rate(now_s) else next_s
 
     def _change_rate(self, now_s: float) -> bool:
-        said = self._rate.change(now_s) if self._rate is not None else None
-        if self._rate is None or said is None:
+        if self._rate is None or not self._rate.may_change(now_s):
+            return False
+        self._rate.see_status(
+            self.room.status(now_s), now_s
+        )  # an episode may have been asked for since the last
+        said = self._rate.change(now_s)
+        if said is None:
             return False
         self._rejected = self.rejected
         self.world = self.world.at(self._rate.control_hz)

@@ -26,7 +26,7 @@ class RateWatch:
 
     def status(self, status: RoomStatus) -> None:
         """Publish how the room stands."""
-        self._rate.see_status(status)
+        self._rate.see_status(status, self._now_s())
         self._publisher.status(status)
 
     def event(self, event: Event) -> None:

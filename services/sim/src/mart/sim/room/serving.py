@@ -60,7 +60,7 @@ def serve_room(settings: SimSettings) -> None:
 def serve_world(settings: SimSettings, world: World) -> None:
     """Serve the room of `settings` around a world that exists already; its rate is as given or found to be held."""
     record = _record(settings)
-    rate = _automatic_rate(world, record) if settings.control_hz is None else None
+    rate = _automatic_rate(settings, world, record) if settings.control_hz is None else None
     if rate is not None:
         world = world.at(rate.control_hz)
         _log.info("%s ticks %g times a second, as nobody gave a rate", settings.room, rate.control_hz)
@@ -141,13 +141,15 @@ def serve_unpaced(settings: SimSettings, world: World, skill: Skill) -> None:
             unpaced.run(work_queue, garbled, service.stop)
 
 
-def _automatic_rate(world: World, record: SavedRoom) -> AutomaticRate:
-    policies = any(
-        OperatorKind.POLICY in (one.operator, one.relieved and one.relieved.operator) for one in record.seats
+def _automatic_rate(settings: SimSettings, world: World, record: SavedRoom) -> AutomaticRate:
+    return AutomaticRate(
+        measure(world),
+        len(world.arms),
+        clock.monotonic_s(),
+        pace=settings.pace,
+        picture_s=record.picture_s,
+        policies=any(one.operator is OperatorKind.POLICY or one.relieved for one in record.seats),
     )
-    sim = measure(world)
-    now_s = clock.monotonic_s()
-    return AutomaticRate(sim, len(world.arms), now_s, picture_s=record.picture_s, policies=policies)
 
 
 def _hear_pictures(
