@@ -95,8 +95,9 @@ def test_a_view_that_nobody_needs_draws_thumbnails_alone_and_goes_on_with_a_keyf
     watched.view.offer(state(world, 8), 0)
     watched.view.request_keyframe(Codec.H264)
     watched.view.set_resting(False)
-    assert watched.drawn(state(world, 9)).encoded.keyframe
-    assert watched.pictures.empty()
+    assert watched.pictures.empty() or watched.pictures.queue[0].tick == 8  # which waited until just now
+    watched.view.offer(state(world, 9), 0)
+    assert watched.next().encoded.keyframe  # the first, whichever it is
 
 
 def test_what_a_picture_takes_is_known_while_pictures_are_made(watched: Watched, world: World) -> None:

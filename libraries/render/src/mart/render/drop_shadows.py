@@ -1,5 +1,7 @@
 """Lay each drop shadow on the highest wide surface below what casts it: a shelf, a lid or a tray hides the table.
 
+From every tool a plumb line goes down to its spot.
+
 A state puts the spots (bodies named `…/shadow`) on the table. Only pictures lift them, so states and their digests stay
 what they were, and recordings of any version show them.
 """
@@ -9,11 +11,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import mujoco
+import numpy as np
+
+from mart.render.decor import add_column
 
 _SUFFIX = "/shadow"
 _WIDE_M = 0.09  # half of a side, at least: what is held in a hand hides no spot
 _LEVEL = 0.97  # cosine of the tilt up to which something counts as a surface
 _HIDDEN_GROUP = 3
+_LINE_RADIUS_M, _LINE_ALPHA, _SHORTEST_M = 0.003, 0.75, 0.01
 
 
 @dataclass(frozen=True)
@@ -41,6 +47,17 @@ class DropShadows:
             lift_m = max((top for top in tops if top < height_m), default=0.0)
             data.geom_xpos[spot.geom, 2] += lift_m
             data.xpos[spot.own_body, 2] += lift_m
+
+    def add_plumb_lines(self, scene: mujoco.MjvScene, data: mujoco.MjData) -> None:
+        """Add a line from every tool in `data` down to its spot, which has been lifted: it shows the tool's height."""
+        for spot in self._spots:
+            if spot.site < 0:
+                continue
+            x, y, top_m = data.site_xpos[spot.site].tolist()
+            foot_m = float(data.geom_xpos[spot.geom, 2])
+            if top_m - foot_m > _SHORTEST_M:
+                color = np.append(2.0 * self._model.geom_rgba[spot.geom, :3], _LINE_ALPHA).astype(np.float32)
+                add_column(scene, (x, y, foot_m), top_m - foot_m, _LINE_RADIUS_M, color)
 
     def _top_m(self, data: mujoco.MjData, geom: int, spot: _Spot, x: float, y: float) -> float:
         """Return how high the box's upper side is under (x, y); 0 where it is not there, or casts the spot itself."""

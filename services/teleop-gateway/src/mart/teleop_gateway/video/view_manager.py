@@ -18,7 +18,12 @@ from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.video.live_view import LiveView, Sink
 from mart.teleop_gateway.video.page_drawing import PageDrawing
 from mart.teleop_gateway.video.quality import Quality
-from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, drawn_model, load_plain_model
+from mart.teleop_gateway.video.seat_renderer import (
+    camera_azimuth_rad,
+    drawn_model,
+    ghosts_for,
+    load_plain_model,
+)
 
 _log = logging.getLogger(__name__)
 
@@ -130,8 +135,9 @@ class ViewManager:
         model = await asyncio.to_thread(load_plain_model, message)
         azimuth_rad = camera_azimuth_rad(message, model, self._seat.arm)
         self._pages.use(model)
-        drawn = drawn_model(model, self._quality)
-        view = LiveView(drawn, self._seat.arm, message.control_hz, self._sink, self._quality)
+        drawn, arm = drawn_model(model, self._quality), self._seat.arm
+        ghosts = ghosts_for(message, arm)
+        view = LiveView(drawn, arm, message.control_hz, self._sink, self._quality, ghost_in=ghosts)
         view.set_codecs(self._codecs)
         view.set_resting(self._resting)
         # Where this is cancelled half-way, no model is drawn: the next one that is fetched must be used.
