@@ -26,7 +26,7 @@ def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     with (
         running_router() as endpoint,
         running_service(
-            ["sim", "--room", ROOM, "--seed", "1", "--control-hz", "20"],
+            ["sim", "--room", ROOM, "--seed", "1"],
             endpoint,
             data_dir,
             kind="sim",
