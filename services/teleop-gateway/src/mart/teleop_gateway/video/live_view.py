@@ -25,7 +25,7 @@ from mart.protocol.tasks import Ghost
 from mart.render import Image
 from mart.runtime.rate_limit import RateLimit
 from mart.runtime.watchdog import end_process, start_vital_thread
-from mart.teleop_gateway.video.adaptive_resolution import AdaptiveResolution
+from mart.teleop_gateway.video.adaptive_resolution import AdaptiveResolution, at_full_size
 from mart.teleop_gateway.video.encoder import CLOCK_HZ, Codec, EncodedPicture, Encoder, to_i420
 from mart.teleop_gateway.video.motion_to_photon import PictureStamps
 from mart.teleop_gateway.video.quality import FAST, Quality
@@ -203,7 +203,7 @@ class LiveView:
             if undrawn is not None:
                 now_s = clock.monotonic_s()
                 if not self._resting:  # else it was not encoded
-                    self._took_s.append((now_s - begun_s) / float(size) ** 2)
+                    self._took_s.append(at_full_size(now_s - begun_s, size))
                 resolution.record(now_s - begun_s, now_s)
                 thumbnail = thumbnails.take(pipeline.view_rgb, undrawn.state.stamps.stepped_ns, now_s)
                 if thumbnail is not None:
