@@ -12,13 +12,18 @@ from mart.protocol import codec, keys
 from mart.protocol.messages import (
     EPISODE_PHASE_COUNTDOWN,
     EPISODE_PHASE_PRACTICE,
+    EPISODE_PHASE_RECORDING,
     OPERATOR_HUMAN,
     OPERATOR_POLICY,
+    OUTCOME_DISCARDED,
     OUTCOME_SUCCESS,
+    Command,
     EpisodeRequest,
     Event,
     Model,
+    RoomStatus,
     SeatRequest,
+    pose_message,
 )
 from mart.runtime.bus.memory import MemoryNetwork
 from mart.sim.room.automatic_rate import LOOK_EVERY_S, AutomaticRate, SimCost
@@ -43,6 +48,7 @@ class Stand:
 
     def __init__(self, world: World, *, automatic: bool = True) -> None:
         self.publisher, self.kept, self.now_s = CapturingPublisher(), list[SavedRoom](), 100.0
+        self._sequence = 0
         self.rate = AutomaticRate(CHEAP, 2, self.now_s, picture_s=0.002)
         self.heard = RateWatch(self.publisher, self.rate, lambda: self.now_s)
         self.live = LiveRoom(
@@ -56,9 +62,14 @@ class Stand:
         self.pass_time(0.5)
 
     def _make(
-        self, world: World, record: SavedRoom, keep: Callable[[SavedRoom], None], now_s: float, tick: int
+        self,
+        world: World,
+        record: SavedRoom,
+        keep: Callable[[SavedRoom], None],
+        now_s: float,
+        before: RoomStatus,
     ) -> Room:
-        return Room("room-1", world, record, self.heard, keep, now_s=now_s, tick=tick)
+        return Room("room-1", world, record, self.heard, keep, now_s=now_s, before=before)
 
     def claim(self, arm: str, operator: int = OPERATOR_HUMAN) -> int:
         kind = OPERATOR_POLICY if operator == OPERATOR_POLICY else OPERATOR_HUMAN
@@ -69,6 +80,14 @@ class Stand:
         end_s = self.now_s + elapsed_s
         while self.now_s < end_s:
             self.now_s = min(max(self.live.advance(self.now_s), self.now_s + 1e-4), end_s)
+
+    def command(self, arm: str) -> None:
+        """The tool is to stay where it is."""
+        self._sequence += 1
+        epoch = next(s.epoch for s in self.live.room.status(self.now_s).seats if s.arm == arm)
+        target = pose_message(self.live.world.tool_pose_in_base(arm))
+        command = Command(arm=arm, seat_epoch=epoch, sequence=self._sequence, target_tool_in_base=target)
+        self.live.room.hear(codec.encode(command), arm, self.now_s, round(self.now_s * 1e9))
 
     def slow_pictures(self) -> None:
         for arm in ("arm0", "arm1"):
@@ -94,6 +113,25 @@ def test_seats_counts_and_ticks_go_on_in_another_world(world: World) -> None:
     assert stand.kept[-1].seats[0].holder_id == "arm0"
     told = [event.notice.text for event in stand.publisher.of("notice")]
     assert told == ["The room now ticks 30 times a second: pictures take 100 ms of each tick."]
+
+
+def test_how_an_episode_ended_is_said_on(world: World) -> None:
+    """It is abandoned: one status between the episode and practice in another world, which may be lost."""
+    stand = Stand(world)
+    stand.claim("arm0")
+    ready = EpisodeRequest.Ready(arm="arm0", holder_id="arm0", ready=True)
+    stand.live.room.answer_episode(EpisodeRequest(ready=ready), stand.now_s)
+    stand.pass_time(0.1)
+    while stand.publisher.statuses[-1].episode.phase != EPISODE_PHASE_RECORDING:
+        stand.command("arm0")
+        stand.pass_time(0.1)
+    stand.slow_pictures()
+    reset = EpisodeRequest.Reset(holder_id="arm0")
+    stand.live.room.answer_episode(EpisodeRequest(reset=reset), stand.now_s)
+    stand.pass_time(0.2)
+    status = stand.publisher.statuses[-1]
+    assert (status.control_hz, status.episode.phase) == (30.0, EPISODE_PHASE_PRACTICE)
+    assert (status.last_ended.number, status.last_ended.outcome) == (4, OUTCOME_DISCARDED)
 
 
 def test_what_pictures_took_is_known_after_a_restart(world: World) -> None:

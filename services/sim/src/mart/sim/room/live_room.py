@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Protocol
 
+from mart.protocol.messages import RoomStatus
 from mart.sim.room import room_messages
 from mart.sim.room.automatic_rate import AutomaticRate
 from mart.sim.room.room import Room
@@ -23,10 +24,15 @@ _log = logging.getLogger(__name__)
 
 
 class MakeRoom(Protocol):
-    """Make a room of this world and record, which says at once how it is; its ticks count on from `tick`."""
+    """Make a room of this world and record, which says at once how it is and goes on from how another stood."""
 
     def __call__(
-        self, world: World, record: SavedRoom, keep: Callable[[SavedRoom], None], now_s: float, tick: int
+        self,
+        world: World,
+        record: SavedRoom,
+        keep: Callable[[SavedRoom], None],
+        now_s: float,
+        before: RoomStatus,
     ) -> Room: ...
 
 
@@ -50,7 +56,7 @@ class LiveRoom:
         self._record, self._make, self._keep, self._rate = record, make, keep, rate
         self._server: RoomServer | None = None
         self._rejected = Counter[str]()
-        self.room = make(world, record, self._remember, now_s, 0)
+        self.room = make(world, record, self._remember, now_s, RoomStatus())
 
     @property
     def rejected(self) -> Counter[str]:
@@ -80,8 +86,8 @@ class LiveRoom:
         self.world = self.world.at(self._rate.control_hz)
         if self._server is not None:  # whoever hears of the new room may ask for its model at once
             self._server.show(self.world)
-        tick = self.room.status(now_s).tick
-        self.room = self._make(self.world, self._record, self._remember, now_s, tick)
+        before = self.room.status(now_s)
+        self.room = self._make(self.world, self._record, self._remember, now_s, before)
         if self._server is not None:
             self._server.use(self.room)
         self.room.tell(room_messages.notice("info", said))

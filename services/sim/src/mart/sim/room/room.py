@@ -51,7 +51,7 @@ class Room:
     """Run one room; used by one thread at a time, which says what time it is (`now_s`, monotonic seconds).
 
     What it has to say goes to `publisher`, what must survive a crash to `keep`, which may raise OSError. `explain` says
-    in words what became of a world whose physics left its bounds. Ticks count on from `tick`.
+    in words what became of a world whose physics left its bounds. `before`: the room that goes on in this one.
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class Room:
         *,
         now_s: float,
         pace: float = 1.0,
-        tick: int = 0,
+        before: RoomStatus = RoomStatus(),  # noqa: B008 - never changed
         terms: Terms = Terms(),  # noqa: B008 - frozen
         explain: Callable[[Diverged], str] = str,
     ) -> None:
@@ -81,8 +81,8 @@ class Room:
         self._time_limit_s = terms.time_limit_s or world.task.time_limit_s
         horizon_ticks = round(self._time_limit_s / world.control_period_s)
         self._episode = EpisodeStateMachine(record.seed, horizon_ticks, record.episodes)
-        self._ticker = Ticker(name, world, self._boot_ns, now_s, tick)
-        self._last_ended: Event.EpisodeEnded | None = None
+        self._ticker = Ticker(name, world, self._boot_ns, now_s, before.tick)
+        self._last_ended = before.last_ended if before.HasField("last_ended") else None
         self.recording_watch = RecordingWatch(self._boot_ns)
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)

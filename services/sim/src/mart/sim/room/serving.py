@@ -11,7 +11,7 @@ from functools import partial
 
 from mart.protocol import clock, keys
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
-from mart.protocol.messages import Event
+from mart.protocol.messages import Event, RoomStatus
 from mart.protocol.vocabulary import OperatorKind, ServiceKind
 from mart.runtime.bus import Bus, Closable
 from mart.runtime.decoding_subscriber import DecodingSubscriber
@@ -168,7 +168,11 @@ def _maker(settings: SimSettings, publisher: RoomPublisher) -> MakeRoom:
     archive = _archive(settings)
 
     def make(
-        world: World, record: SavedRoom, keep: Callable[[SavedRoom], None], now_s: float, tick: int
+        world: World,
+        record: SavedRoom,
+        keep: Callable[[SavedRoom], None],
+        now_s: float,
+        before: RoomStatus,
     ) -> Room:
         return Room(
             settings.room,
@@ -178,7 +182,7 @@ def _maker(settings: SimSettings, publisher: RoomPublisher) -> MakeRoom:
             keep,
             now_s=now_s,
             pace=settings.pace,
-            tick=tick,
+            before=before,
             terms=terms,
             explain=archive.keep,
         )
