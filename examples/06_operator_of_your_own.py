@@ -42,6 +42,6 @@ class CubeLifter(Operator):
 if __name__ == "__main__":
     room = sys.argv[1] if len(sys.argv) > 1 else "room-1"
     (outcome,) = drive_seats(
-        CubeLifter(), room, [ARM], name="cube lifter", episodes=1, fill_with_scripts=True
+        CubeLifter(), room, [ARM], name="cube lifter", control_hz=20.0, episodes=1, fill_with_scripts=True
     )
     print(f"The episode ended with {outcome}.")

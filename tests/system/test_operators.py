@@ -26,7 +26,13 @@ def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     data_dir = tmp_path_factory.mktemp("data")
     with (
         running_router() as endpoint,
-        running_service(["sim", "--room", ROOM, "--seed", "1"], endpoint, data_dir, kind="sim", id=ROOM),
+        running_service(
+            ["sim", "--room", ROOM, "--seed", "1", "--control-hz", "20"],
+            endpoint,
+            data_dir,
+            kind="sim",
+            id=ROOM,
+        ),
         running_service(["experts"], endpoint, data_dir, kind="experts", id="experts"),
     ):
         yield endpoint

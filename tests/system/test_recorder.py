@@ -193,7 +193,7 @@ def test_an_episode_of_two_scripts_is_recorded_and_verified_bit_for_bit(
     endpoint: str, bus: Bus, tmp_path: Path
 ) -> None:
     services = {
-        ("sim", "--room", _ROOM): ("sim", _ROOM),
+        ("sim", "--room", _ROOM, "--control-hz", "20"): ("sim", _ROOM),
         ("replica",): ("replica", "replica-1"),
         ("experts",): ("experts", "experts"),
         ("recorder",): ("recorder", "recorder-1"),

@@ -44,7 +44,9 @@ def sim(endpoint: str, tmp_path: Path) -> Iterator[Running]:
 
 
 def running_sim(endpoint: str, data_dir: Path) -> AbstractContextManager[Running]:
-    return running_service(["sim", "--room", ROOM, "--seed", "1"], endpoint, data_dir, kind="sim", id=ROOM)
+    return running_service(
+        ["sim", "--room", ROOM, "--seed", "1", "--control-hz", "20"], endpoint, data_dir, kind="sim", id=ROOM
+    )
 
 
 @pytest.fixture

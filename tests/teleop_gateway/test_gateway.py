@@ -92,7 +92,9 @@ Body = Callable[[Platform, AsyncBus], Awaitable[None]]
 def platform(tmp_path: Path) -> Iterator[Platform]:
     with (
         running_router() as endpoint,
-        running_service(["sim", "--room", ROOM], endpoint, tmp_path, kind="sim", id=ROOM),
+        running_service(
+            ["sim", "--room", ROOM, "--control-hz", "20"], endpoint, tmp_path, kind="sim", id=ROOM
+        ),
         running_service(["gateway"], endpoint, tmp_path, kind="gateway", id="gateway-1") as gateway,
     ):
         yield Platform(endpoint, gateway, tmp_path)

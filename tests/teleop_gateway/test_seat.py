@@ -11,7 +11,7 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import Conflict, Forbidden, InvalidInput, Unavailable
-from mart.protocol.messages import OPERATOR_POLICY, Offer
+from mart.protocol.messages import OPERATOR_POLICY, Event, Offer
 from mart.protocol.tokens import Role
 from mart.teleop_gateway.webrtc import peers
 from tests.support.message_collector import MessageCollector
@@ -153,6 +153,18 @@ def test_the_bus_gets_stills_for_the_lobby(on_seat: OnSeat) -> None:
                 thumbnails.wait_for, lambda image: image.data.startswith(b"\xff\xd8")
             )
             assert (thumbnail.format, thumbnail.frame_id) == ("jpeg", "arm0")
+
+    on_seat(body)
+
+
+def test_the_room_gets_what_a_picture_takes(on_seat: OnSeat) -> None:
+    async def body(seat: SeatUnderTest) -> None:
+        with MessageCollector(seat.bus.bus, keys.event(seat.room.name).key, Event) as events:
+            event = await asyncio.to_thread(
+                events.wait_for, lambda event: event.HasField("picture_cost"), WAIT_S
+            )
+            assert event.picture_cost.arm == "arm0"
+            assert 0.0 < event.picture_cost.picture_ms < 2000.0
 
     on_seat(body)
 

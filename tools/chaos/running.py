@@ -77,7 +77,7 @@ def running_mart(
     """Start `mart run` and wait until it says where it is; asked to stop when the block ends."""
     own = {**os.environ, **environment, "MART_ROUTER": router, "MART_DATA_DIR": str(data_dir)}
     began_s = clock.monotonic_s()
-    command = [str(_MART), "run", "--json", "--port", str(port)]
+    command = [str(_MART), "run", "--json", "--control-hz", "20", "--port", str(port)]
     with (data_dir.parent / "mart-run.log").open("ab") as log:
         process = subprocess.Popen(
             command, env=own, stdout=subprocess.PIPE, stderr=log, text=True, start_new_session=True

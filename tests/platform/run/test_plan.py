@@ -27,6 +27,10 @@ def test_options_reach_the_commands() -> None:
     )
     words = {process.kind: " ".join(process.command) for process in plan}
     assert words[ServiceKind.SIM] == "sim --room lab --task t --control-hz 30 --seed 7"
+    left = processes(PlatformOptions(Path("data"), room="lab", task="t", control_hz=None))
+    assert [" ".join(one.command) for one in left if one.kind == ServiceKind.SIM] == [
+        "sim --room lab --task t --control-hz auto"
+    ]
     assert words[ServiceKind.WEB] == "web --host 127.0.0.1 --port 8443 --public-host lab.local"
 
 

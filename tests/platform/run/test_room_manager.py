@@ -90,6 +90,7 @@ def test_a_new_room_is_a_sim_that_is_kept_running(rooms: RoomManager, supervisor
     assert command == "sim --room room-2 --task three_arm_lift_wiping --control-hz 60"  # a seed of its own
     assert "[program:sim-room-2]" in supervisor.config.read_text()
     assert opened(rooms, room="lab") == "lab"
+    assert sim(supervisor, "lab").command[-2:] == ("--control-hz", "auto")  # nobody gave a rate
     assert rooms.names == ["lab", "room-1", "room-2"]
 
 

@@ -224,6 +224,21 @@ def test_the_model_is_the_same_wherever_it_is_built(world: World) -> None:
     assert b"site-packages" not in world.model_bytes()
 
 
+@pytest.mark.parametrize("name", task_names())
+def test_a_world_in_ticks_of_another_rate_is_what_would_be_built(name: str) -> None:
+    built, other = World.build(name, 60.0), World.build(name, 20.0)
+    changed = other.at(60.0)
+    assert changed.model_sha256 == built.model_sha256
+    assert changed.task is other.task
+    for one in (changed, built):
+        one.reset(5)
+        one.step(np.full((len(one.arms), 7), 0.3))
+    assert changed.integration_state() == built.integration_state()
+    assert other.model_sha256 == World.build(name, 20.0).model_sha256  # what it was made from stays as it was
+    with pytest.raises(InvalidInput):
+        other.at(500.0)
+
+
 def test_the_model_survives_the_wire(world: World) -> None:
     world.reset(4)
     copy = mujoco.MjModel.from_binary_path("room.mjb", {"room.mjb": world.model_bytes()})

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mart.teleop_gateway.video.adaptive_resolution import SIZES, AdaptiveResolution
+from mart.teleop_gateway.video.adaptive_resolution import SIZES, AdaptiveResolution, at_full_size
 
 HZ = 20.0
 FULL, SMALLER, SMALLEST = SIZES
@@ -82,3 +83,9 @@ def test_it_is_always_one_of_the_sizes(took_s: list[float]) -> None:
     for one_s in took_s:
         now_s += max(one_s, 1.0 / HZ)
         assert resolution.record(one_s, now_s) in SIZES
+
+
+@pytest.mark.parametrize(("size", "took_s"), [(FULL, 0.0142), (SMALLER, 0.0109), (SMALLEST, 0.0070)])
+def test_what_a_full_picture_would_take_is_told_from_a_smaller_one(size: Fraction, took_s: float) -> None:
+    """The medians that were measured of one scene, drawn in software."""
+    assert at_full_size(took_s, size) == pytest.approx(0.0142, rel=0.12)

@@ -95,8 +95,18 @@ def test_a_view_that_nobody_needs_draws_thumbnails_alone_and_goes_on_with_a_keyf
     watched.view.offer(state(world, 8), 0)
     watched.view.request_keyframe(Codec.H264)
     watched.view.set_resting(False)
-    assert watched.drawn(state(world, 9)).encoded.keyframe
-    assert watched.pictures.empty()
+    assert watched.pictures.empty() or watched.pictures.queue[0].tick == 8  # which waited until just now
+    watched.view.offer(state(world, 9), 0)
+    assert watched.next().encoded.keyframe  # the first, whichever it is
+
+
+def test_what_a_picture_takes_is_known_while_pictures_are_made(watched: Watched, world: World) -> None:
+    assert watched.view.picture_s() == 0.0
+    begun_s = clock.monotonic_s()
+    for tick in range(1, 4):
+        watched.drawn(state(world, tick))
+    watched.stills.get(timeout=30.0)  # made after the first was measured
+    assert 0.0 < watched.view.picture_s() < clock.monotonic_s() - begun_s
 
 
 def test_a_slow_renderer_leaves_states_out(watched: Watched, world: World) -> None:

@@ -12,6 +12,7 @@ import pytest
 
 from mart.protocol.errors import InvalidInput, Unavailable
 from mart.protocol.messages import Model, SceneRequest, State
+from mart.sim.world.model_message import model_message as model_message_of
 from mart.sim.world.world import World
 from mart.teleop_gateway.video.page_drawing import PageDrawing, PoseMessage
 from mart.teleop_gateway.video.quality import FULL
@@ -78,6 +79,23 @@ def test_poses_are_of_the_scene_that_was_asked_for_and_only_while_they_are_wante
         await pages.drawing.answer(SceneRequest())
         pages.drawing.offer(state, 6)
         assert (await pages.sent.get()).stamps.state_received_ns == 6
+
+    run(body)
+
+
+def test_a_page_that_draws_sees_the_room_go_on_at_another_rate(model: mujoco.MjModel, world: World) -> None:
+    state = State(tick=7, integration_state=world.integration_state())
+    slower = load_plain_model(model_message_of(world.at(world.control_hz / 2)))
+
+    async def body(pages: Pages) -> None:
+        pages.drawing.use(model)
+        pages.drawing.want(True)
+        sha256 = (await pages.drawing.answer(SceneRequest())).sha256
+        pages.drawing.use(slower)
+        while pages.sent.empty():  # nobody asks for the scene again
+            pages.drawing.offer(state, 1)
+            await asyncio.sleep(0.01)
+        assert (await pages.sent.get()).data[4:8].hex() == sha256[:8]  # it is the same
 
     run(body)
 

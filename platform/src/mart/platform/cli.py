@@ -17,6 +17,7 @@ from mart.protocol import clock
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
 from mart.runtime.cli import cli, json_option, print_result
 from mart.runtime.progress import counted, progress
+from mart.runtime.rate_option import room_rate_option
 
 if TYPE_CHECKING:
     from mart.platform.collect.collection import CollectionSpec
@@ -39,7 +40,7 @@ _CONTROL_HZ_OPTION = click.option(
 @click.command()
 @_TASK_OPTION
 @click.option("--room", default="room-1", show_default=True, help="Id of the room.")
-@_CONTROL_HZ_OPTION
+@room_rate_option
 @click.option(
     "--episodes",
     type=click.IntRange(1, 10_000),
@@ -60,7 +61,7 @@ def run(
     *,
     task: str,
     room: str,
-    control_hz: float,
+    control_hz: float | str | None,
     episodes: int | None,
     host: str,
     port: int,
@@ -84,8 +85,9 @@ def run(
 
     get_task(task)
     settings = Settings()
+    given_hz = control_hz if isinstance(control_hz, float) else None
     options = PlatformOptions(
-        settings.data_dir, settings.router, host, port, public_host, room, task, control_hz, episodes=episodes
+        settings.data_dir, settings.router, host, port, public_host, room, task, given_hz, episodes=episodes
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)

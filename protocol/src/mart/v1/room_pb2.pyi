@@ -347,7 +347,7 @@ class RoomReply(_message.Message):
     def __init__(self, error: _Optional[_Union[Error, _Mapping]] = ..., status: _Optional[_Union[RoomStatus, _Mapping]] = ..., seat: _Optional[_Union[Seat, _Mapping]] = ...) -> None: ...
 
 class Event(_message.Message):
-    __slots__ = ("wall_ns", "room", "tick", "barrier_changed", "seat_changed", "episode_started", "episode_ended", "episode_saved", "world_reset", "notice", "latency", "cue_given", "no_picture")
+    __slots__ = ("wall_ns", "room", "tick", "barrier_changed", "seat_changed", "episode_started", "episode_ended", "episode_saved", "world_reset", "notice", "latency", "cue_given", "no_picture", "picture_cost")
     class BarrierChanged(_message.Message):
         __slots__ = ("phase", "waiting_for")
         PHASE_FIELD_NUMBER: _ClassVar[int]
@@ -473,6 +473,13 @@ class Event(_message.Message):
         arm: str
         reason: str
         def __init__(self, arm: _Optional[str] = ..., reason: _Optional[str] = ...) -> None: ...
+    class PictureCost(_message.Message):
+        __slots__ = ("arm", "picture_ms")
+        ARM_FIELD_NUMBER: _ClassVar[int]
+        PICTURE_MS_FIELD_NUMBER: _ClassVar[int]
+        arm: str
+        picture_ms: float
+        def __init__(self, arm: _Optional[str] = ..., picture_ms: _Optional[float] = ...) -> None: ...
     WALL_NS_FIELD_NUMBER: _ClassVar[int]
     ROOM_FIELD_NUMBER: _ClassVar[int]
     TICK_FIELD_NUMBER: _ClassVar[int]
@@ -486,6 +493,7 @@ class Event(_message.Message):
     LATENCY_FIELD_NUMBER: _ClassVar[int]
     CUE_GIVEN_FIELD_NUMBER: _ClassVar[int]
     NO_PICTURE_FIELD_NUMBER: _ClassVar[int]
+    PICTURE_COST_FIELD_NUMBER: _ClassVar[int]
     wall_ns: int
     room: str
     tick: int
@@ -499,7 +507,8 @@ class Event(_message.Message):
     latency: Event.Latency
     cue_given: Event.CueGiven
     no_picture: Event.NoPicture
-    def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ..., latency: _Optional[_Union[Event.Latency, _Mapping]] = ..., cue_given: _Optional[_Union[Event.CueGiven, _Mapping]] = ..., no_picture: _Optional[_Union[Event.NoPicture, _Mapping]] = ...) -> None: ...
+    picture_cost: Event.PictureCost
+    def __init__(self, wall_ns: _Optional[int] = ..., room: _Optional[str] = ..., tick: _Optional[int] = ..., barrier_changed: _Optional[_Union[Event.BarrierChanged, _Mapping]] = ..., seat_changed: _Optional[_Union[Seat, _Mapping]] = ..., episode_started: _Optional[_Union[Event.EpisodeStarted, _Mapping]] = ..., episode_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., episode_saved: _Optional[_Union[Event.EpisodeSaved, _Mapping]] = ..., world_reset: _Optional[_Union[Event.WorldReset, _Mapping]] = ..., notice: _Optional[_Union[Event.Notice, _Mapping]] = ..., latency: _Optional[_Union[Event.Latency, _Mapping]] = ..., cue_given: _Optional[_Union[Event.CueGiven, _Mapping]] = ..., no_picture: _Optional[_Union[Event.NoPicture, _Mapping]] = ..., picture_cost: _Optional[_Union[Event.PictureCost, _Mapping]] = ...) -> None: ...
 
 class RecordingReport(_message.Message):
     __slots__ = ("recorder", "boot", "episode", "last_tick")

@@ -37,7 +37,7 @@ def in_words(status: RoomStatus) -> str:
     waiting = ", ".join(f"{w.arm} for {w.since_s:.1f} s" for w in status.waiting_for)
     line = (
         f"{status.room}  {status.task}  {seats}  {phase_word(status.episode.phase)}"
-        f"  real-time factor {status.real_time_factor:.2f}"
+        f"  {status.control_hz:g} Hz  real-time factor {status.real_time_factor:.2f}"
     )
     if status.HasField("plan"):
         line = f"{line}  {_plan_in_words(status.plan)}"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.rate_option import AUTO
 
 if TYPE_CHECKING:
     from mart.protocol.messages import RoomsRequest
@@ -49,7 +50,7 @@ class PlatformOptions:
     public_host: str = ""
     room: str = "room-1"
     task: str = DEFAULT_TASK
-    control_hz: float = DEFAULT_CONTROL_HZ
+    control_hz: float | None = DEFAULT_CONTROL_HZ  # None: as the machine holds, which the room finds out
     seed: int | None = None
     skill: str | None = None
     episodes: int | None = None
@@ -119,7 +120,8 @@ _TRAINER = Process(("trainer", "--name", "trainer-1"), ServiceKind.TRAINER, "tra
 
 
 def _sim(options: PlatformOptions, room: str, *more: str) -> Process:
-    command = ["sim", "--room", room, "--task", options.task, "--control-hz", f"{options.control_hz:g}"]
+    rate = AUTO if options.control_hz is None else f"{options.control_hz:g}"
+    command = ["sim", "--room", room, "--task", options.task, "--control-hz", rate]
     chosen = {
         "--seed": options.seed,
         "--skill": options.skill,
@@ -134,7 +136,7 @@ def _sim(options: PlatformOptions, room: str, *more: str) -> Process:
 def room(options: PlatformOptions, wanted: RoomsRequest.Open) -> Process:
     """One room more."""
     chosen = replace(
-        options, task=wanted.task, control_hz=wanted.control_hz, episodes=wanted.episodes or None
+        options, task=wanted.task, control_hz=wanted.control_hz or None, episodes=wanted.episodes or None
     )
     arms = ("--arms", str(wanted.arms)) if wanted.arms else ()
     return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None), wanted.room, *arms)

@@ -16,7 +16,7 @@ from mart.platform.run.plan import (
 from mart.platform.run.running import Platform
 from mart.platform.run.supervisor import Supervisor
 from mart.protocol import clock, keys
-from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, require_control_hz
+from mart.protocol.control_rate import require_control_hz
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput, MartError, NotFound
 from mart.protocol.messages import (
     EPISODE_PHASE_COUNTDOWN,
@@ -104,7 +104,7 @@ class RoomManager:
         wanted = RoomsRequest.Open(
             room=asked.room or self._free_name(),
             task=asked.task,
-            control_hz=asked.control_hz or DEFAULT_CONTROL_HZ,
+            control_hz=asked.control_hz,
             episodes=asked.episodes,
             arms=asked.arms,
         )
@@ -116,7 +116,8 @@ class RoomManager:
     def _start(self, wanted: RoomsRequest.Open) -> None:
         keys.status(wanted.room)  # raises where a room cannot be called so
         get_task(wanted.task, wanted.arms or None)
-        require_control_hz(wanted.control_hz)
+        if wanted.control_hz:
+            require_control_hz(wanted.control_hz)
         if wanted.episodes > MAX_EPISODES:
             raise InvalidInput(
                 f"{wanted.episodes} episodes were given; plan at most {MAX_EPISODES}, or none (0)."

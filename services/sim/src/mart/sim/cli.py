@@ -10,6 +10,7 @@ import click
 from mart.protocol.tasks import SHARED_VIEWPOINT
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import progress
+from mart.runtime.rate_option import room_rate_option
 from mart.sim.settings import ExpertsSettings, ReplicaSettings, SimSettings
 
 
@@ -21,7 +22,7 @@ def _given(**options: Any) -> dict[str, Any]:
 @click.command()
 @click.option("--room", help="Id of the room.  [default: room-1]")
 @click.option("--task", help="Name of the task; `mart tasks` lists them.")
-@click.option("--control-hz", type=float, help="Ticks a second, at most.  [default: 20]")
+@room_rate_option
 @click.option("--arms", type=int, help="How many arms, where the task can have several numbers.")
 @click.option("--pace", type=float, help="Real-time factor that the world may reach at most.  [default: 1]")
 @click.option("--seed", type=int, help="The room's seed; without it, one is drawn at first start and kept.")

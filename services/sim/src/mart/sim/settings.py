@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
-from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
+from mart.protocol.control_rate import MAX_CONTROL_HZ, MIN_CONTROL_HZ
+from mart.runtime.rate_option import AUTO
 from mart.runtime.settings import Settings
 
 DEFAULT_TASK = "two_arm_multi_cube_lifting"
@@ -25,8 +26,11 @@ class SimSettings(_WorldSettings):
 
     room: str = Field("room-1", description="Id of the room.")
     task: str = Field(DEFAULT_TASK, description="Name of the task.")
-    control_hz: float = Field(
-        DEFAULT_CONTROL_HZ, ge=MIN_CONTROL_HZ, le=MAX_CONTROL_HZ, description="Ticks a second, at most."
+    control_hz: float | None = Field(
+        None,
+        ge=MIN_CONTROL_HZ,
+        le=MAX_CONTROL_HZ,
+        description="Ticks a second, at most; default: auto, as many as this machine holds; 20 in lockstep.",
     )
     arms: int | None = Field(None, ge=1, description="How many arms; default: the task's own number.")
     pace: float = Field(1.0, gt=0.0, le=1.0, description="Real-time factor that the world may reach at most.")
@@ -48,6 +52,11 @@ class SimSettings(_WorldSettings):
     quality: Literal["fast", "full"] = Field(
         "fast", description="full: also offers the model with detailed meshes, 25 MB, to gateways with a GPU."
     )
+
+    @field_validator("control_hz", mode="before")
+    @classmethod
+    def _word_for_none(cls, given: object) -> object:
+        return None if given == AUTO else given
 
     @property
     def room_path(self) -> Path:

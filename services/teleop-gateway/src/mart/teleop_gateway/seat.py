@@ -40,6 +40,7 @@ from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
 _log = logging.getLogger(__name__)
 
 _NO_PICTURE_EVERY_S = 3.0
+_PICTURE_COST_EVERY_S = 1.0
 
 
 class Seat:
@@ -121,6 +122,7 @@ class Seat:
                         report_latency(self._latency, self._events.latency),
                         self._ice.run(),
                         self._report_no_picture(),
+                        self._report_picture_cost(),
                     )
             finally:
                 await self._peers.close()
@@ -134,6 +136,13 @@ class Seat:
             if failure := self._views.failure():
                 self._events.no_picture(failure)
             await asyncio.sleep(_NO_PICTURE_EVERY_S)
+
+    async def _report_picture_cost(self) -> None:
+        """Tell once a second what the seat's video takes, while it is drawn; until cancelled."""
+        while True:
+            await asyncio.sleep(_PICTURE_COST_EVERY_S)
+            if picture_s := self._views.picture_s():
+                self._events.picture_cost(picture_s)
 
     def _send_poses(self, message: PoseMessage) -> None:
         self._peers.put_poses(message.data)

@@ -32,6 +32,10 @@ class SeatEvents:
         """Tell what was measured from motion to photon."""
         self._tell(latency=measured)
 
+    def picture_cost(self, picture_s: float) -> None:
+        """Tell what a picture of this seat takes, drawn and encoded at full size."""
+        self._tell(picture_cost=Event.PictureCost(arm=self._seat.arm, picture_ms=picture_s * 1e3))
+
     def no_picture(self, reason: str) -> None:
         """Tell that this seat cannot be drawn, and why."""
         self._tell(no_picture=Event.NoPicture(arm=self._seat.arm, reason=reason[:_MAX_CHARACTERS]))

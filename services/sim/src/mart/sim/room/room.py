@@ -51,7 +51,7 @@ class Room:
     """Run one room; used by one thread at a time, which says what time it is (`now_s`, monotonic seconds).
 
     What it has to say goes to `publisher`, what must survive a crash to `keep`, which may raise OSError. `explain` says
-    in words what became of a world whose physics left its bounds.
+    in words what became of a world whose physics left its bounds. `before`: the room that goes on in this one.
     """
 
     def __init__(
@@ -64,6 +64,7 @@ class Room:
         *,
         now_s: float,
         pace: float = 1.0,
+        before: RoomStatus = RoomStatus(),  # noqa: B008 - never changed
         terms: Terms = Terms(),  # noqa: B008 - frozen
         explain: Callable[[Diverged], str] = str,
     ) -> None:
@@ -80,8 +81,8 @@ class Room:
         self._time_limit_s = terms.time_limit_s or world.task.time_limit_s
         horizon_ticks = round(self._time_limit_s / world.control_period_s)
         self._episode = EpisodeStateMachine(record.seed, horizon_ticks, record.episodes)
-        self._ticker = Ticker(name, world, self._boot_ns, now_s)
-        self._last_ended: Event.EpisodeEnded | None = None
+        self._ticker = Ticker(name, world, self._boot_ns, now_s, before.tick)
+        self._last_ended = before.last_ended if before.HasField("last_ended") else None
         self.recording_watch = RecordingWatch(self._boot_ns)
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
@@ -118,7 +119,7 @@ class Room:
         if reason is None:
             self._ticker.aim(received)
         elif reason is CommandRejection.OLD_STATE and self._age.worth_telling(received, self._ticker.tick):
-            self._tell(room_messages.old_commands(self._seats[arm], self._age.limit_ticks))
+            self.tell(room_messages.old_commands(self._seats[arm], self._age.limit_ticks))
         if received.emergency_stop:
             self._stop.heard(received.arm)
 
@@ -200,7 +201,7 @@ class Room:
         try:
             state = self._ticker.advance(inputs, self._seats, self._episode, now_s)
         except Diverged as error:
-            self._tell(room_messages.notice("warning", self._explain(error)))
+            self.tell(room_messages.notice("warning", self._explain(error)))
             ender = EpisodeEnder(ENDED_BY_ROOM)
             self._do(self._episode.abandon(OUTCOME_FAILURE, "the physics diverged", ender, now_s), now_s)
             return
@@ -216,7 +217,7 @@ class Room:
                     self._tell_state(fresh, now_s)
                     self._barrier.restart(now_s)
                     self._age.world_reset(self._ticker.tick)
-                    self._tell(Event(world_reset=Event.WorldReset(seed=effect.seed)))
+                    self.tell(Event(world_reset=Event.WorldReset(seed=effect.seed)))
                 case BeginEpisode():
                     self._start(effect, now_s)
                 case EndEpisode():
@@ -227,30 +228,30 @@ class Room:
         self._remember(self._record.with_changes(episodes=effect.number))
         seats = [self._seat_message(seat, now_s) for seat in self._seats]
         begun = room_messages.episode_started(effect, seats, self._world, self._terms, self._time_limit_s)
-        self._tell(begun)
+        self.tell(begun)
         self._tell_state(self._ticker.standing(self._seats, self._episode, now_s), now_s)
         self._barrier.restart(now_s)
 
     def _end(self, effect: EndEpisode) -> None:
         self._last_ended = room_messages.episode_ended(effect, self._ticker.tick, self._ticker.progress)
-        self._tell(Event(episode_ended=self._last_ended))
+        self.tell(Event(episode_ended=self._last_ended))
 
     def _give_up(self, arm: str, now_s: float) -> None:
         name = self._seats[arm].driver.called
         self._seat_changed(self._seats.free(arm), now_s)
         text = f"{name} gave no command for {FREED_AFTER_S:g} s: {arm} is free."
-        self._tell(room_messages.notice("warning", text))
+        self.tell(room_messages.notice("warning", text))
 
     def _seat_changed(self, seat: SeatHolder, now_s: float) -> None:
         self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
         self._remember(self._record.with_seats(self._seats))
-        self._tell(Event(seat_changed=self._seat_message(seat, now_s)))
+        self.tell(Event(seat_changed=self._seat_message(seat, now_s)))
         self._do(self._episode.seats_changed(self._seats, now_s), now_s)
         self._status_due_s = now_s
 
     def _stop_changed(self, pressed: SavedStop | None, event: Event) -> None:
         self._remember(self._record.with_changes(stop=pressed))
-        self._tell(event)
+        self.tell(event)
         self._status_due_s = 0.0
 
     def _tell_barrier(self, decision: Decision) -> None:
@@ -259,7 +260,7 @@ class Room:
         holds = (decision.phase, *(arm for arm, _ in decision.waiting_for))
         if holds != self._told:
             self._told = holds
-            self._tell(room_messages.barrier_changed(decision.phase, decision.waiting_for))
+            self.tell(room_messages.barrier_changed(decision.phase, decision.waiting_for))
             self._status_due_s = 0.0
 
     def _tell_state(self, state: State, now_s: float) -> None:
@@ -267,7 +268,8 @@ class Room:
         self.recording_watch.told(0 if self._terms.lockstep else state.episode, state.tick, now_s)
         self._repeat_due_s = now_s + REPEAT_S
 
-    def _tell(self, event: Event) -> None:
+    def tell(self, event: Event) -> None:
+        """Tell everybody what has just happened."""
         event.wall_ns, event.room, event.tick = clock.wall_ns(), self._name, self._ticker.tick
         self._publisher.event(event)
 
@@ -276,7 +278,7 @@ class Room:
             self._publisher.repeat_state()
             self._repeat_due_s = now_s + REPEAT_S
         if (news := self.recording_watch.news(now_s)) is not None:
-            self._tell(room_messages.notice(*news))
+            self.tell(room_messages.notice(*news))
             self._status_due_s = now_s
         if now_s >= self._status_due_s:
             self._publisher.status(self.status(now_s))
@@ -294,4 +296,4 @@ class Room:
             self._keep(record)
         except OSError as error:
             text = f"A restart would forget this change of the room: {error}."
-            self._tell(room_messages.notice("error", text))
+            self.tell(room_messages.notice("error", text))

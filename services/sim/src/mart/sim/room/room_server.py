@@ -45,10 +45,8 @@ class RoomServer:
         self._bus, self._name, self._now_s = bus, name, now_s
         self._room = room
         self._submit, self._leave, self._garbled = submit, leave, garbled
-        self._models = {
-            what: codec.encode(model_message(shown))
-            for what, shown in ((b"", world), (keys.DETAILED, looks or world))
-        }
+        self._looks = looks
+        self.show(world)
         self._seat = RequestAnswerer(SEAT, self._answer_seat, self._on_refused)
         self._episode = RequestAnswerer(EPISODE, self._answer_episode, self._on_refused)
         self._open: list[Closable] = [
@@ -60,6 +58,17 @@ class RoomServer:
             bus.serve(keys.model(name), self._on_model_request),
         ]
 
+    def show(self, world: World) -> None:
+        """Answer with the model of this world from now on, in which no room needs to run yet."""
+        looks = self._looks.at(world.control_hz) if self._looks is not None else world
+        self._models = {
+            what: codec.encode(model_message(shown)) for what, shown in ((b"", world), (keys.DETAILED, looks))
+        }
+
+    def use(self, room: Room) -> None:
+        """Do all work for this room from now on. It must have said nothing before its world was shown."""
+        self._room = room
+
     def hear_commands(self) -> None:
         """Receive the commands of operators in other processes too."""
         self._open.append(self._bus.subscribe(keys.commands(self._name), self._on_command))
@@ -70,10 +79,10 @@ class RoomServer:
             declared.close()
 
     def _on_command(self, sample: Sample) -> None:
-        hear = partial(
-            self._room.hear, sample.payload, keys.arm_of(sample.key), self._now_s(), clock.wall_ns()
-        )
-        self._submit(hear)
+        payload, arm, at_s, at_wall_ns = (
+            sample.payload, keys.arm_of(sample.key), self._now_s(), clock.wall_ns()
+        )  # fmt: skip
+        self._submit(lambda: self._room.hear(payload, arm, at_s, at_wall_ns))
 
     def _on_recording_report(self, sample: Sample) -> None:
         try:
@@ -81,14 +90,14 @@ class RoomServer:
         except InvalidInput:
             self._garbled["recording report"] += 1
         else:
-            self._leave(partial(self._room.recording_watch.reported, report))
+            self._leave(lambda: self._room.recording_watch.reported(report))
 
     def _on_recorder_alive(self, key: str, alive: bool) -> None:
         if not alive:
-            self._leave(partial(self._room.recording_watch.gone, keys.last_of(key)))
+            self._leave(lambda: self._room.recording_watch.gone(keys.last_of(key)))
 
     def _on_saved(self, saved: Event.EpisodeSaved) -> None:
-        self._leave(partial(self._room.episode_saved, saved))
+        self._leave(lambda: self._room.episode_saved(saved))
 
     def _on_seat_request(self, request: Request) -> None:
         self._submit(partial(self._seat.respond, request))
@@ -97,7 +106,8 @@ class RoomServer:
         self._submit(partial(self._episode.respond, request))
 
     def _on_model_request(self, request: Request) -> None:
-        send_reply(request, self._models.get(request.payload, self._models[b""]))
+        models = self._models
+        send_reply(request, models.get(request.payload, models[b""]))
 
     def _answer_seat(self, request: SeatRequest) -> RoomReply:
         return self._room.answer_seat(request, self._now_s())

@@ -94,7 +94,7 @@ class SavedRoom(BaseModel):
     """Store one room: `episodes` is the newest number; `saved` and `good` count what the recorder reported.
 
     counted: the newest of them, so that what is told again counts once. task: that the seats are for, empty in records
-    of 0.2 and older.
+    of 0.2 and older. picture_s: what a seat's picture took here; 0: nobody has said, or nobody asked.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -108,6 +108,7 @@ class SavedRoom(BaseModel):
     seats: tuple[SavedSeat, ...] = ()
     plan: SavedPlan | None = None
     stop: SavedStop | None = None
+    picture_s: float = Field(0.0, ge=0.0, le=10.0)
 
     def for_task(self, task: str) -> SavedRoom:
         """Return it for a world of this task: seats of another task are free, under epochs that nobody has yet."""

@@ -7,17 +7,27 @@ import gc
 import logging
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 
-from mart.protocol import clock
-from mart.protocol.vocabulary import ServiceKind
+from mart.protocol import clock, keys
+from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
+from mart.protocol.messages import Event, RoomStatus
+from mart.protocol.vocabulary import OperatorKind, ServiceKind
+from mart.runtime.bus import Bus, Closable
+from mart.runtime.decoding_subscriber import DecodingSubscriber
 from mart.runtime.service import announced, connected
 from mart.runtime.throttled_log import ThrottledLog
 from mart.runtime.watchdog import Watchdog
 from mart.sim.experts import Skill, get_skill
 from mart.sim.room import saved_room
+from mart.sim.room.automatic_rate import AutomaticRate
 from mart.sim.room.bus_publisher import BusPublisher, OrderedPublisher
+from mart.sim.room.calibration import measure
 from mart.sim.room.episode_state_machine import Terms
+from mart.sim.room.live_room import LiveRoom, MakeRoom
+from mart.sim.room.rate_watch import RateWatch
 from mart.sim.room.room import Room
+from mart.sim.room.room_publisher import RoomPublisher
 from mart.sim.room.room_server import RoomServer
 from mart.sim.room.saved_room import SavedRoom
 from mart.sim.room.serial_executor import SerialExecutor
@@ -38,7 +48,7 @@ def serve_room(settings: SimSettings) -> None:
     Raises what building a world raises, and NotFound for an unknown skill.
     """
     skill = get_skill(settings.skill) if settings.skill else None
-    world = World.build(settings.task, settings.control_hz, settings.arms)
+    world = World.build(settings.task, settings.control_hz or DEFAULT_CONTROL_HZ, settings.arms)
     if settings.lockstep:
         serve_unpaced(settings, world, skill or get_skill(DEFAULT_SKILL))
     else:
@@ -46,35 +56,35 @@ def serve_room(settings: SimSettings) -> None:
 
 
 def serve_world(settings: SimSettings, world: World) -> None:
-    """Serve the room of `settings` around a world that exists already."""
+    """Serve the room of `settings` around a world that exists already; its rate is as given or found to be held."""
+    record = _record(settings)
+    rate = _automatic_rate(settings, world, record) if settings.control_hz is None else None
+    if rate is not None:
+        world = world.at(rate.control_hz)
+        _log.info("%s ticks %g times a second, as nobody gave a rate", settings.room, rate.control_hz)
     with connected(settings, ServiceKind.SIM, settings.room) as service, contextlib.ExitStack() as opened:
-        publisher = opened.enter_context(contextlib.closing(BusPublisher(service.bus, settings.room)))
-        room = Room(
-            settings.room,
-            world,
-            _record(settings),
-            publisher,
-            _keeper(settings),
-            now_s=clock.monotonic_s(),
-            pace=settings.pace,
-            terms=Terms(skill=settings.skill or "", time_limit_s=settings.time_limit_s),
-            explain=_archive(settings).keep,
+        publisher: RoomPublisher = opened.enter_context(
+            contextlib.closing(BusPublisher(service.bus, settings.room))
+        )
+        if rate is not None:
+            publisher = RateWatch(publisher, rate, clock.monotonic_s)
+        live = LiveRoom(
+            world, record, _maker(settings, publisher), _keeper(settings), clock.monotonic_s(), rate=rate
         )
         throttled_log, garbled = ThrottledLog(_log), Counter[str]()
-
         watchdog = Watchdog(f"The room {settings.room}")
 
         def advance(now_s: float) -> float:
             watchdog.feed()
-            next_s = room.advance(now_s)
-            throttled_log.report(Counter(room.rejected) + garbled, now_s)
+            next_s = live.advance(now_s)
+            throttled_log.report(live.rejected + garbled, now_s)
             return next_s
 
         executor = SerialExecutor(advance)
         server = RoomServer(
             service.bus,
             settings.room,
-            room,
+            live.room,
             world,
             submit=executor.submit,
             leave=executor.leave,
@@ -82,6 +92,9 @@ def serve_world(settings: SimSettings, world: World) -> None:
             looks=_looks(settings),
         )
         opened.enter_context(contextlib.closing(server))
+        live.serve_by(server)
+        if rate is not None:
+            opened.enter_context(contextlib.closing(_hear_pictures(service.bus, settings, rate, executor)))
         server.hear_commands()
         opened.enter_context(announced(service))
         gc.freeze()  # what is here now stays: later collections need not look at it
@@ -126,11 +139,63 @@ def serve_unpaced(settings: SimSettings, world: World, skill: Skill) -> None:
             unpaced.run(work_queue, garbled, service.stop)
 
 
+def _automatic_rate(settings: SimSettings, world: World, record: SavedRoom) -> AutomaticRate:
+    return AutomaticRate(
+        measure(world),
+        len(world.arms),
+        clock.monotonic_s(),
+        pace=settings.pace,
+        picture_s=record.picture_s,
+        policies=any(one.operator is OperatorKind.POLICY or one.relieved for one in record.seats),
+    )
+
+
+def _hear_pictures(
+    bus: Bus, settings: SimSettings, rate: AutomaticRate, executor: SerialExecutor
+) -> Closable:
+    """Let the rate see what seats say their pictures take, until what is returned is closed."""
+
+    def take(event: Event) -> None:
+        if event.HasField("picture_cost"):
+            cost = event.picture_cost
+            executor.leave(partial(rate.see_picture, cost.arm, cost.picture_ms * 1e-3))
+
+    return bus.subscribe(keys.event(settings.room).key, DecodingSubscriber(Event, take))
+
+
+def _maker(settings: SimSettings, publisher: RoomPublisher) -> MakeRoom:
+    terms = Terms(skill=settings.skill or "", time_limit_s=settings.time_limit_s)
+    archive = _archive(settings)
+
+    def make(
+        world: World,
+        record: SavedRoom,
+        keep: Callable[[SavedRoom], None],
+        now_s: float,
+        before: RoomStatus,
+    ) -> Room:
+        return Room(
+            settings.room,
+            world,
+            record,
+            publisher,
+            keep,
+            now_s=now_s,
+            pace=settings.pace,
+            before=before,
+            terms=terms,
+            explain=archive.keep,
+        )
+
+    return make
+
+
 def _looks(settings: SimSettings) -> World | None:
     """Build the same room to look at more closely, or None; what happens in it is the other's."""
     if settings.quality == "fast":
         return None
-    return World.build(settings.task, settings.control_hz, settings.arms, detail="detailed")
+    hz = settings.control_hz or DEFAULT_CONTROL_HZ  # shown, never stepped
+    return World.build(settings.task, hz, settings.arms, detail="detailed")
 
 
 def _archive(settings: SimSettings) -> DivergenceArchive:

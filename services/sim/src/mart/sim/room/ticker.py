@@ -23,10 +23,13 @@ NOBODY: Mapping[str, ReceivedCommand] = MappingProxyType({})
 
 
 class Ticker:
-    """Step the world; `tick` counts the states of this run of the sim, those after resets included."""
+    """Step the world; `tick` counts the states of this run of the sim, those after resets included.
 
-    def __init__(self, room: str, world: World, boot_ns: int, now_s: float) -> None:
-        self.tick = 0
+    Where a room is opened anew, it counts on from the `tick` that is given.
+    """
+
+    def __init__(self, room: str, world: World, boot_ns: int, now_s: float, tick: int = 0) -> None:
+        self.tick = tick
         self.progress: TaskProgress | None = None
         self._room = room
         self._world = world

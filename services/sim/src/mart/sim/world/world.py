@@ -7,6 +7,7 @@ successful ticks), so setting a state and stepping the same actions gives the sa
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import logging
 import math
@@ -52,14 +53,17 @@ class World:
     count from the tool's measured pose.
     """
 
-    def __init__(self, scene: Scene, control_hz: float, detail: Detail = "hull") -> None:
+    def __init__(
+        self, scene: Scene, control_hz: float, detail: Detail = "hull", compiled: mujoco.MjModel | None = None
+    ) -> None:
         osc.install()
         mujoco.set_mju_user_warning(_log_warning)
         self._scene = scene
         self.substeps, timestep_s = model.substeps(control_hz)
         self.control_hz, self.control_period_s = control_hz, 1.0 / control_hz
         self.success_hold_ticks = scene.task.success_hold_at(control_hz)
-        self.model = model.build(scene, timestep_s, detail)
+        self.model = compiled or model.build(scene, timestep_s, detail)
+        self.model.opt.timestep = timestep_s
         self.data = mujoco.MjData(self.model)
         self._interface = ControlInterface(scene, self.model, self.data)
         self._measured = {arm: MeasuredArm(self.model, self.data, arm) for arm in self.arms}
@@ -77,6 +81,13 @@ class World:
     ) -> World:
         """Compile a task by name; raises NotFound for an unknown one, InvalidInput for an impossible rate or arms."""
         return cls(scene_of(get_task(task_name, arms)), control_hz, detail)
+
+    def at(self, control_hz: float) -> World:
+        """Return the same world in ticks of another rate, not reset yet; raises InvalidInput for an impossible one.
+
+        What it compiles to differs in the timestep alone, so nothing is compiled: it takes milliseconds.
+        """
+        return World(type(self._scene)(self.task), control_hz, compiled=copy.copy(self.model))
 
     @property
     def task(self) -> Task:

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from fractions import Fraction
+from statistics import median
 
 import cv2
 import mujoco
@@ -24,7 +25,7 @@ from mart.protocol.tasks import Ghost
 from mart.render import Image
 from mart.runtime.rate_limit import RateLimit
 from mart.runtime.watchdog import end_process, start_vital_thread
-from mart.teleop_gateway.video.adaptive_resolution import AdaptiveResolution
+from mart.teleop_gateway.video.adaptive_resolution import AdaptiveResolution, at_full_size
 from mart.teleop_gateway.video.encoder import CLOCK_HZ, Codec, EncodedPicture, Encoder, to_i420
 from mart.teleop_gateway.video.motion_to_photon import PictureStamps
 from mart.teleop_gateway.video.quality import FAST, Quality
@@ -113,6 +114,7 @@ class LiveView:
         self._keyframe_s = dict.fromkeys(Codec, -KEYFRAME_EVERY_S)
         self._log_limit = RateLimit(1)
         self._times_s: deque[float] = deque(maxlen=_RATE_WINDOW)
+        self._took_s: deque[float] = deque(maxlen=_RATE_WINDOW)  # as at full size
         self.failure = ""  # why nothing can be drawn, in a sentence
         self._end = end
         self._resting = False
@@ -154,6 +156,11 @@ class LiveView:
             return 0.0
         return (len(times_s) - 1) / (times_s[-1] - times_s[0])
 
+    def picture_s(self) -> float:
+        """Return the median of what pictures took, drawn and encoded at full size; 0 where there are none."""
+        took_s = tuple(self._took_s)
+        return median(took_s) if took_s and self.frames_per_s() else 0.0
+
     def _run(self) -> None:
         cv2.setNumThreads(1)
         try:
@@ -173,7 +180,7 @@ class LiveView:
     def _draw_until_closed(self, pipeline: _RenderPipeline) -> None:
         resolution, thumbnails = AdaptiveResolution(self._frames_per_s), ThumbnailMaker()
         drawn: UndrawnState | None = None
-        rendered_ns = 0
+        rendered_ns, size = 0, resolution.size
         while True:
             undrawn = self._queue.wait(_REPEAT_AFTER_S, _KEYFRAME_WITHIN_S)
             begun_s = clock.monotonic_s()
@@ -181,7 +188,8 @@ class LiveView:
                 drawn = None  # what is sent again must not be older than what pages have drawn
                 continue
             if undrawn is not None:
-                pipeline.resize(resolution.size)
+                size = resolution.size
+                pipeline.resize(size)
                 try:
                     pipeline.draw(undrawn.state)
                 except InvalidInput as error:
@@ -194,6 +202,8 @@ class LiveView:
                 self._encode(pipeline, drawn, rendered_ns)
             if undrawn is not None:
                 now_s = clock.monotonic_s()
+                if not self._resting:  # else it was not encoded
+                    self._took_s.append(at_full_size(now_s - begun_s, size))
                 resolution.record(now_s - begun_s, now_s)
                 thumbnail = thumbnails.take(pipeline.view_rgb, undrawn.state.stamps.stepped_ns, now_s)
                 if thumbnail is not None:

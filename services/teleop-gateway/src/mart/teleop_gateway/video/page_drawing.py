@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import mujoco
 
 from mart.protocol import clock
-from mart.protocol.errors import InvalidInput, Unavailable
+from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import SceneReply, SceneRequest, State
 from mart.protocol.tasks import Task
 from mart.render import BodyPoses, export_scene
@@ -51,13 +51,26 @@ class PageDrawing:
         self._task: Task | None = None
         self._exported: _ExportedScene | None = None
         self._making = asyncio.Lock()
+        self._remaking: asyncio.Future[None] | None = None  # kept, or it might be collected
         self._wanted = False
         self._poses: BodyPoses | None = None
         self._log_limit = RateLimit(1)
 
     def use(self, model: mujoco.MjModel, task: Task | None) -> None:
-        """Take a new model of the room, and its task if known; poses go on once a page has asked for the scene."""
+        """Take a new model of the room, and its task if known.
+
+        Poses go on where a page draws, else when one has asked for the scene.
+        """
         self._model, self._task, self._exported, self._poses = model, task, None, None
+        if self._wanted:
+            self._remaking = asyncio.ensure_future(self._remake())
+
+    async def _remake(self) -> None:
+        async with self._making:
+            try:
+                await self._scene()
+            except MartError as error:  # pages hear no poses, ask for the scene, and are told the same
+                _log.warning("Pages do not draw the room's new model: %s", error)
 
     def want(self, wanted: bool) -> None:
         """Write poses from now on, or write none."""

@@ -97,6 +97,10 @@ class ViewManager:
         """Return the rate of the last pictures; 0 where there are none."""
         return self._view.frames_per_s() if self._view is not None else 0.0
 
+    def picture_s(self) -> float:
+        """Return what a picture takes, drawn and encoded at full size; 0 where there are none."""
+        return self._view.picture_s() if self._view is not None else 0.0
+
     def failure(self) -> str:
         """Return why nothing can be drawn, in a sentence; empty where it can, or nothing is known yet."""
         return self._view.failure if self._view is not None else ""

@@ -33,7 +33,7 @@ class NewRoom(BaseModel):
 
     task: Name
     room: Name = ""  # empty: a free name
-    control_hz: float = 0.0  # 0: the usual rate
+    control_hz: float = 0.0  # 0: as the machine holds
     episodes: int = Field(0, ge=0, le=10_000)  # good ones that are wanted; 0: no plan
     arms: int = Field(0, ge=0, le=MAX_ARMS)  # 0: as many as the task usually has
 

@@ -90,6 +90,7 @@ function inputs(tasks) {
     rate: element(
       "select",
       { id: "new-rate" },
+      element("option", { value: 0 }, "As fast as this machine holds"),
       ...CONTROL_RATES_HZ.map((hz) => element("option", { value: hz }, `${hz} a second`)),
     ),
     episodes: element("input", {

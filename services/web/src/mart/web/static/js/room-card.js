@@ -61,7 +61,7 @@ export function roomCard(attempt, onClosed) {
     setText(phase, room.stale ? "Not answering" : waitingText(room) || phaseText(room.episode));
     setText(instruction, room.instruction);
     setText(facts.id, room.room);
-    setText(facts.rate, `${room.real_time_factor.toFixed(2)}× real time`);
+    setText(facts.rate, `${room.control_hz} Hz, ${room.real_time_factor.toFixed(2)}× real time`);
     setText(facts.plan, planText(room.plan));
     setShown(facts.plan, room.plan !== null);
     setText(facts.saved, savedText(room));
