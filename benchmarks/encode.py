@@ -69,7 +69,7 @@ class Contender:
 
 
 def ours(codec: encoder.Codec, packer: Encoder) -> Contender:
-    encode = encoder.Encoder(codec, CONTROL_HZ).encode
+    encode = encoder.Encoder(encoder.Stream(codec), CONTROL_HZ).encode
 
     def to_packets(picture_rgb: Image, pts: int) -> list[bytes]:
         encoded = encode(encoder.to_i420(picture_rgb), pts, keyframe=False)

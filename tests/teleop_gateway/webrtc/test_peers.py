@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Set as AbstractSet
+import math
+from collections.abc import Mapping
 from typing import Any, cast
 from unittest import mock
 
@@ -21,7 +22,7 @@ from mart.protocol.messages import (
 from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryNetwork
-from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.encoder import RECORDED, Audience, Codec, Stream
 from mart.teleop_gateway.webrtc import peers as module
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peers import MAX_VIEWERS, SILENT_S, Peers
@@ -44,6 +45,15 @@ class StubPeer:
         self.is_closed = False
         self.draws = False
         self.poses = b""
+        self.audience = Audience.EVERYONE
+        self.limit_bps = math.inf
+
+    @property
+    def stream(self) -> Stream | None:
+        return None if self.codec is None or self.draws else Stream(self.codec, self.audience)
+
+    def set_audience(self, audience: Audience) -> None:
+        self.audience = audience
 
     async def answer(self, offer_sdp: str) -> str:
         await asyncio.sleep(0)
@@ -75,7 +85,7 @@ class Leavers:
     def on_left(self, peer: Peer) -> None:
         self.left.append(peer.role)
 
-    def on_watched(self, codecs: AbstractSet[Codec]) -> None:
+    def on_watched(self, limits_bps: Mapping[Stream, float]) -> None:
         """Nobody watches."""
 
     def on_pose(self, peer: Peer, payload: bytes) -> None:
@@ -84,7 +94,7 @@ class Leavers:
     def on_status(self, peer: Peer, text: str) -> None:
         """Nobody speaks."""
 
-    def on_keyframe_wanted(self, codec: Codec) -> None:
+    def on_keyframe_wanted(self, stream: Stream) -> None:
         """Nobody watches."""
 
 
@@ -137,18 +147,40 @@ def test_a_page_that_draws_watches_no_video_and_is_told_poses() -> None:
         peers, _ = await seated()
         browser, _, viewer = cast("list[StubPeer]", list(peers))
         browser.codec = viewer.codec = Codec.H264
-        assert (peers.any_draws, peers.holder_draws, peers.codecs()) == (
-            False,
-            False,
-            frozenset({Codec.H264}),
-        )
+        assert (peers.any_draws, peers.holder_draws, peers.streams()) == (False, False, {RECORDED: math.inf})
         peers.set_draws(cast("Peer", viewer), True)
-        assert (peers.any_draws, peers.holder_draws, peers.codecs()) == (True, False, frozenset({Codec.H264}))
+        assert (peers.any_draws, peers.holder_draws, peers.streams()) == (True, False, {RECORDED: math.inf})
         peers.set_draws(cast("Peer", browser), True)
-        assert (peers.any_draws, peers.holder_draws, peers.codecs()) == (True, True, frozenset())
+        assert (peers.any_draws, peers.holder_draws, peers.streams()) == (True, True, {})
         peers.set_draws(cast("Peer", viewer), False)
         peers.put_poses(b"poses")
         assert (browser.poses, viewer.poses) == (b"poses", b"")
+
+    asyncio.run(body())
+
+
+def test_whoever_has_a_bad_link_gets_a_stream_of_their_own_and_spoils_no_other() -> None:
+    """The holder's and the viewers' bad links are apart, and a viewer with a good one keeps everyone's pictures."""
+
+    async def body() -> None:
+        peers, _ = await seated()
+        await peers.answer(Role.VIEWER, "", "ben")
+        await peers.answer(Role.VIEWER, "", "cleo")
+        browser, _, near, far, farther = cast("list[StubPeer]", list(peers))
+        for peer in (browser, near, far, farther):
+            peer.codec = Codec.H264
+        far.limit_bps, farther.limit_bps = 500_000.0, 200_000.0
+        peers.on_limit()
+        assert peers.streams() == {RECORDED: math.inf, Stream(Codec.H264, Audience.VIEWERS): 200_000.0}
+        assert [peer.audience for peer in (browser, near)] == [Audience.EVERYONE] * 2
+        browser.limit_bps = 300_000.0
+        peers.on_limit()
+        assert peers.streams()[Stream(Codec.H264, Audience.HOLDER)] == 300_000.0
+        assert peers.streams()[RECORDED] == math.inf
+        for peer in (browser, near, far, farther):
+            peer.limit_bps = math.inf
+        peers.on_limit()
+        assert peers.streams() == {RECORDED: math.inf}
 
     asyncio.run(body())
 
