@@ -16,7 +16,7 @@ from mart.protocol import clock
 from mart.teleop_gateway.webrtc.aiortc_hooks import on_feedback, on_packet_sent, send_again
 from mart.teleop_gateway.webrtc.rate_control import RateControl, ReceiverReport
 
-_COPY_AFTER_S = 0.06  # later than a burst of losses and the picture after it, too early to be seen as a standstill
+_COPY_AFTER_S = 0.06  # after the next picture: a burst of losses is over, and nobody sees a standstill yet
 
 
 class SenderFeedback:
