@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 
 import pytest
 from hypothesis import given, settings
@@ -139,6 +140,18 @@ def test_one_percent_of_loss_is_no_reason_to_send_less(estimates: bool) -> None:
     link = Link(20e6, 0.3, estimates=estimates, loss=0.01)
     link.run(30)
     assert link.control.limit_bps() == math.inf
+
+
+def test_an_estimate_that_falls_without_any_queue_is_not_believed() -> None:
+    """Where delay varies by tens of milliseconds, a browser's falls below what it receives, and falls on."""
+    control, estimate_bps, draws = RateControl(), 3e6, random.Random(0)
+    for step in range(400):
+        now_s = 0.25 * step
+        control.on_sent(60_000, now_s)
+        control.on_report(ReceiverReport(step // 2, 50 * step, 0.24 + draws.random() * 0.12), now_s)
+        estimate_bps *= 0.99
+        control.on_estimate(estimate_bps, now_s)
+    assert control.limit_bps() == math.inf
 
 
 def test_an_estimate_that_was_never_tried_limits_nothing() -> None:

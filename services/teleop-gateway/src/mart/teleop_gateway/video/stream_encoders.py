@@ -22,10 +22,10 @@ from mart.teleop_gateway.video.encoder import (
 from mart.teleop_gateway.video.quality import Quality
 
 KEYFRAME_EVERY_S = 2.0
-_PICTURE_BITS = 15_000  # of a moving scene, 640 x 496: coarser is worse than seldom
+_PICTURE_BITS = 12_000  # of a moving scene, 640 x 496: coarser is worse than seldom
 _LEAST_PICTURES_PER_S = 10.0
 _LOWER, _LOWER_AFTER_S = 0.92, 0.5
-_HIGHER, _HIGHER_AFTER_S = 1.2, 4.0
+_HIGHER, _HIGHER_AFTER_S = 1.1, 4.0
 
 
 def picture_interval(limit_bps: float, frames_per_s: float) -> int:
