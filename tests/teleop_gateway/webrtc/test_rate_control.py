@@ -81,8 +81,8 @@ def test_less_is_sent_than_the_link_carries_and_not_much_less(
     link.run(15)
     link.run(40)
     wanted_bps = min(bps, NEED_BPS)
-    assert 0.6 * wanted_bps <= link.mean_bps() <= wanted_bps * (1.0 if estimates else 1.1)
-    if estimates:  # else a tenth may be lost before anybody knows
+    assert 0.6 * wanted_bps <= link.mean_bps() <= wanted_bps * (1.0 if estimates else 1.2)
+    if estimates:  # else a good tenth is lost before anybody knows
         assert sum(queue_s > 0.25 for queue_s in link.queues_s) < 0.1 * len(link.queues_s)
 
 
@@ -112,7 +112,7 @@ def test_the_limit_does_not_jump_about(bps: float, round_trip_s: float, estimate
         abs(after - before) > 0.1 * before
         for before, after in zip(link.sent_bps, link.sent_bps[1:], strict=False)
     )
-    assert ends <= 6
+    assert ends <= (6 if estimates else 12)
     assert steps <= 40
 
 
@@ -140,6 +140,21 @@ def test_one_percent_of_loss_is_no_reason_to_send_less(estimates: bool) -> None:
     link = Link(20e6, 0.3, estimates=estimates, loss=0.01)
     link.run(30)
     assert link.control.limit_bps() == math.inf
+
+
+@pytest.mark.parametrize("reports_meanwhile", [True, False])
+def test_an_outage_is_no_full_link(reports_meanwhile: bool) -> None:
+    """Everything was lost for three seconds, and what came then is told in one report."""
+    control, lost = RateControl(), 0
+    for step in range(80):
+        now_s, dark = 0.25 * step, 20 <= step < 32
+        control.on_sent(25_000, now_s)
+        if dark and not reports_meanwhile:
+            continue
+        lost = 600 if step >= 32 else lost
+        expected = 50 * min(step, 20) if dark else 50 * step
+        control.on_report(ReceiverReport(lost, expected, 0.05), now_s)
+        assert control.limit_bps() == math.inf
 
 
 def test_an_estimate_that_falls_without_any_queue_is_not_believed() -> None:

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
+from itertools import pairwise
 
 FLOOR_BPS = 150_000  # ten pictures of 640 x 496 a second, in which a cube's spots can still be counted
 _PICTURES_SHARE = 0.9  # of an estimate: the rest is for what else the link carries
@@ -25,6 +26,7 @@ _USED = 0.5  # of a limit: a link of which less is used is not known to carry mo
 _MUCH_LOSS, _LITTLE_LOSS = 0.10, 0.02
 _LOSS_PACKETS = 50  # that are looked at together: two lost of twenty are an accident
 _LOSS_WINDOW_S = 2.0
+_LEAST_REPORTS = 4
 _QUEUED_S = (
     0.1  # that the quickest round trip of _NOW_S is longer than the quickest of _BASE_S: a queue, no jitter
 )
@@ -104,10 +106,11 @@ class RateControl:
         if reports and report.lost > reports[-1][1].lost:
             self._lost_s = now_s
         reports.append((now_s, report))
-        while len(reports) > 2 and _enough(reports[1], reports[-1]):
+        while len(reports) > _LEAST_REPORTS and _enough(reports[1], reports[-1]):
             reports.popleft()
         expected = report.expected - reports[0][1].expected
-        lost = report.lost - reports[0][1].lost
+        losses = [later.lost - earlier.lost for (_, earlier), (_, later) in pairwise(reports)]
+        lost = sum(losses) - max(losses, default=0)  # an outage is in one report, a link that is full in all
         self._loss = max(0, lost) / expected if expected >= _LOSS_PACKETS else 0.0
 
     def _judge(self, now_s: float) -> None:
