@@ -78,6 +78,7 @@ class Leavers:
 
     def __init__(self) -> None:
         self.left: list[Role] = []
+        self.wished: list[Stream] = []
 
     def on_joined(self, peer: Peer) -> None:
         peer.heard_s = {Role.BROWSER: 100.0, Role.PHONE: 90.0, Role.VIEWER: 89.0}[peer.role]
@@ -95,7 +96,7 @@ class Leavers:
         """Nobody speaks."""
 
     def on_keyframe_wanted(self, stream: Stream) -> None:
-        """Nobody watches."""
+        self.wished.append(stream)
 
 
 async def seated() -> tuple[Peers, Leavers]:
@@ -181,6 +182,24 @@ def test_whoever_has_a_bad_link_gets_a_stream_of_their_own_and_spoils_no_other()
             peer.limit_bps = math.inf
         peers.on_limit()
         assert peers.streams() == {RECORDED: math.inf}
+
+    asyncio.run(body())
+
+
+def test_viewers_wish_for_one_keyframe_of_everyones_pictures_a_second() -> None:
+    async def body() -> None:
+        peers, listener = await seated()
+        browser, _, viewer = cast("list[StubPeer]", list(peers))
+        browser.codec = viewer.codec = Codec.H264
+        for _ in range(20):
+            peers.on_keyframe_wanted(cast("Peer", viewer))
+        assert listener.wished == [RECORDED]
+        for _ in range(20):
+            peers.on_keyframe_wanted(cast("Peer", browser))
+        assert listener.wished == [RECORDED] * 21
+        viewer.audience = Audience.VIEWERS
+        peers.on_keyframe_wanted(cast("Peer", viewer))
+        assert listener.wished[-1] == Stream(Codec.H264, Audience.VIEWERS)
 
     asyncio.run(body())
 

@@ -53,7 +53,7 @@ class PeerListener(Protocol):
     def on_status(self, peer: Peer, text: str) -> None:
         """Take a message of its status channel."""
 
-    def on_keyframe_wanted(self, stream: Stream) -> None:
+    def on_keyframe_wanted(self, peer: Peer) -> None:
         """Take that it cannot go on without a keyframe."""
 
     def on_limit(self) -> None:
@@ -183,8 +183,7 @@ class Peer:
         return sender
 
     def _want_keyframe(self) -> None:
-        if self.stream is not None:
-            self._listener.on_keyframe_wanted(self.stream)
+        self._listener.on_keyframe_wanted(self)
 
     def _on_channel(self, channel: RTCDataChannel) -> None:
         if channel.label == "pose":

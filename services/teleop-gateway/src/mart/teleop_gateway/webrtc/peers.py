@@ -7,10 +7,12 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Protocol
 
+from mart.protocol import clock
 from mart.protocol.errors import Conflict
 from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.ice_servers import IceServer
+from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.video.encoder import Audience, EncodedPicture, Stream
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
@@ -56,6 +58,7 @@ class Peers:
         self._listener: PeersListener | None = None
         self._driving: dict[Role, Peer] = {}
         self._viewers: list[Peer] = []
+        self._viewers_wishes = RateLimit(1)
         self._told_bps: Mapping[Stream, float] = {}
 
     def __iter__(self) -> Iterator[Peer]:
@@ -179,9 +182,16 @@ class Peers:
         if self._listener is not None and self._is_present(peer):
             self._listener.on_status(peer, text)
 
-    def on_keyframe_wanted(self, stream: Stream) -> None:
-        """Pass on that a keyframe is wanted."""
-        if self._listener is not None:
+    def on_keyframe_wanted(self, peer: Peer) -> None:
+        """Pass on that a keyframe is wanted; of everyone's pictures one a second for all viewers.
+
+        A keyframe is as large as ten other pictures, and whoever drives gets it, too. The next regular one is near.
+        """
+        stream = peer.stream
+        if self._listener is None or stream is None:
+            return
+        spoils = peer.role is Role.VIEWER and stream.audience is Audience.EVERYONE
+        if not spoils or self._viewers_wishes.allows(clock.monotonic_s()):
             self._listener.on_keyframe_wanted(stream)
 
     def on_limit(self) -> None:
