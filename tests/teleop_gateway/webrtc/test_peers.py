@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Mapping
 from typing import Any, cast
 from unittest import mock
 
@@ -22,91 +21,12 @@ from mart.protocol.messages import (
 from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryNetwork
-from mart.teleop_gateway.video.encoder import RECORDED, Audience, Codec, Stream
+from mart.teleop_gateway.video.encoder import RECORDED, Codec
 from mart.teleop_gateway.webrtc import peers as module
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peers import MAX_VIEWERS, SILENT_S, Peers
 from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
-
-CONNECTS = "an offer of a page that connects"
-
-
-class StubPeer:
-    """A peer without a connection, last heard at 0 s."""
-
-    codec: Codec | None = None
-    track = None
-
-    def __init__(self, role: Role, _listener: object, _ice_servers: object, holder_id: str) -> None:
-        self.role = role
-        self.holder_id = holder_id
-        self.heard_s = 0.0
-        self.is_connected = False
-        self.is_closed = False
-        self.draws = False
-        self.poses = b""
-        self.audience = Audience.EVERYONE
-        self.limit_bps = math.inf
-
-    @property
-    def stream(self) -> Stream | None:
-        return None if self.codec is None or self.draws else Stream(self.codec, self.audience)
-
-    def set_audience(self, audience: Audience) -> None:
-        self.audience = audience
-
-    async def answer(self, offer_sdp: str) -> str:
-        await asyncio.sleep(0)
-        self.is_connected = offer_sdp == CONNECTS
-        return offer_sdp
-
-    async def close(self) -> None:
-        self.is_closed = True
-
-    def send_status(self, text: str) -> None:
-        """Nobody hears it."""
-
-    def set_draws(self, draws: bool) -> None:
-        self.draws = draws
-
-    def send_poses(self, message: bytes) -> None:
-        self.poses = message
-
-
-class Leavers:
-    """Keeps the roles of those that left."""
-
-    def __init__(self) -> None:
-        self.left: list[Role] = []
-        self.wished: list[Stream] = []
-
-    def on_joined(self, peer: Peer) -> None:
-        peer.heard_s = {Role.BROWSER: 100.0, Role.PHONE: 90.0, Role.VIEWER: 89.0}[peer.role]
-
-    def on_left(self, peer: Peer) -> None:
-        self.left.append(peer.role)
-
-    def on_watched(self, limits_bps: Mapping[Stream, float]) -> None:
-        """Nobody watches."""
-
-    def on_pose(self, peer: Peer, payload: bytes) -> None:
-        """Nobody drives."""
-
-    def on_status(self, peer: Peer, text: str) -> None:
-        """Nobody speaks."""
-
-    def on_keyframe_wanted(self, stream: Stream) -> None:
-        self.wished.append(stream)
-
-
-async def seated() -> tuple[Peers, Leavers]:
-    """A browser that was heard at 100 s, a phone at 90 s, and a viewer at 89 s."""
-    peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
-    leavers = Leavers()
-    peers.attach(leavers)
-    for role in (Role.BROWSER, Role.PHONE, Role.VIEWER):
-        await peers.answer(role, "", "ana")
-    return peers, leavers
+from tests.teleop_gateway.webrtc.stub_peers import CONNECTS, StubPeer, seated
 
 
 @pytest.fixture(autouse=True)
@@ -156,50 +76,6 @@ def test_a_page_that_draws_watches_no_video_and_is_told_poses() -> None:
         peers.set_draws(cast("Peer", viewer), False)
         peers.put_poses(b"poses")
         assert (browser.poses, viewer.poses) == (b"poses", b"")
-
-    asyncio.run(body())
-
-
-def test_whoever_has_a_bad_link_gets_a_stream_of_their_own_and_spoils_no_other() -> None:
-    """The holder's and the viewers' bad links are apart, and a viewer with a good one keeps everyone's pictures."""
-
-    async def body() -> None:
-        peers, _ = await seated()
-        await peers.answer(Role.VIEWER, "", "ben")
-        await peers.answer(Role.VIEWER, "", "cleo")
-        browser, _, near, far, farther = cast("list[StubPeer]", list(peers))
-        for peer in (browser, near, far, farther):
-            peer.codec = Codec.H264
-        far.limit_bps, farther.limit_bps = 500_000.0, 200_000.0
-        peers.on_limit()
-        assert peers.streams() == {RECORDED: math.inf, Stream(Codec.H264, Audience.VIEWERS): 200_000.0}
-        assert [peer.audience for peer in (browser, near)] == [Audience.EVERYONE] * 2
-        browser.limit_bps = 300_000.0
-        peers.on_limit()
-        assert peers.streams()[Stream(Codec.H264, Audience.HOLDER)] == 300_000.0
-        assert peers.streams()[RECORDED] == math.inf
-        for peer in (browser, near, far, farther):
-            peer.limit_bps = math.inf
-        peers.on_limit()
-        assert peers.streams() == {RECORDED: math.inf}
-
-    asyncio.run(body())
-
-
-def test_viewers_wish_for_one_keyframe_of_everyones_pictures_a_second() -> None:
-    async def body() -> None:
-        peers, listener = await seated()
-        browser, _, viewer = cast("list[StubPeer]", list(peers))
-        browser.codec = viewer.codec = Codec.H264
-        for _ in range(20):
-            peers.on_keyframe_wanted(cast("Peer", viewer))
-        assert listener.wished == [RECORDED]
-        for _ in range(20):
-            peers.on_keyframe_wanted(cast("Peer", browser))
-        assert listener.wished == [RECORDED] * 21
-        viewer.audience = Audience.VIEWERS
-        peers.on_keyframe_wanted(cast("Peer", viewer))
-        assert listener.wished[-1] == Stream(Codec.H264, Audience.VIEWERS)
 
     asyncio.run(body())
 
