@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+import tracemalloc
 
 import pytest
 from hypothesis import given, settings
@@ -176,6 +177,16 @@ def test_an_estimate_that_was_never_tried_limits_nothing() -> None:
         control.on_sent(200, step * 0.5)
         control.on_estimate(300_000 + 100 * step, step * 0.5)
     assert control.limit_bps() == math.inf
+
+
+def test_a_receiver_that_floods_or_to_which_nothing_is_sent_fills_no_memory() -> None:
+    control = RateControl()
+    tracemalloc.start()
+    for step in range(3_000):
+        control.on_report(ReceiverReport(0, 0, 0.01), 0.001 * step)
+    grown_bytes, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert grown_bytes < 300_000
 
 
 def _lossy(round_trip_s: float, loss: float, seconds: float = 10.0) -> tuple[RateControl, float]:

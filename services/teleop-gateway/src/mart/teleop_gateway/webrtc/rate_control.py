@@ -27,6 +27,7 @@ _MUCH_LOSS, _LITTLE_LOSS = 0.10, 0.02
 _LOSS_PACKETS = 50  # that are looked at together: two lost of twenty are an accident
 _LOSS_WINDOW_S = 2.0
 _LEAST_REPORTS = 4
+_MOST_KEPT = 200  # reports; a receiver may send as many as it likes, also while nothing is sent to it
 _QUEUED_S = (
     0.1  # that the quickest round trip of _NOW_S is longer than the quickest of _BASE_S: a queue, no jitter
 )
@@ -59,8 +60,8 @@ class RateControl:
         self._estimate_bps = math.inf
         self._sent: deque[tuple[float, int]] = deque()
         self._need_bps = float(_LEAST_NEED_BPS)
-        self._reports: deque[tuple[float, ReceiverReport]] = deque()
-        self._round_trips: deque[tuple[float, float]] = deque()
+        self._reports: deque[tuple[float, ReceiverReport]] = deque(maxlen=_MOST_KEPT)
+        self._round_trips: deque[tuple[float, float]] = deque(maxlen=_MOST_KEPT)
         self._loss = 0.0
         self._lost_s = -math.inf
         self._lowered_s = -math.inf
