@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import math
 import resource
 import subprocess
 import sys
@@ -92,10 +91,8 @@ def show(
     """
     with contextlib.ExitStack() as stack:
         if not follows:
-            deaf = mock.patch.multiple(
-                RateControl, limit_bps=lambda _: math.inf, wants_copies=lambda _, now_s: False
-            )
-            stack.enter_context(deaf)
+            for deaf in ("on_report", "on_estimate"):
+                stack.enter_context(mock.patch.object(RateControl, deaf))
         stack.enter_context(_network(network))
         return asyncio.run(_show(pictures, frames_per_s, seconds))
 

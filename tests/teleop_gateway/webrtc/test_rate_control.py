@@ -39,7 +39,8 @@ class Link:
     def run(self, seconds: float, need_bps: float = NEED_BPS) -> None:
         self.sent_bps, self.queues_s = [], []
         for _ in range(int(seconds / STEP_S)):
-            self._send(min(need_bps, self.control.limit_bps()))
+            pictures_bps = min(need_bps, self.control.limit_bps())
+            self._send(2 * pictures_bps if self.control.copies else pictures_bps)
 
     def mean_bps(self) -> float:
         return sum(self.sent_bps) / len(self.sent_bps)
@@ -189,13 +190,14 @@ def test_a_receiver_that_floods_or_to_which_nothing_is_sent_fills_no_memory() ->
     assert grown_bytes < 300_000
 
 
-def _lossy(round_trip_s: float, loss: float, seconds: float = 10.0) -> tuple[RateControl, float]:
-    control, now_s = RateControl(), 0.0
-    for step in range(int(seconds / 0.25)):
-        now_s = 0.25 * step
-        control.on_sent(25_000, now_s)
-        control.on_report(ReceiverReport(int(loss * 50 * step), 50 * step, round_trip_s), now_s)
-    return control, now_s
+def _lossy(round_trip_s: float, loss: float, lossless_s: float = 0.0) -> RateControl:
+    """Ten seconds with losses, and then some without."""
+    control, lost = RateControl(), 0
+    for step in range(int((10.0 + lossless_s) / 0.25)):
+        lost = int(loss * 50 * min(step, 40))
+        control.on_sent(25_000, 0.25 * step)
+        control.on_report(ReceiverReport(lost, 50 * step, round_trip_s), 0.25 * step)
+    return control
 
 
 @pytest.mark.parametrize(
@@ -205,13 +207,23 @@ def _lossy(round_trip_s: float, loss: float, seconds: float = 10.0) -> tuple[Rat
 def test_copies_are_for_a_far_receiver_that_loses_a_little(
     round_trip_s: float, loss: float, copies: bool
 ) -> None:
-    control, now_s = _lossy(round_trip_s, loss)
-    assert control.wants_copies(now_s) is copies
+    assert _lossy(round_trip_s, loss).copies is copies
 
 
-def test_copies_end_half_a_minute_after_the_last_loss() -> None:
-    control, now_s = _lossy(0.3, 0.01)
-    assert [control.wants_copies(now_s + after_s) for after_s in (25.0, 31.0)] == [True, False]
+@pytest.mark.parametrize(("lossless_s", "copies"), [(25.0, True), (32.0, False)])
+def test_copies_end_half_a_minute_after_the_last_loss(lossless_s: float, copies: bool) -> None:
+    assert _lossy(0.3, 0.01, lossless_s).copies is copies
+
+
+def test_a_link_that_is_too_thin_for_copies_gets_coarser_pictures_instead_of_none() -> None:
+    link = Link(1_500_000, 0.3, estimates=True, loss=0.01)
+    link.run(30, need_bps=2_000_000)
+    link.run(30, need_bps=2_000_000)
+    assert link.control.copies
+    assert link.mean_bps() < 1_500_000  # copies included
+    thinner = Link(400_000, 0.3, estimates=True, loss=0.01)
+    thinner.run(60, need_bps=2_000_000)
+    assert not thinner.control.copies
 
 
 def test_a_lost_report_changes_nothing() -> None:

@@ -41,6 +41,7 @@ _FIRST_PATIENCE_S, _LONGEST_PATIENCE_S = 10.0, 160.0
 _FAR_S = 0.1  # a round trip that is too long to wait for what was lost
 _LOSSLESS_S = 30.0
 _MOST_LOSS_TO_COPY = 0.05
+_LEAST_TO_COPY_BPS = 800_000
 
 
 @dataclass(frozen=True)
@@ -64,6 +65,7 @@ class RateControl:
         self._round_trips: deque[tuple[float, float]] = deque(maxlen=_MOST_KEPT)
         self._loss = 0.0
         self._lost_s = -math.inf
+        self._wants_copies = False
         self._lowered_s = -math.inf
         self._judged_s = -math.inf
         self._tries = False  # more than was estimated
@@ -71,16 +73,16 @@ class RateControl:
 
     def limit_bps(self) -> float:
         """Return how many bits a second of pictures may be sent; infinity without a limit."""
-        return self._limit_bps
+        return self._limit_bps / 2 if self.copies else self._limit_bps
 
-    def wants_copies(self, now_s: float) -> bool:
-        """Tell whether each packet is worth sending twice.
+    @property
+    def copies(self) -> bool:
+        """Whether each packet is worth sending twice.
 
-        It is where packets were lost lately, though the link is not full, and asking for them again takes long.
+        It is where packets were lost lately, asking for them again takes long, and half of what the link carries is
+        enough: a picture that is coarser is better than one that stands still.
         """
-        far = self._quickest_s(_BASE_S, now_s) > _FAR_S
-        lossy = now_s - self._lost_s < _LOSSLESS_S and self._loss < _MOST_LOSS_TO_COPY
-        return far and lossy and math.isinf(self._limit_bps)
+        return self._wants_copies and self._limit_bps >= _LEAST_TO_COPY_BPS
 
     def on_sent(self, size_bytes: int, now_s: float) -> None:
         """Take that so much was sent, copies included."""
@@ -100,6 +102,9 @@ class RateControl:
             self._round_trips.append((now_s, report.round_trip_s))
         while self._round_trips and now_s - self._round_trips[0][0] > _BASE_S:
             self._round_trips.popleft()
+        far = self._quickest_s(_BASE_S, now_s) > _FAR_S
+        lossy = now_s - self._lost_s < _LOSSLESS_S and self._loss < _MOST_LOSS_TO_COPY
+        self._wants_copies = far and lossy
         self._judge(now_s)
 
     def _take_loss(self, report: ReceiverReport, now_s: float) -> None:

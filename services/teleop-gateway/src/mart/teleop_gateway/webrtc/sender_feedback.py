@@ -25,7 +25,7 @@ class SenderFeedback:
     def __init__(self, sender: RTCRtpSender, on_limit: Callable[[], None]) -> None:
         self._sender, self._on_limit = sender, on_limit
         self._rate = RateControl()
-        self._copies = False
+        self._closed = False
         self._sending: set[asyncio.Task[None]] = set()
         on_feedback(sender, self._on_report, self._on_estimate)
         on_packet_sent(sender, self._on_sent)
@@ -37,14 +37,12 @@ class SenderFeedback:
 
     def close(self) -> None:
         """Send no copies any more."""
-        self._copies = False
+        self._closed = True
         for task in self._sending:
             task.cancel()
 
     def _on_report(self, report: ReceiverReport) -> None:
-        now_s = clock.monotonic_s()
-        self._rate.on_report(report, now_s)
-        self._copies = self._rate.wants_copies(now_s)
+        self._rate.on_report(report, clock.monotonic_s())
         self._on_limit()
 
     def _on_estimate(self, bitrate_bps: int) -> None:
@@ -52,8 +50,8 @@ class SenderFeedback:
         self._on_limit()
 
     def _on_sent(self, sequence_number: int, size_bytes: int) -> None:
-        copies = 1 if self._copies else 0
-        self._rate.on_sent((1 + copies) * size_bytes, clock.monotonic_s())
+        copies = self._rate.copies and not self._closed
+        self._rate.on_sent((2 if copies else 1) * size_bytes, clock.monotonic_s())
         if copies:
             task = asyncio.ensure_future(self._copy(sequence_number))
             self._sending.add(task)
