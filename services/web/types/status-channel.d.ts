@@ -38,6 +38,7 @@ declare namespace StatusChannel {
     type: "pong";
     t_us: number;
     gateway_ns: number;
+    picture_kbit_s?: number;
   }
 
   interface Replaced {

@@ -170,4 +170,5 @@ def test_a_ping_comes_back_as_it_was_sent() -> None:
     ping = status_channel.parse(status_channel.ping(123456.75))
     assert isinstance(ping, status_channel.PingMessage)
     assert json.loads(status_channel.pong(ping, 42)) == {"type": "pong", "t_us": 123456.75, "gateway_ns": 42}
+    assert json.loads(status_channel.pong(ping, 42, 351_400.0))["picture_kbit_s"] == 351
     assert status_channel.parse(status_channel.clock_offset(-5)) == status_channel.ClockMessage(-5)

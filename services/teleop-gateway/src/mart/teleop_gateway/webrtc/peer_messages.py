@@ -81,7 +81,7 @@ class PeerMessages:
             return
         match message:
             case status_channel.PingMessage():
-                peer.send_status(status_channel.pong(message, clock.wall_ns()))
+                peer.send_status(status_channel.pong(message, clock.wall_ns(), peer.limit_bps))
             case status_channel.ClockMessage(offset_ns):
                 peer.clock_offset_ns = offset_ns
             case status_channel.SeenMessage(tick, t_us) if peer.clock_offset_ns is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -99,9 +100,10 @@ def parse(text: str | bytes) -> PeerMessage:
     )
 
 
-def pong(ping: PingMessage, gateway_ns: int) -> str:
-    """Return the answer to a ping."""
-    return _text({"type": "pong", "t_us": ping.t_us, "gateway_ns": gateway_ns})
+def pong(ping: PingMessage, gateway_ns: int, limit_bps: float = math.inf) -> str:
+    """Return the answer to a ping, with how many bits a second of pictures the peer's link carries, where it limits."""
+    limit = {} if math.isinf(limit_bps) else {"picture_kbit_s": round(limit_bps * 1e-3)}
+    return _text({"type": "pong", "t_us": ping.t_us, "gateway_ns": gateway_ns, **limit})
 
 
 def replaced() -> str:

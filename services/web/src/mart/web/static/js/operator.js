@@ -181,7 +181,7 @@ function render() {
   statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches });
   const told = isTold();
   const still = displayed.standStill(status?.tick ?? 0, performance.now());
-  showHealth({ told, live: link.state === LinkState.LIVE, still, status, room, drawn }, video);
+  showHealth({ told, live: link.state === LinkState.LIVE, still, status, room, drawn, link }, video);
   stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());

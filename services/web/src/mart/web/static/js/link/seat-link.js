@@ -42,7 +42,7 @@ export const LinkState = Object.freeze({
 
 /**
  * Keeps a page connected to a seat. `problem`: why it does not connect, in words; `epoch`, `role`: whose seat it is and
- * what one may do there.
+ * what one may do there; `pictureKbitS`: what its picture is limited to, 0 without a limit.
  */
 export class SeatLink {
   /** @type {State} */
@@ -51,6 +51,7 @@ export class SeatLink {
   epoch = 0;
   /** @type {Api.PeerRole | ""} */
   role = "";
+  pictureKbitS = 0; // that the network carries, where that is less than the picture takes
   #options;
   /** @type {Peer | null} */
   #peer = null;
@@ -111,6 +112,7 @@ export class SeatLink {
     this.#drop();
     const attempt = this.#attempt;
     this.#clock = new ClockOffset();
+    this.pictureKbitS = 0;
     this.#setState(LinkState.CONNECTING);
     this.#watched = true;
     this.#patience.begin(performance.now());
@@ -163,6 +165,7 @@ export class SeatLink {
     this.#retryMs = FIRST_RETRY_MS;
     this.#setState(LinkState.LIVE);
     if (message.type === "pong") {
+      this.pictureKbitS = message.picture_kbit_s ?? 0;
       this.send({ type: "clock", offset_ns: Math.round(this.#clock.pong(message, nowUs())) });
     } else if (message.type === "tick") {
       this.#options.onStatus(message);
