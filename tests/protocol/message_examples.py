@@ -170,6 +170,9 @@ def _one_of_each(kind: type[Message], values: dict[str, object]) -> dict[str, ob
 
 def _field_values(field: Any) -> st.SearchStrategy[object]:
     values: st.SearchStrategy[object]
+    if field.message_type is not None and field.message_type.GetOptions().map_entry:
+        key, value = (_field_values(part) for part in field.message_type.fields)
+        return st.dictionaries(key, value, max_size=3)
     if field.cpp_type == FieldDescriptor.CPPTYPE_MESSAGE:
         values = st.deferred(lambda: arbitrary(GetMessageClass(field.message_type)))
     elif field.cpp_type == FieldDescriptor.CPPTYPE_ENUM:

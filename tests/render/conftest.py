@@ -13,7 +13,7 @@ TWO_BALLS = """
     <camera name="front" pos="0 -2 0" euler="90 0 0"/>
     <camera name="above" pos="0 0 3"/>
     <geom type="sphere" size="0.2" pos="0.3 0 0.4" rgba="1 0 0 1"/>
-    <body pos="0.3 0 -0.4">
+    <body name="ball" pos="0.3 0 -0.4">
       <joint name="slide" type="slide" axis="1 0 0"/>
       <geom type="sphere" size="0.2" rgba="0 1 0 1"/>
     </body>

@@ -55,3 +55,32 @@ def test_on_the_bare_table_spots_stay_where_the_state_has_them() -> None:
     world.reset(3)
     heights = spots_m(world.model, world.integration_state())
     assert heights == pytest.approx(dict.fromkeys(heights, SPOT_M))
+
+
+@pytest.mark.parametrize("task", ["two_arm_drink_tray_lifting", "two_arm_pick_place_handover"])
+def test_a_plumb_line_goes_from_every_tool_down_to_its_spot(task: str) -> None:
+    world = World.build(task)
+    world.reset(3)
+    model, data = world.model, world.data
+    scene, shadows = mujoco.MjvScene(model, maxgeom=10), DropShadows(model)
+    world.integration_state()  # puts the spots under the tools
+    mujoco.mj_kinematics(model, data)
+    shadows.lift(data)
+    shadows.add_plumb_lines(scene, data)
+    lines = [scene.geoms[number] for number in range(scene.ngeom)]
+    assert len(lines) == len(world.arms)
+    for line, arm in zip(lines, world.arms, strict=True):
+        tool, spot = data.site(f"{arm}/tool").xpos, data.geom_xpos[model.body(f"{arm}/shadow").geomadr[0]]
+        ends = line.pos[2] + np.array([-1, 1]) * line.size[2]
+        assert ends == pytest.approx([spot[2], tool[2]], abs=1e-5)
+        assert line.pos[:2] == pytest.approx(tool[:2], abs=1e-5)
+
+
+def test_a_tool_that_is_at_its_spot_has_no_line(handover: World) -> None:
+    data = handover.data
+    scene, shadows = mujoco.MjvScene(handover.model, maxgeom=10), DropShadows(handover.model)
+    for arm in handover.arms:
+        spot = handover.model.body(f"{arm}/shadow").geomadr[0]
+        data.geom_xpos[spot] = data.site(f"{arm}/tool").xpos
+    shadows.add_plumb_lines(scene, data)
+    assert scene.ngeom == 0

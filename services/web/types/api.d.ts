@@ -56,6 +56,7 @@ declare namespace Api {
     mine: boolean;
     policy: string;
     relieved: string;
+    kept_s: number;
   }
 
   interface Waiting {
@@ -80,6 +81,7 @@ declare namespace Api {
   interface Subtask {
     name: string;
     title: string;
+    arms: string[];
     done: boolean;
   }
 
@@ -115,12 +117,15 @@ declare namespace Api {
     instruction: string;
     time_limit_s: number | null;
     stale: boolean;
+    slow: boolean;
     control_hz: number;
     tick: number;
     real_time_factor: number;
     barrier: Messages.BarrierPhase;
     waiting_for: Waiting[];
     seats: Seat[];
+    /** By arm. */
+    to_do: Record<string, string>;
     episode: RoomEpisode;
     progress: { subtasks: Subtask[]; success: boolean; failed: boolean };
     episodes_saved: number;

@@ -109,12 +109,6 @@ def test_an_open_clutch_moves_nothing(run: Run) -> None:
     assert (hand["position"], hand["quaternion"]) == ([0, 0, 0], [1, 0, 0, 0])
 
 
-def test_held_keys_add_up_to_a_direction(run: Run) -> None:
-    ask = "({ directionOf }, held) => directionOf(new Set(held))"
-    assert run("drive/keys.js", ask, ["KeyW", "KeyA", "KeyQ"]) == {"move": [-1, 1, -1], "turn": [0, 0, 0]}
-    assert run("drive/keys.js", ask, ["KeyW", "KeyS", "Space"]) == {"move": [0, 0, 0], "turn": [0, 0, 0]}
-
-
 @pytest.mark.parametrize(
     ("angles", "up"),
     [([0, 90, 0], [0, 1, 0]), ([123, 90, 0], [0, 1, 0]), ([0, 0, 0], [0, 0, -1])],

@@ -122,7 +122,6 @@ def test_an_outcome_takes_two_presses_and_a_moving_hand_none(browser: Browser, p
         expect(page.locator("#clutch")).to_contain_text("Hold space")
         expect(label).to_have_text("Recording")
         page.locator("#state-label").click()
-        page.wait_for_timeout(600)  # the time after which letters command again is what is tested
         page.keyboard.press("r")
         expect(page.get_by_role("button", name="Press again: Discard")).to_be_visible()
         expect(label).to_have_text("Recording")
@@ -134,6 +133,18 @@ def test_an_outcome_takes_two_presses_and_a_moving_hand_none(browser: Browser, p
         expect(page.locator("#state-detail")).to_contain_text("Saved and verified")
 
 
+def test_q_twice_right_after_driving_leaves_the_seat(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        page.keyboard.down("Space")
+        page.keyboard.down("KeyQ")
+        expect(page.locator("#clutch")).to_have_text("Moving")
+        page.keyboard.up("KeyQ")
+        page.keyboard.up("Space")
+        page.keyboard.press("q")
+        page.keyboard.press("q")
+        expect(page.locator("#rooms-section")).to_be_visible()
+
+
 def test_what_was_looked_at_gives_space_back_to_the_arm(browser: Browser, platform: Platform) -> None:
     with visit(browser, platform) as ana, driving(ana) as page:
         for _ in range(2):
@@ -142,6 +153,22 @@ def test_what_was_looked_at_gives_space_back_to_the_arm(browser: Browser, platfo
         expect(page.locator("#clutch")).to_have_text("Moving")
         page.keyboard.up("Space")
         assert not page.locator("#health").evaluate("details => details.open")
+
+
+def test_the_strip_leaves_the_picture_and_can_be_made_smaller(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        now, strip = page.locator("#state-now"), page.locator(".strip")
+        expect(now).to_have_text("Grip the blue cube from above and lift it more than 10 cm.")
+        whole = strip.bounding_box()
+        assert whole is not None
+        assert whole["height"] < 0.2 * 900
+        page.get_by_role("button", name="Less").click()
+        page.reload()  # it stays as it was left
+        expect(page.get_by_role("button", name="More")).to_be_visible()
+        expect(now).to_be_visible()
+        less = strip.bounding_box()
+        assert less is not None
+        assert less["height"] < whole["height"] - 30
 
 
 def test_practice_is_reset_by_a_key(browser: Browser, platform: Platform) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from tests.browser.pages.conftest import Run
 
+CUBE = {"title": "The blue cube is up", "arms": ["arm0"], "done": False}
 LIVE = {"state": "live", "problem": "", "role": "browser"}
 
 
@@ -22,7 +23,7 @@ def room(*seats: dict[str, Any], phase: str = "practice", **episode: Any) -> dic
         "last_episode": None,
         "unrecorded": "",
         "plan": None,
-        "progress": {"subtasks": [{"title": "Cube 0 is up", "done": False}] * 3, "success": False},
+        "progress": {"subtasks": [CUBE] * 3, "success": False},
         "barrier": "running",
         "instruction": "Lift.",
         "time_limit_s": 15,
@@ -42,6 +43,7 @@ def view(run: Run, the_room: dict[str, Any] | None, **more: Any) -> dict[str, An
 
 MINE = seat(mine=True)
 RELIEVING = seat(mine=True, relieved="lifter")
+WAITING = {"arm": "arm1", "name": "Ben"}
 OUTCOMES = ["success", "failure", "discard"]
 READY = seat(mine=True, ready=True)
 SAVED = {"path": "episodes/x.mcap", "verified": True, "verdict": "", "size_bytes": 2_345_678}
@@ -103,6 +105,37 @@ def test_the_plan_is_told_and_stops_nobody(run: Run, plan: dict[str, int] | None
     shown = view(run, room(MINE) | {"plan": plan})
     assert shown["actions"] == ["ready", "reset"]
     assert ("you may go on" in shown["hint"]) == ("recorded" in words)
+
+
+def test_a_seat_that_is_kept_for_somebody_away_says_for_how_long(run: Run) -> None:
+    away = seat("arm1", name="Ben", kept_s=19.2)
+    assert view(run, room(READY, away))["detail"] == "Waiting for Ben (away, seat kept for 20 s more)."
+    assert view(run, room(seat(name="Ben", kept_s=19.2)))["detail"] == "Kept for Ben for 20 s more."
+    waiting_text = "({ waitingText }, room) => waitingText(room)"
+    paused = room(MINE, away) | {"barrier": "paused", "waiting_for": [WAITING | {"since_s": 10.8}]}
+    assert run("formatting.js", waiting_text, paused) == "Paused, waiting for Ben, at most 20 s more"
+    script = seat("arm1", operator="script", kept_s=0.0)
+    assert run("formatting.js", waiting_text, paused | {"seats": [MINE, script]}).endswith("arm, 10.8 s")
+    stalled = paused | {"barrier": "stalled", "waiting_for": [WAITING | {"since_s": 0.8}]}
+    assert run("formatting.js", waiting_text, stalled) == "Waiting for Ben, 0.8 s"
+
+
+def test_an_arm_that_a_step_needs_and_nobody_drives_is_named_before_recording(run: Run) -> None:
+    idle = room(MINE, seat("arm1", operator="hold", name=""))
+    assert view(run, idle)["warning"] == ""  # no step needs it
+    column = {"title": "Column 1 stands", "arms": ["arm1"], "done": False}
+    tabletop = {"title": "The tabletop is up", "arms": ["arm0", "arm1"], "done": False}
+    idle["progress"]["subtasks"] = [CUBE, column, tabletop]
+    words = (
+        "Nobody drives the orange arm; without it there is no success: “Column 1 stands”, “The tabletop is up”. "
+        "Use a script there, or let somebody take the seat."
+    )
+    shown = view(run, idle)
+    assert (shown["warning"], shown["actions"]) == (words, ["ready", "reset"])
+    assert view(run, idle | {"episode": idle["episode"] | {"phase": "countdown"}})["warning"] == words
+    assert view(run, idle | {"episode": idle["episode"] | {"phase": "recording"}})["warning"] == ""
+    idle["seats"][1]["operator"] = "script"
+    assert view(run, idle)["warning"] == ""
 
 
 def test_people_are_named_when_they_wait_for_each_other(run: Run) -> None:
@@ -169,6 +202,17 @@ def test_practice_says_the_goal_and_that_it_was_reached(run: Run) -> None:
     assert (reached["label"], reached["primary"]) == ("That is it!", ["ready"])
 
 
+def test_what_to_do_now_is_said_while_one_can_do_it(run: Run) -> None:
+    told = {"to_do": {"arm0": "Grip the lid.", "arm1": "Wait."}}
+    practice, recording = (view(run, room(MINE, phase=phase) | told) for phase in ("practice", "recording"))
+    assert (practice["now"], practice["goal"], practice["detail"]) == ("Grip the lid.", "Lift.", "")
+    assert (recording["now"], recording["goal"]) == ("Grip the lid.", "Lift.")
+    assert "Success is seen" in recording["hint"]
+    assert not view(run, room(READY, seat("arm1", name="Ben")) | told).get("now")
+    assert not view(run, after() | told).get("now")
+    assert not view(run, room(MINE) | told | {"barrier": "stopped"}).get("now")
+
+
 def test_a_lost_connection_is_said(run: Run) -> None:
     lost = view(run, room(MINE), link=LIVE | {"state": "silent"})
     assert lost["label"] == "Connection lost"
@@ -195,6 +239,9 @@ def test_a_newcomer_is_told_the_first_moves(run: Run) -> None:
         ({"delay": 900}, ("slow", "slow", "900 ms")),
         ({"factor": 0.9}, ("fair", "slow world", "60 ms")),
         ({"factor": 0.03}, ("slow", "slow world", "60 ms")),
+        ({"factor": 0.03, "delay": 900, "forMs": 900}, ("none", "starting", "900 ms")),
+        ({"forMs": 900}, ("good", "good", "60 ms")),
+        ({"factor": 0.03, "slow": False}, ("good", "good", "60 ms")),
         ({"factor": 0.03, "delay": 900}, ("slow", "slow world", "900 ms")),
         ({"factor": 0.9, "delay": 900}, ("slow", "slow", "900 ms")),
         ({"still": True}, ("slow", "picture stands still", "60 ms")),
@@ -207,14 +254,15 @@ def test_a_newcomer_is_told_the_first_moves(run: Run) -> None:
 def test_the_health_figure_is_the_worst_of_what_is_known_now(
     run: Run, changes: dict[str, Any], shown: tuple[str, str, str]
 ) -> None:
-    script = """({ healthOf }, { told, live, still, delay, factor, barrier }) => {
+    script = """({ healthOf }, { told, live, still, forMs, slow, delay, factor, barrier }) => {
       const status = { latency: { p50_ms: delay, p95_ms: delay, stages: {} } };
       const { grade, word, figure } = healthOf({
-        told, live, still, status, room: { barrier, real_time_factor: factor },
+        told, live, still, forMs, status, room: { barrier, slow, real_time_factor: factor },
       });
       return [grade, word, figure];
     }"""
-    known = {"told": True, "live": True, "still": False, "delay": 60, "factor": 1.0, "barrier": "running"}
+    known = {"told": True, "live": True, "still": False, "slow": True, "barrier": "running"}
+    known |= {"delay": 60, "factor": 1.0, "forMs": 9000}
     assert run("hud/health-figure.js", script, known | changes) == list(shown)
 
 

@@ -26,10 +26,26 @@ def test_a_row_is_sound(task: Task) -> None:
     for names in ([s.name for s in task.subtasks], [o.name for o in task.observations]):
         assert names
         assert len(set(names)) == len(names)
+    acting = {arm for subtask in task.subtasks for arm in subtask.arms or task.arm_names}
+    assert acting == set(task.arm_names)
     for observation in task.observations:
         assert observation.arms
         assert set(observation.arms) <= set(task.arm_names)
         assert all(size > 0 for size in observation.shape)
+
+
+@pytest.mark.parametrize("task", every_task(), ids=lambda task: f"{task.name}-{len(task.arms)}")
+def test_every_operator_is_told_in_a_line_what_to_do(task: Task) -> None:
+    lines = [line for subtask in task.subtasks for line in subtask.to_do.values()]
+    assert all(line.endswith(".") and len(line) < 150 for line in (*lines, task.afterwards))
+    for arm in task.arm_names:
+        done: set[str] = set()
+        while (step := task.next_step(arm, done)) is not None:
+            done.add(step.name)
+        assert done == {subtask.name for subtask in task.subtasks if arm in subtask.to_do} != set()
+    for subtask in task.subtasks:
+        assert subtask.to_do.keys() <= set(task.arm_names)
+        assert not re.search(r"[Aa]rm \d|[Cc]ube \d|[Cc]olumn \d", subtask.title)
 
 
 @pytest.mark.parametrize("task", every_task(), ids=lambda task: f"{task.name}-{len(task.arms)}")

@@ -265,3 +265,19 @@ def test_it_asks_to_be_called_when_something_may_change(barrier: Barrier) -> Non
     assert barrier.advance(0.0, gate_open=True).next_s == pytest.approx(0.25)
     assert barrier.advance(0.25, gate_open=True).next_s == pytest.approx(3.0)
     assert barrier.advance(3.0, gate_open=True).next_s == pytest.approx(30.0)
+
+
+def test_a_tick_says_that_the_world_had_stood_still_for_a_new_holder_or_a_pause(barrier: Barrier) -> None:
+    def resumes(now_s: float) -> bool:
+        give(barrier, "arm0", "arm1", sequence=round(now_s * 1000), at_s=now_s)
+        return fire(barrier, now_s).resumed
+
+    assert [resumes(now_s) for now_s in (1.0, 1.05, 3.0)] == [True, False, False]
+    barrier.advance(7.0, gate_open=True)  # paused
+    assert [resumes(now_s) for now_s in (8.0, 8.1)] == [True, False]
+    barrier.stop("arm0", 8.2)
+    barrier.advance(8.2, gate_open=True)
+    barrier.let_go()
+    assert [resumes(now_s) for now_s in (8.3, 8.4)] == [True, False]
+    barrier.seat("arm1", OPERATOR_SCRIPT, 1, 8.5)
+    assert [resumes(now_s) for now_s in (9.0, 9.1)] == [True, False]

@@ -43,10 +43,16 @@ class Said:
     accepted: dict[int, bool] = field(default_factory=dict)  # sequence → emergency stop
     used: int = -1
     void: int = -1  # given before the world was reset
+    restored: bool = False
 
     @property
     def newest(self) -> int:
         return max(self.accepted, default=-1)
+
+    @property
+    def away(self) -> bool:
+        given_up = self.operator in (OPERATOR_HUMAN, OPERATOR_POLICY)
+        return self.restored and given_up and not self.accepted
 
     @property
     def fresh(self) -> bool:
@@ -66,12 +72,14 @@ class BarrierMachine(RuleBasedStateMachine):
         return {arm: said for arm, said in self.said.items() if said.operator != OPERATOR_HOLD}
 
     @rule(
-        arm=arms, operator=st.sampled_from([OPERATOR_HOLD, OPERATOR_HUMAN, OPERATOR_POLICY, OPERATOR_SCRIPT])
+        arm=arms,
+        operator=st.sampled_from([OPERATOR_HOLD, OPERATOR_HUMAN, OPERATOR_POLICY, OPERATOR_SCRIPT]),
+        restored=st.booleans(),
     )
-    def change_seat(self, arm: str, operator: Operator) -> None:
+    def change_seat(self, arm: str, operator: Operator, restored: bool) -> None:
         epoch = self.said[arm].epoch + 1
-        self.said[arm] = Said(operator, epoch, self.now_s)
-        self.barrier.seat(arm, operator, epoch, self.now_s)
+        self.said[arm] = Said(operator, epoch, self.now_s, restored=restored)
+        self.barrier.seat(arm, operator, epoch, self.now_s, restored=restored)
 
     @rule(arm=arms, step=st.integers(-2, 3), epoch_off=st.sampled_from([0, 0, 0, -1, 1]), stop=st.booleans())
     def command(self, arm: str, step: int, epoch_off: int, stop: bool) -> None:
@@ -118,10 +126,14 @@ class BarrierMachine(RuleBasedStateMachine):
         for said in self.said.values():
             said.void = said.newest
 
-    @rule(elapsed_s=st.sampled_from([0.0, 0.004, 0.016, 0.05, 0.26, 1.0, 3.0, 31.0]), gate_open=st.booleans())
-    def time_passes(self, elapsed_s: float, gate_open: bool) -> None:
+    @rule(
+        elapsed_s=st.sampled_from([0.0, 0.004, 0.016, 0.05, 0.26, 1.0, 3.0, 31.0]),
+        gate_open=st.booleans(),
+        awaits_away=st.booleans(),
+    )
+    def time_passes(self, elapsed_s: float, gate_open: bool, awaits_away: bool) -> None:
         self.now_s += elapsed_s
-        self._advance(gate_open)
+        self._advance(gate_open, awaits_away)
 
     @rule()
     def follow_the_advice(self) -> None:
@@ -130,13 +142,14 @@ class BarrierMachine(RuleBasedStateMachine):
         if next_s != float("inf"):
             assert next_s >= self.now_s
             self.now_s = next_s
-            self._advance(gate_open=True)
+            self._advance(gate_open=True, awaits_away=True)
 
-    def _advance(self, gate_open: bool) -> None:
-        decision = self.barrier.advance(self.now_s, gate_open)
-        driven = self.driven()
+    def _advance(self, gate_open: bool, awaits_away: bool) -> None:
+        decision = self.barrier.advance(self.now_s, gate_open, awaits_away=awaits_away)
+        driven = {arm: said for arm, said in self.driven().items() if awaits_away or not said.away}
         silence_s = {arm: self.now_s - said.heard_s for arm, said in driven.items()}
         longest_s = max(silence_s.values(), default=0.0)
+        self._check_kept(set(decision.silent))
 
         expected = BARRIER_PHASE_RUNNING
         if self.stopped is not None:
@@ -148,11 +161,6 @@ class BarrierMachine(RuleBasedStateMachine):
         assert decision.phase == expected
         missing = {arm for arm, since_s in silence_s.items() if since_s >= STALLED_AFTER_S}
         assert {arm for arm, _ in decision.waiting_for} == (missing if self.stopped is None else self.stopped)
-        assert set(decision.silent) == {
-            arm
-            for arm, since_s in silence_s.items()
-            if since_s >= FREED_AFTER_S and driven[arm].operator != OPERATOR_SCRIPT
-        }
 
         may_fire = gate_open and expected in (BARRIER_PHASE_RUNNING, BARRIER_PHASE_STALLED)
         complete = all(said.fresh for said in driven.values())
@@ -169,6 +177,20 @@ class BarrierMachine(RuleBasedStateMachine):
         self.fired_s.append(self.now_s)
         for said in driven.values():
             said.used = said.newest
+
+    def _check_kept(self, silent: set[str]) -> None:
+        """A seat is kept for 30 s from its holder's last word, whether anybody waits or not."""
+        silence_s = {
+            arm: self.now_s - said.heard_s
+            for arm, said in self.driven().items()
+            if said.operator != OPERATOR_SCRIPT
+        }
+        assert silent == {arm for arm, since_s in silence_s.items() if since_s >= FREED_AFTER_S}
+        for arm, said in self.said.items():
+            since_s = silence_s.get(arm, 0.0)
+            kept = said.away or since_s >= PAUSED_AFTER_S
+            expected_s = max(0.0, FREED_AFTER_S - since_s) if kept else 0.0
+            assert self.barrier.kept_s(arm, self.now_s) == expected_s
 
     def _pace_allows(self) -> bool:
         """A whole period after the last tick, no pace forbids the next one."""

@@ -158,6 +158,18 @@ def test_latecomers_hear_the_newest_state_again_while_nothing_ticks(harness: Roo
     assert harness.publisher.repeats == pytest.approx(1.0 / REPEAT_S, abs=1)
 
 
+def test_waiting_for_a_newcomer_or_after_a_pause_is_not_slowness(harness: RoomHarness) -> None:
+    harness.pass_time(5.0)
+    for silence_s in (1.5, 4.0):
+        harness.take("arm0")
+        harness.pass_time(silence_s)  # the page connects
+        assert harness.status().real_time_factor < 0.9
+        for _ in range(12):
+            harness.command("arm0")
+            harness.pass_time(PERIOD_S / 4)
+            assert harness.status().real_time_factor == pytest.approx(1.0)
+
+
 def test_status_comes_ten_times_a_second(harness: RoomHarness) -> None:
     harness.pass_time(2.0)
     assert len(harness.publisher.statuses) == pytest.approx(2.0 / STATUS_S, abs=2)

@@ -10,7 +10,7 @@ from mart.protocol.errors import Corrupt
 from mart.protocol.messages import OPERATOR_HUMAN, OPERATOR_POLICY, OPERATOR_SCRIPT
 from mart.sim.room import saved_room
 from mart.sim.room.saved_room import SavedRoom
-from mart.sim.room.seats import SeatTable
+from mart.sim.room.seats import NOBODY, SeatTable
 
 
 def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
@@ -24,6 +24,28 @@ def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
     saved_room.save(path, record)
     assert saved_room.load(path) == record
     assert record.holders() == list(seats)
+
+
+def test_another_task_frees_the_seats_under_epochs_that_nobody_has(tmp_path: Path) -> None:
+    path = tmp_path / "room-1.json"
+    seats = SeatTable(["arm0", "arm1"])
+    seats.claim("arm0", "h1", "Ana", OPERATOR_HUMAN)
+    seats.assign("arm1", OPERATOR_SCRIPT)
+    saved_room.save(path, saved_room.load_or_begin(path, "lift", None).with_seats(seats))
+    assert saved_room.load_or_begin(path, "lift", None).holders() == list(seats)
+    freed = saved_room.load_or_begin(path, "wipe", None).holders()
+    assert [(seat.arm, seat.epoch, seat.driver) for seat in freed] == [
+        ("arm0", seats["arm0"].epoch + 1, NOBODY),
+        ("arm1", seats["arm1"].epoch + 1, NOBODY),
+    ]
+
+
+def test_seats_of_a_record_that_names_no_task_stay(tmp_path: Path) -> None:
+    path = tmp_path / "room-1.json"
+    seat = '{"arm": "arm0", "operator": "human", "epoch": 2, "holder_id": "h1", "name": "Ana"}'
+    path.write_text(f'{{"seed": 1, "seats": [{seat}]}}')  # of 0.2 and older
+    record = saved_room.load_or_begin(path, "lift", None)
+    assert (record.task, [one.name for one in record.holders()]) == ("lift", ["Ana"])
 
 
 def test_a_plan_counts_from_when_it_was_made() -> None:

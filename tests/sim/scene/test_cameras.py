@@ -40,6 +40,12 @@ def drawing(model: mujoco.MjModel) -> Iterator[mujoco.MjrContext]:
 
 def who_is_where(world: World, viewpoint: str, context: mujoco.MjrContext) -> NDArray[np.intp]:
     """The body that each pixel shows, shape (240, 320); -1 where there is nothing."""
+    geoms = what_is_where(world, viewpoint, context)
+    return np.where(geoms >= 0, world.model.geom_bodyid[geoms], -1)
+
+
+def what_is_where(world: World, viewpoint: str, context: mujoco.MjrContext) -> NDArray[np.intp]:
+    """The geom that each pixel shows, shape (240, 320); -1 where there is nothing."""
     view, scene = mujoco.MjvCamera(), mujoco.MjvScene(world.model, maxgeom=2000)
     view.type, view.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, world.model.camera(viewpoint).id
     mujoco.mj_camlight(world.model, world.data)
@@ -52,10 +58,10 @@ def who_is_where(world: World, viewpoint: str, context: mujoco.MjrContext) -> ND
     colors = np.empty((HEIGHT, WIDTH, 3), np.uint8)
     mujoco.mjr_readPixels(colors, None, mujoco.MjrRect(0, 0, WIDTH, HEIGHT), context)
     segment = colors.astype(np.int64) @ (1, 256, 65536) - 1
-    bodies = np.full(scene.ngeom + 1, -1)
+    geoms = np.full(scene.ngeom + 1, -1)
     for geom in scene.geoms[: scene.ngeom]:
-        bodies[geom.segid] = world.model.geom_bodyid[geom.objid]
-    return bodies[segment]
+        geoms[geom.segid] = geom.objid
+    return geoms[segment]
 
 
 def pixels_of(world: World, seen: NDArray[np.intp], body: str) -> int:
@@ -75,6 +81,38 @@ def test_everybody_sees_every_hand(world: World) -> None:
         for arm in world.arms:
             assert pixels_of(world, shared, f"{arm}/hand") > 100, arm
             assert pixels_of(world, who_is_where(world, arm, context), f"{arm}/hand") > 400, arm
+
+
+_OWN = (("arm0", "0"), ("arm1", "1"))
+
+
+@pytest.mark.parametrize(
+    ("task", "things"),
+    [
+        ("two_arm_pick_place_handover", [("arm0", "lid_knob"), ("arm1", "trash")]),
+        ("two_arm_drink_tray_lifting", [(arm, f"handle{own}") for arm, own in _OWN]),
+        (
+            "three_arm_lift_wiping",
+            [
+                (arm, thing)
+                for arm, own in _OWN
+                for thing in (f"handle{own}", *(f"drink{i}" for i in range(4)))
+            ],
+        ),
+    ],
+)
+def test_where_an_episode_begins_no_hand_hides_what_it_is_for(
+    task: str, things: list[tuple[str, str]]
+) -> None:
+    world = World.build(task)
+    with drawing(world.model) as context:
+        for seed in range(3):
+            world.reset(seed)
+            seen = {arm: what_is_where(world, arm, context) for arm, _ in things}
+            for arm, thing in things:
+                named = mujoco.mj_name2id(world.model, mujoco.mjtObj.mjOBJ_GEOM, thing)
+                geom = named if named >= 0 else world.model.body(thing).geomadr[0]
+                assert (seen[arm] == geom).sum() > 90, (seed, arm, thing)
 
 
 def arms_at(*azimuths_deg: float) -> list[Arm]:

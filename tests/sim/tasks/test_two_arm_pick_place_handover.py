@@ -95,6 +95,29 @@ def test_from_hand_to_hand_is_a_handover(world: World) -> None:
     assert drive(world, both, 40).subtasks["hammer_handed_over"]  # once done, it is done
 
 
+def test_each_operator_is_told_what_to_do_while_both_hold_it(world: World) -> None:
+    both = grip_in_the_air(world, ("arm0", "arm1"))
+    drive(world, both, 1, arm0=1.0, arm1=1.0)
+    assert world.to_do("arm0") == "Your partner has it: let go now."
+    drive(world, both, 12, arm1=1.0)
+    assert world.to_do("arm0") == world.task.afterwards
+    assert "trash" in world.to_do("arm1")
+
+
+def test_who_holds_it_at_the_partners_end_is_told(world: World) -> None:
+    world.reset(0)
+    put_lid_away(world)
+    assert "close to its head" in world.to_do("arm0")
+    targets = tools(world)
+    put(world, "hammer", (world.data.site("arm0/tool").xpos - (0.06, 0.0, 0.0)).tolist())
+    world.model.opt.gravity[:] = 0
+    try:
+        drive(world, targets, 12, arm0=1.0)
+    finally:
+        world.model.opt.gravity[2] = -9.81
+    assert world.to_do("arm0").startswith("Lay the hammer down")
+
+
 def test_from_hand_to_hand_the_other_way_is_none(world: World) -> None:
     both = grip_in_the_air(world, ("arm0", "arm1"))
     assert not drive(world, both, 12, arm0=1.0).subtasks["hammer_handed_over"]

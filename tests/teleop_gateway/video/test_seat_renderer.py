@@ -11,11 +11,17 @@ import mujoco
 import numpy as np
 import pytest
 
-from mart.protocol.messages import Model
+from mart.protocol.messages import Model, State
 from mart.sim.world.world import World
 from mart.teleop_gateway.video import tick_code
 from mart.teleop_gateway.video.quality import FAST, FULL, QUALITIES, Quality
-from mart.teleop_gateway.video.seat_renderer import SeatRenderer, camera_azimuth_rad, load_room_model
+from mart.teleop_gateway.video.seat_renderer import (
+    SeatRenderer,
+    camera_azimuth_rad,
+    ghosts_for,
+    load_room_model,
+    task_of,
+)
 
 
 @pytest.fixture(scope="module")
@@ -109,3 +115,17 @@ def test_detailed_meshes_show_the_same_world(world: World) -> None:
     with contextlib.closing(SeatRenderer(load_room_model(message, FULL), "front", FULL)) as renderer:
         renderer.draw(world.integration_state(), 1, picture)
     assert picture[: FULL.view_height_px].std() > 10
+
+
+def test_where_to_hold_the_hammer_is_shown_while_it_is_the_step() -> None:
+    room = Model(task="two_arm_pick_place_handover", arms=["arm0", "arm1"])
+    state = State()
+    for name in ("lid_removed", "hammer_fetched", "trash_cleared", "hammer_handed_over", "hammer_placed"):
+        state.progress.subtasks.add(name=name, done=name in ("lid_removed", "hammer_fetched"))
+    ghost = ghosts_for(task_of(room), "arm0")(state)
+    assert ghost is not None
+    assert ghost.body == "hammer"
+    assert ghosts_for(task_of(room), "arm1")(state) is None  # who still has to clear the trash
+    state.progress.subtasks[3].done = True
+    assert ghosts_for(task_of(room), "arm0")(state) is None
+    assert ghosts_for(task_of(Model(task="juggling", arms=["arm0"])), "arm0")(state) is None

@@ -72,7 +72,7 @@ class Room:
             pages=PageDrawing(asyncio.get_running_loop(), lambda _: None),
         )
 
-    def _make(self, *arguments: Any) -> StubView:
+    def _make(self, *arguments: Any, **_: object) -> StubView:
         view = StubView(*arguments)
         self.made.append(view)
         return view

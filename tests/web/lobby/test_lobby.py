@@ -29,10 +29,11 @@ def status(room: str = "room-1", task: str = "two_arm_multi_cube_lifting") -> Ro
     told.barrier = BARRIER_PHASE_STALLED
     tag = holder_tag("1", "arm0", 2, "secret")
     told.seats.append(Seat(arm="arm0", operator=OPERATOR_HUMAN, epoch=2, holder_tag=tag, name="Ana"))
-    told.seats.append(Seat(arm="arm1", operator=OPERATOR_SCRIPT, epoch=3))
+    told.seats.append(Seat(arm="arm1", operator=OPERATOR_SCRIPT, epoch=3, kept_s=12.5))
     told.waiting_for.add(arm="arm0", since_s=0.8)
     told.episode.phase = EPISODE_PHASE_RECORDING
     told.progress.subtasks.add(name="lift_cube0", done=True)
+    told.to_do["arm0"] = "Hold it."
     return told
 
 
@@ -56,11 +57,15 @@ def test_a_room_is_told_in_the_words_of_the_protocol() -> None:
     assert room["barrier"] == "stalled"
     assert room["waiting_for"] == [{"arm": "arm0", "name": "Ana", "since_s": 0.8}]
     assert room["episode"]["phase"] == "recording"
-    assert room["progress"]["subtasks"] == [{"name": "lift_cube0", "title": "Cube 0 is up", "done": True}]
+    assert room["to_do"] == {"arm0": "Hold it."}
+    assert room["progress"]["subtasks"] == [
+        {"name": "lift_cube0", "title": "The blue cube is up", "arms": ["arm0"], "done": True}
+    ]
     assert room["time_limit_s"] > 0
     assert [seat["operator"] for seat in room["seats"]] == ["human", "script"]
     assert [seat["mine"] for seat in room["seats"]] == [True, False]
     assert room["plan"] is None
+    assert [seat["kept_s"] for seat in room["seats"]] == [0.0, 12.5]
 
 
 def test_a_stranger_never_sees_a_holder_id() -> None:

@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, Operator, RoomStatus, Seat
+from mart.protocol.messages import (
+    BARRIER_PHASE_PAUSED,
+    BARRIER_PHASE_RUNNING,
+    BARRIER_PHASE_STALLED,
+    OPERATOR_HOLD,
+    OPERATOR_HUMAN,
+    BarrierPhase,
+    Operator,
+    RoomStatus,
+    Seat,
+)
 from mart.web.lobby.room_table import OVERTAKEN_WITHIN_S, RoomTable
 
 
@@ -53,3 +63,25 @@ def test_a_clock_that_was_set_back_costs_a_second() -> None:
     late_s = 1.01 + OVERTAKEN_WITHIN_S
     assert table.see(status(OPERATOR_HOLD, wall_ns=10), late_s)
     assert operator_in(table, late_s) == OPERATOR_HOLD
+
+
+def test_a_room_is_slow_once_it_has_been_for_two_seconds_while_the_world_ran() -> None:
+    table = alive()
+
+    def is_slow(now_s: float, factor: float, barrier: BarrierPhase = BARRIER_PHASE_RUNNING) -> bool:
+        told = RoomStatus(
+            room="room-1", tick=9, real_time_factor=factor, barrier=barrier, wall_ns=round(now_s * 1e9)
+        )
+        table.see(told, now_s)
+        return table.is_slow("room-1", now_s)
+
+    assert not is_slow(1.0, 0.5)
+    assert not is_slow(2.9, 0.5)
+    assert is_slow(3.0, 0.9)
+    assert not is_slow(3.1, 0.5, BARRIER_PHASE_STALLED)  # who is waited for is told instead
+    assert is_slow(3.2, 0.5)
+    assert not is_slow(3.3, 0.96)
+    assert not is_slow(4.0, 0.5)
+    assert not is_slow(5.5, 0.5, BARRIER_PHASE_PAUSED)
+    assert not is_slow(6.5, 0.5)
+    assert is_slow(8.5, 0.5)

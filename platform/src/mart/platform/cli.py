@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 _SKILLS = click.Choice(["expert", "average", "novice"])
 _TIME_LIMIT = click.FloatRange(0.0, 3600.0, min_open=True)
+_TASK_OPTION = click.option(
+    "--task", default=DEFAULT_TASK, show_default=True, help="Name of the task; `mart tasks` lists them."
+)
 _CONTROL_HZ_OPTION = click.option(
     "--control-hz",
     type=click.FloatRange(MIN_CONTROL_HZ, MAX_CONTROL_HZ),
@@ -34,7 +37,7 @@ _CONTROL_HZ_OPTION = click.option(
 
 
 @click.command()
-@click.option("--task", default=DEFAULT_TASK, show_default=True, help="Name of the task.")
+@_TASK_OPTION
 @click.option("--room", default="room-1", show_default=True, help="Id of the room.")
 @_CONTROL_HZ_OPTION
 @click.option(
@@ -119,7 +122,7 @@ def stop(as_json: bool) -> None:
 
 
 @click.command()
-@click.option("--task", default=DEFAULT_TASK, show_default=True, help="Name of the task.")
+@_TASK_OPTION
 @click.option("--episodes", default=3, show_default=True, type=click.IntRange(1, 1000))
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0))
 @_CONTROL_HZ_OPTION
@@ -142,7 +145,7 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
 
 
 @click.command()
-@click.option("--task", default=DEFAULT_TASK, show_default=True, help="Name of the task.")
+@_TASK_OPTION
 @click.option("--episodes", default=1, show_default=True, type=click.IntRange(1, 100_000))
 @click.option(
     "--operators",
@@ -203,6 +206,26 @@ def rooms(as_json: bool) -> None:
         found = open_rooms(bus)
     text = "\n".join(map(view.in_words, found)) or "No room is open. `make run` opens one."
     print_result({"rooms": [view.as_json(status) for status in found]}, text, as_json)
+
+
+@click.command()
+@json_option
+def tasks(as_json: bool) -> None:
+    """List the tasks: the names that --task takes, and how many arms each can have."""
+    from mart.protocol.tasks import arm_counts, get_task, task_names
+
+    found = [
+        {"name": name, "title": get_task(name).title, "arm_counts": list(arm_counts(name))}
+        for name in task_names()
+    ]
+    width = max(map(len, task_names()))
+    lines = [f"{name:<{width}}  {get_task(name).title}, {_arms(arm_counts(name))}" for name in task_names()]
+    print_result({"tasks": found}, "\n".join(lines), as_json)
+
+
+def _arms(counts: tuple[int, ...]) -> str:
+    *others, last = map(str, counts)
+    return f"{', '.join(others)} or {last} arms" if others else f"{last} arms"
 
 
 @click.command()

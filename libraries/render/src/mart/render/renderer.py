@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.errors import InvalidInput
+from mart.protocol.tasks import Ghost
 from mart.render.compiled_model import viewpoint_id
 from mart.render.drop_shadows import DropShadows
+from mart.render.ghosts import add_ghost
 from mart.render.gl_context import open_context
 
 Image = NDArray[np.uint8]
@@ -59,8 +61,8 @@ class Renderer:
         self._viewport = mujoco.MjrRect(0, 0, width_px, height_px)
         self._upside_down = np.empty((height_px, width_px, 3), np.uint8)
 
-    def draw(self, integration_state: bytes, out: Image | None = None) -> Image:
-        """Return the picture of this state: sRGB, uint8, shape (height, width, 3), top row first.
+    def draw(self, integration_state: bytes, out: Image | None = None, ghost: Ghost | None = None) -> Image:
+        """Return the picture of this state, with `ghost` in it: sRGB, uint8, shape (height, width, 3), top row first.
 
         `out`, of that shape, is filled and returned where it is given. The state is MuJoCo's mjSTATE_INTEGRATION as
         little-endian float64. Raises InvalidInput where it is not one of this model.
@@ -76,6 +78,9 @@ class Renderer:
             mujoco.mjtCatBit.mjCAT_ALL,
             self._scene,
         )
+        self._shadows.add_plumb_lines(self._scene, self._data)
+        if ghost is not None:
+            add_ghost(self._scene, self._model, ghost)
         mujoco.mjr_render(self._viewport, self._scene, self._context)
         mujoco.mjr_readPixels(self._upside_down, None, self._viewport, self._context)
         if out is None:

@@ -10,7 +10,8 @@ middle of the finger pads; its axes are the base's while the hand points straigh
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Container, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,7 @@ SHARED_VIEWPOINT = "front"
 # Okabe & Ito, "Color Universal Design" (2008): these stay apart for colour-blind people. The symbol says the same
 # without any colour.
 _ACCENTS = (("#0072B2", "circle"), ("#D55E00", "square"), ("#009E73", "triangle"), ("#CC79A7", "diamond"))
+_COLOR_NAMES = dict(zip((color for color, _ in _ACCENTS), ("blue", "orange", "green", "pink"), strict=True))
 MAX_ARMS = len(_ACCENTS)
 
 
@@ -35,6 +37,11 @@ class Arm:
     color: str
     symbol: str
 
+    @property
+    def color_name(self) -> str:
+        """What people call the colour."""
+        return _COLOR_NAMES[self.color]
+
     @classmethod
     def at(cls, index: int, x_m: float, y_m: float, yaw_rad: float) -> Arm:
         """Arm number `index`, its base level with the table top (world z = 0)."""
@@ -44,12 +51,32 @@ class Arm:
 
 
 @dataclass(frozen=True)
+class Ghost:
+    """A mark where a thing is to be held: live pictures show it there, yellow and see-through, over a plumb line.
+
+    body: its name in the scene's model. floor_z_m: how high the line ends, in the world.
+    """
+
+    body: str
+    pose_in_world: Pose
+    floor_z_m: float = 0.0
+
+
+@dataclass(frozen=True)
 class Subtask:
-    """A step on the way. `coordinated`: it takes more than one arm at the same time."""
+    """A step on the way. `coordinated`: it takes more than one arm at the same time.
+
+    arms: tuple[str, ...] = ()
+    to_do: Mapping[str, str] = field(default_factory=dict)
+    left out. ghost: what their pictures show meanwhile.
+    """
 
     name: str
     title: str
     coordinated: bool
+    arms: tuple[str, ...] = ()
+    to_do: Mapping[str, str] = field(default_factory=dict)
+    ghost: Ghost | None = None
 
 
 @dataclass(frozen=True)
@@ -141,6 +168,8 @@ class Task:
 
     The horizon is for people, who may take their time. A trial is what a session that collects under a clock allows:
     three to five times what a practised operator needs (decision 0012). None: as long as the horizon.
+
+    afterwards: what an operator is to do whose own subtasks are done, in one line, until the others' are.
     """
 
     name: str
@@ -152,6 +181,7 @@ class Task:
     horizon_ticks: int
     trial_ticks: int | None = None
     success_hold_ticks: int = 10
+    afterwards: str = ""
     limits: Limits = Limits()
     workspace: Workspace = Workspace()
 
@@ -187,6 +217,11 @@ class Task:
             if arm.name == name:
                 return arm
         raise NotFound.named("arm", name, self.arm_names)
+
+    def next_step(self, arm: str, done: Container[str]) -> Subtask | None:
+        """The first subtask that has something to do for this arm and is not among those done; None after the last."""
+        own = (subtask for subtask in self.subtasks if arm in subtask.to_do and subtask.name not in done)
+        return next(own, None)
 
     def observations_of(self, arm: str) -> tuple[Observation, ...]:
         """What this arm's operator sees, in the order of the joint observation."""

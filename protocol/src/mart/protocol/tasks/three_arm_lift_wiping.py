@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from mart.protocol.tasks.task import Arm, Observation, Subtask, Task, proprioception
-from mart.protocol.tasks.tray import tray_observations
+from mart.protocol.tasks.tray import CARRIERS, tray_observations
 
 NAME = "three_arm_lift_wiping"
 DEFAULT_ARMS = 3
@@ -21,6 +21,11 @@ SPOTS_M = tuple((x / 100, y / 100) for x in range(-10, 11, 4) for y in range(-6,
 
 # The carriers stand a little towards the rack, so that the tray is before them at both of its places.
 _CARRIER_X_M, _CARRIER_Y_M, _WIPER_Y_M = 0.72, -0.14, 0.62
+
+_CARRY = "Carry the tray together, level and slowly, onto the dark rack. Do not tip the drinks."
+_TAKE_SPONGE = (
+    "Grip the sponge by its green block and lift it; wait with it until the tray is out of the way."
+)
 
 
 def task(arms: int) -> Task:
@@ -38,10 +43,39 @@ def task(arms: int) -> Task:
         "Green takes the sponge and wipes away the dirt that was under it.",
         arms=placed,
         subtasks=(
-            Subtask("lift_tray", "The tray is up", coordinated=True),
-            Subtask("carry_tray", "The tray is aside", coordinated=True),
-            Subtask("wipe_table", "The table is clean", coordinated=False),
+            Subtask(
+                "lift_tray",
+                "The tray is up",
+                coordinated=True,
+                arms=CARRIERS,
+                to_do={
+                    **{
+                        arm.name: f"Come down onto the {arm.color_name} handle from straight above and grip it; when "
+                        "your partner holds the other one, lift slowly. Do not tip the drinks."
+                        for arm in placed
+                        if arm.name != WIPER
+                    },
+                    WIPER: _TAKE_SPONGE,
+                },
+            ),
+            Subtask(
+                "carry_tray",
+                "The tray is aside",
+                coordinated=True,
+                arms=CARRIERS,
+                to_do={**dict.fromkeys(CARRIERS, _CARRY), WIPER: _TAKE_SPONGE},
+            ),
+            Subtask(
+                "wipe_table",
+                "The table is clean",
+                coordinated=False,
+                arms=(WIPER,),
+                to_do={
+                    WIPER: "Press the sponge lightly onto the table and rub over the dirt until it is gone."
+                },
+            ),
         ),
+        afterwards="Hold still until the table is clean: the drinks must stay up.",
         observations=(
             *(o for name in names for o in proprioception(name)),
             *tray_observations(names),

@@ -24,7 +24,19 @@ def task(arms: int) -> Task:
         instruction="Each of you takes the handle in your arm's colour. Lift the tray together, level, more than 10 cm "
         "above the table, and hold it there.",
         arms=placed,
-        subtasks=(Subtask("lift_tray", "The tray is up", coordinated=True),),
+        subtasks=(
+            Subtask(
+                "lift_tray",
+                "The tray is up",
+                coordinated=True,
+                to_do={
+                    arm.name: f"Grip the {arm.color_name} handle; when your partner holds the other one, lift slowly, "
+                    "level, more than 10 cm."
+                    for arm in placed
+                },
+            ),
+        ),
+        afterwards="Hold the tray still and level.",
         observations=(*(o for name in names for o in proprioception(name)), *tray_observations(names)),
         horizon_ticks=1200,  # a minute: scripts need 5 s
         trial_ticks=340,

@@ -27,8 +27,16 @@ def task(arms: int) -> Task:
         instruction="Each of you picks up the cube in your arm's colour and holds it more than 10 cm above the table.",
         arms=placed,
         subtasks=tuple(
-            Subtask(f"lift_cube{i}", f"Cube {i} is up", coordinated=False) for i in range(len(placed))
+            Subtask(
+                f"lift_cube{i}",
+                f"The {arm.color_name} cube is up",
+                coordinated=False,
+                arms=(arm.name,),
+                to_do={arm.name: f"Grip the {arm.color_name} cube from above and lift it more than 10 cm."},
+            )
+            for i, arm in enumerate(placed)
         ),
+        afterwards="Hold the cube up until all of them are.",
         observations=tuple(o for arm in placed for o in (*proprioception(arm.name), *_cube(arm.name))),
         horizon_ticks=1200,  # a minute: scripts need 4 s, people at a keyboard half a minute
         trial_ticks=210,

@@ -26,11 +26,39 @@ def task(arms: int) -> Task:
         ),
         arms=placed,
         subtasks=(
-            Subtask("column0_seated", "Column 0 stands in its socket", coordinated=False),
-            Subtask("column1_seated", "Column 1 stands in its socket", coordinated=False),
-            Subtask("tabletop_lifted", "The tabletop is up", coordinated=True),
-            Subtask("tabletop_seated", "The tabletop is on both columns", coordinated=True),
+            *(
+                Subtask(
+                    f"column{i}_seated",
+                    f"The {arm.color_name} column stands in its socket",
+                    coordinated=False,
+                    arms=(arm.name,),
+                    to_do={
+                        arm.name: f"Grip the {arm.color_name} column by its round neck and stand it in the "
+                        f"{arm.color_name} socket."
+                    },
+                )
+                for i, arm in enumerate(placed)
+            ),
+            Subtask(
+                "tabletop_lifted",
+                "The tabletop is up",
+                coordinated=True,
+                to_do={
+                    arm.name: f"Grip the tabletop's {arm.color_name} knob; lift when your partner holds the other one."
+                    for arm in placed
+                },
+            ),
+            Subtask(
+                "tabletop_seated",
+                "The tabletop is on both columns",
+                coordinated=True,
+                to_do=dict.fromkeys(
+                    both,
+                    "Keep the tabletop level, bring it over the columns together and lower it onto them.",
+                ),
+            ),
         ),
+        afterwards="Let go and draw your hand up.",
         observations=(
             *(o for arm in placed for o in _of_one(arm.name)),
             *_pose("table_base", both),

@@ -20,7 +20,7 @@ def _given(**options: Any) -> dict[str, Any]:
 
 @click.command()
 @click.option("--room", help="Id of the room.  [default: room-1]")
-@click.option("--task", help="Name of the task.")
+@click.option("--task", help="Name of the task; `mart tasks` lists them.")
 @click.option("--control-hz", type=float, help="Ticks a second, at most.  [default: 20]")
 @click.option("--arms", type=int, help="How many arms, where the task can have several numbers.")
 @click.option("--pace", type=float, help="Real-time factor that the world may reach at most.  [default: 1]")

@@ -51,13 +51,23 @@ class PickAndPlace:
         """Whether the thing is not in the hand."""
         return now.gripper > _MISSED or apart_m(self._tool(now), now.pose_tool_in_base) > _LOST_M
 
-    def pick(self, obs: OperatorObservation, unless: Until = never, beside_m: float = 0.0) -> PlanStep:
-        """Try once, with the fingers `beside_m` beside the thing, which moves between them when they close."""
+    def pick(
+        self,
+        obs: OperatorObservation,
+        unless: Until = never,
+        beside_m: float = 0.0,
+        *,
+        moves: bool = False,
+    ) -> PlanStep:
+        """Try once, with the fingers `beside_m` beside the thing, which moves between them when they close.
+
+        unless, moves: see `plan.pick`.
+        """
 
         def grasp(now: OperatorObservation) -> Pose:
             return self._tool(now) @ at(0.0, beside_m, 0.0)
 
-        return (yield from pick(obs, self._human, grasp, unless=unless))
+        return (yield from pick(obs, self._human, grasp, unless=unless, moves=moves))
 
     def bring(
         self,

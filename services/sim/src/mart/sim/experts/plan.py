@@ -26,6 +26,7 @@ from mart.sim.experts.human_error import HumanErrorModel
 
 OPEN, CLOSED = 0.0, 1.0
 _CAREFUL = 0.6  # the pace of going down onto something
+_OVER_HAND_M = 0.06  # over what somebody holds out: as low as can be, for it may be high up or far away
 _PATIENCE_S = 2.5  # a tool that does not get where it should by then is standing on something
 
 
@@ -101,23 +102,34 @@ def pick(
     grasp: Callable[[OperatorObservation], Pose],
     over_m: float = 0.10,
     unless: Until = never,
+    *,
+    moves: bool = False,
 ) -> PlanStep:
     """Try once to grip something: over it, down onto it, close. Look afterwards whether it is in the hand.
 
     grasp: the tool's pose (base frame) that would grip it well; followed until the tool goes down, fixed from then on.
     unless: what makes the attempt pointless while it is under way.
+    moves: whether somebody holds it, who never stands quite still: it is followed until the fingers close.
     """
     miss = human.aims()
+    over_m, short_m = (_OVER_HAND_M, _OVER_HAND_M / 2) if moves else (over_m, 0.0)
     above = Pose(np.array([0.0, 0.0, human.varied(over_m)]), Pose.identity().quaternion_wxyz)
 
     def over(now: OperatorObservation) -> Waypoint:
         return Waypoint(above @ grasp(now) @ miss, OPEN)
 
-    obs = yield from go(obs, over, unless=unless)
+    obs = yield from go(obs, over, short_m=short_m, unless=unless)
     if unless(obs):
         return obs
     obs = yield from stay(obs, over(obs), human.settles_s())
     place = grasp(obs) @ miss
-    down = Waypoint(place, OPEN, _CAREFUL)
-    obs = yield from go(obs, lambda _: down, _PATIENCE_S, human.closes_before_m())
+
+    def down(now: OperatorObservation) -> Waypoint:
+        return Waypoint(grasp(now) @ miss if moves else place, OPEN, _CAREFUL)
+
+    obs = yield from go(obs, down, _PATIENCE_S, human.closes_before_m(), unless if moves else never)
+    if moves:
+        if unless(obs):
+            return obs
+        place = grasp(obs) @ miss
     return (yield from stay(obs, Waypoint(place, CLOSED), human.grips_s()))

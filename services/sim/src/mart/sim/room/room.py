@@ -74,7 +74,7 @@ class Room:
         self._seats.restore(record.holders())
         self._barrier = Barrier(world.arms, world.control_period_s / pace, now_s)
         for seat in self._seats:
-            self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
+            self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s, restored=True)
         self._age = CommandAge(world.control_hz)
         self._terms = terms
         self._time_limit_s = terms.time_limit_s or world.task.time_limit_s
@@ -131,7 +131,7 @@ class Room:
                 self._seat_changed(seat, now_s)
         except MartError as error:
             return RoomReply(error=error_message(error), status=self.status(now_s))
-        return RoomReply(status=self.status(now_s), seat=self._seat_message(seat))
+        return RoomReply(status=self.status(now_s), seat=self._seat_message(seat, now_s))
 
     def answer_episode(self, request: EpisodeRequest, now_s: float) -> RoomReply:
         """Do what an episode request asks; the reply holds the status, and an error where it was refused."""
@@ -156,7 +156,7 @@ class Room:
 
     def advance(self, now_s: float) -> float:
         """Do what is due; return the time at which to call again if nothing arrives before."""
-        decision = self._barrier.advance(now_s, self._episode.world_runs)
+        decision = self._barrier.advance(now_s, self._episode.world_runs, awaits_away=not self.in_practice)
         if decision.inputs is not None:
             self._fire(decision.inputs, now_s)
         self._decision = decision
@@ -181,9 +181,10 @@ class Room:
             real_time_factor=self._ticker.real_time_factor(now_s) if self._episode.world_runs else 1.0,
             barrier=self._decision.phase,
             waiting_for=room_messages.waiting(self._decision.waiting_for),
-            seats=[self._seat_message(seat) for seat in self._seats],
+            seats=[self._seat_message(seat, now_s) for seat in self._seats],
             episode=room_messages.episode(self._episode, self._world.control_period_s, now_s),
             progress=room_messages.progress(progress) if progress is not None else None,
+            to_do=room_messages.to_do(self._world, progress) if progress is not None else None,
             episodes_saved=self._record.saved,
             episodes_good=self._record.good,
             wall_ns=clock.wall_ns(),
@@ -224,7 +225,7 @@ class Room:
 
     def _start(self, effect: BeginEpisode, now_s: float) -> None:
         self._remember(self._record.with_changes(episodes=effect.number))
-        seats = [self._seat_message(seat) for seat in self._seats]
+        seats = [self._seat_message(seat, now_s) for seat in self._seats]
         begun = room_messages.episode_started(effect, seats, self._world, self._terms, self._time_limit_s)
         self._tell(begun)
         self._tell_state(self._ticker.standing(self._seats, self._episode, now_s), now_s)
@@ -243,7 +244,7 @@ class Room:
     def _seat_changed(self, seat: SeatHolder, now_s: float) -> None:
         self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)
         self._remember(self._record.with_seats(self._seats))
-        self._tell(Event(seat_changed=self._seat_message(seat)))
+        self._tell(Event(seat_changed=self._seat_message(seat, now_s)))
         self._do(self._episode.seats_changed(self._seats, now_s), now_s)
         self._status_due_s = now_s
 
@@ -281,9 +282,10 @@ class Room:
             self._publisher.status(self.status(now_s))
             self._status_due_s = now_s + STATUS_S
 
-    def _seat_message(self, seat: SeatHolder) -> Seat:
+    def _seat_message(self, seat: SeatHolder, now_s: float) -> Seat:
         newest = self._barrier.newest(seat.arm) if seat.operator != OPERATOR_HOLD else None
-        return room_messages.seat(seat, self._episode.is_ready(seat.arm), newest, f"{self._boot_ns:x}")
+        ready, kept_s = self._episode.is_ready(seat.arm), self._barrier.kept_s(seat.arm, now_s)
+        return room_messages.seat(seat, ready, newest, f"{self._boot_ns:x}", kept_s)
 
     def _remember(self, record: SavedRoom) -> None:
         """Keep the record over a restart; a disk that is full must not stop the world."""

@@ -76,8 +76,17 @@ def progress(progress: TaskProgress) -> Fields:
     }
 
 
-def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None, salt: str) -> Seat:
-    """Return the message of a seat; `newest`: the newest command of its operator, `salt`: of its holder's tag."""
+def to_do(world: World, progress: TaskProgress) -> dict[str, str]:
+    """Return by arm what its operator is to do now, where the task says so."""
+    lines = {arm: world.to_do(arm, progress) for arm in world.arms}
+    return {arm: line for arm, line in lines.items() if line}
+
+
+def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None, salt: str, kept_s: float) -> Seat:
+    """Return the message of a seat.
+
+    newest: the newest command of its operator. salt: of its holder's tag. kept_s: see `Seat.kept_s`.
+    """
     return Seat(
         arm=holder.arm,
         operator=holder.operator,
@@ -88,6 +97,7 @@ def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None, salt: 
         engaged=newest is not None and newest.command.engaged,
         policy=holder.driver.policy,
         relieved=holder.relieved.called if holder.relieved else "",
+        kept_s=kept_s,
     )
 
 

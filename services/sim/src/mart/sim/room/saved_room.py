@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import secrets
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
@@ -20,6 +21,7 @@ from mart.sim.room.seats import Driver, SeatHolder
 
 _log = logging.getLogger(__name__)
 
+_SEED_BITS = 32
 _MAX_COUNTED = 256
 _MAX_AWAITED = 4  # after a restart
 
@@ -50,6 +52,12 @@ class SavedSeat(SavedDriver):
         """Return the seat that this stores."""
         return SeatHolder(
             self.arm, self.epoch, self.driver(), self.relieved.driver() if self.relieved else None
+        )
+
+    def freed(self) -> SavedSeat:
+        """Return the seat after its holder is gone."""
+        return SavedSeat(
+            arm=self.arm, epoch=self.epoch + 1, operator=OperatorKind.HOLD, holder_id="", name=""
         )
 
 
@@ -85,12 +93,14 @@ class CountedEpisode(BaseModel):
 class SavedRoom(BaseModel):
     """Store one room: `episodes` is the newest number; `saved` and `good` count what the recorder reported.
 
-    counted: the newest of them, so that what is told again counts once.
+    counted: the newest of them, so that what is told again counts once. task: that the seats are for, empty in records
+    of 0.2 and older.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     seed: int = Field(ge=0)
+    task: str = ""
     episodes: int = Field(0, ge=0, le=MAX_NUMBER)
     saved: int = Field(0, ge=0, le=MAX_NUMBER)
     good: int = Field(0, ge=0, le=MAX_NUMBER)
@@ -98,6 +108,11 @@ class SavedRoom(BaseModel):
     seats: tuple[SavedSeat, ...] = ()
     plan: SavedPlan | None = None
     stop: SavedStop | None = None
+
+    def for_task(self, task: str) -> SavedRoom:
+        """Return it for a world of this task: seats of another task are free, under epochs that nobody has yet."""
+        seats = self.seats if self.task in ("", task) else tuple(seat.freed() for seat in self.seats)
+        return self.with_changes(task=task, seats=seats)
 
     def planned(self, task: str, episodes: int | None) -> SavedRoom:
         """Return it with so many good episodes of this task wanted: the same plan goes on, another begins anew."""
@@ -173,6 +188,12 @@ def load_or_put_aside(path: Path) -> SavedRoom | None:
         path.rename(aside)
         _log.error("%s It is kept as %s; the room begins anew.", error, aside)
         return None
+
+
+def load_or_begin(path: Path, task: str, episodes: int | None) -> SavedRoom:
+    """Return the record of a room that begins to run: with this task and plan, as it was left or anew."""
+    kept = load_or_put_aside(path) or SavedRoom(seed=secrets.randbits(_SEED_BITS))
+    return kept.for_task(task).planned(task, episodes)
 
 
 def save(path: Path, record: SavedRoom) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import gc
 import logging
-import secrets
 from collections import Counter
 from collections.abc import Callable
 
@@ -30,7 +29,6 @@ from mart.sim.world.divergence import DivergenceArchive
 
 _log = logging.getLogger(__name__)
 
-_SEED_BITS = 32
 DEFAULT_SKILL = "expert"
 
 
@@ -144,8 +142,5 @@ def _keeper(settings: SimSettings) -> Callable[[SavedRoom], None]:
 
 
 def _record(settings: SimSettings) -> SavedRoom:
-    kept = saved_room.load_or_put_aside(settings.room_path)
-    if kept is None:
-        kept = SavedRoom(seed=secrets.randbits(_SEED_BITS))
-    kept = kept.planned(settings.task, settings.episodes)
-    return kept if settings.seed is None else kept.with_changes(seed=settings.seed)
+    record = saved_room.load_or_begin(settings.room_path, settings.task, settings.episodes)
+    return record if settings.seed is None else record.with_changes(seed=settings.seed)

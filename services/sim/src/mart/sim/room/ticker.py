@@ -35,7 +35,7 @@ class Ticker:
         self._real_time_factor = RealTimeFactor(world.control_period_s, now_s)
 
     def real_time_factor(self, now_s: float) -> float:
-        """Return simulated over wall time of about the last 2 s."""
+        """Return simulated over wall time of about the last 2 s, at most since the world last began or resumed."""
         return self._real_time_factor.value(now_s)
 
     def reset(self, seed: int, seats: SeatTable, episode: EpisodeStateMachine, now_s: float) -> State:
@@ -67,6 +67,8 @@ class Ticker:
             fired_ns=fired_ns,
             stepped_ns=clock.wall_ns(),
         )
+        if inputs.resumed:  # waiting for people to begin is not slowness
+            self._real_time_factor.restart(now_s)
         self._real_time_factor.ticked(now_s)
         progress = self._world.progress(status)
         state = self._state(

@@ -6,7 +6,7 @@ import functools
 import math
 import operator
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -77,6 +77,14 @@ class Scene(ABC):
     @abstractmethod
     def task_status(self) -> TaskStatus:
         """Return subtasks, success and failure at this instant."""
+
+    def to_do(self, arm: str, done: Container[str]) -> str:
+        """Return in a line what this arm's operator is to do now, "" where the task does not say; of one world only.
+
+        done: names of the subtasks that are.
+        """
+        step = self.task.next_step(arm, done)
+        return step.to_do[arm] if step else self.task.afterwards
 
     def start_pose_in_base(self, arm: Arm, random: np.random.Generator) -> Pose:
         """Return where the arm's tool begins: up before its base, pointing down, give or take 3 cm."""

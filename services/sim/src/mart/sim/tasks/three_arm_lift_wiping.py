@@ -35,6 +35,8 @@ _TRAY_SPREAD_M, _TRAY_SPREAD_RAD = 0.04, 0.2
 _SPONGE_IN_BASE = (0.38, 0.30)
 _SPONGE_SPREAD_M, _SPONGE_SPREAD_RAD = 0.05, 0.5
 _TOOL_Z_M = 0.22
+# From where a carrier usually begins, in its base: to where its hand hides neither handle nor drinks from its camera.
+_BEHIND_HANDLE_M = {"arm0": (-0.07, 0.18, 0.03), "arm1": (-0.07, -0.18, 0.03)}
 
 _BOX = mujoco.mjtGeom.mjGEOM_BOX
 
@@ -73,7 +75,8 @@ class LiftWiping(Scene):
     def start_pose_in_base(self, arm: Arm, random: np.random.Generator) -> Pose:
         start = super().start_pose_in_base(arm, random)
         if arm.name != WIPER:
-            return across(start)
+            behind = start.position + _BEHIND_HANDLE_M[arm.name]
+            return across(Pose(behind, start.quaternion_wxyz))
         over_sponge = np.array([*_SPONGE_IN_BASE, _TOOL_Z_M])
         return Pose(over_sponge + random.uniform(-0.03, 0.03, 3), start.quaternion_wxyz)
 

@@ -30,6 +30,9 @@ _PLATE_KG, _RIM_KG, _BAR_KG, _STRUT_KG = 0.23, 0.03, 0.03, 0.01
 DRINK_RADIUS_M, DRINK_HALF_M = 0.030, 0.060
 _DRINK_KG = 0.25
 _DRINKS_AT_M = ((-0.08, -0.055), (-0.08, 0.055), (0.08, -0.055), (0.08, 0.055))
+# Where they are put when an episode begins, in the same order: so far from the handles that a hand which grips one has
+# a few centimetres to spare. The model keeps the places above, so that recordings so far can be stepped again.
+_DRINKS_BEGIN_M = tuple((math.copysign(0.068, x), y) for x, y in _DRINKS_AT_M)
 _DRINKS_SPREAD_M = 0.015
 _SLIDING = {"friction": (0.6, 0.005, 0.0001)}
 
@@ -126,7 +129,7 @@ class Tray:
         turn = np.array([math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2)])
         placed = Pose(np.array([x_m, y_m, HALF_M[2]]), turn)
         tray[:] = *placed.position, *turn
-        for (x, y), drink in zip(_DRINKS_AT_M, drinks, strict=True):
+        for (x, y), drink in zip(_DRINKS_BEGIN_M, drinks, strict=True):
             beside_x, beside_y = random.uniform(-_DRINKS_SPREAD_M, _DRINKS_SPREAD_M, 2)
             foot = placed.transform_points((x + beside_x, y + beside_y, HALF_M[2] + DRINK_HALF_M))
             drink[:] = *foot, 1.0, 0.0, 0.0, 0.0

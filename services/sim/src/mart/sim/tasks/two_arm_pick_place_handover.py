@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from itertools import product
 
 import mujoco
 import numpy as np
 
-from mart.protocol.tasks import MAX_ARMS
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import MAX_ARMS, Arm
 from mart.sim.scene.data import Array, Data, Flags, length, within
 from mart.sim.scene.gripper import GRASPABLE
 from mart.sim.scene.palette import rgba
@@ -42,6 +44,15 @@ _LID_AWAY_M, _RELEASED_WIDTH_M, _RELEASED_M = 0.20, 0.06, 0.20
 _GRIP_M = (HANDLE_HALF_M[0], 0.008, 0.020)
 _GRIP_WIDTH_M = (2 * HANDLE_HALF_M[1] - 0.005, 2 * HANDLE_HALF_M[1] + 0.006)
 _HELD_BY_BOTH, _HANDED_OVER = 1.0, 2.0
+
+_TOO_FAR_M = 0.01  # along the handle, away from its head: two hands would meet
+_BOTH_HOLD = {
+    "arm0": "Your partner has it: let go now.",
+    "arm1": "Hold it still until your partner has let go.",
+}
+
+# From where an arm usually begins, in its base: to where its hand hides neither knob nor trash from its camera.
+_ASIDE_M = {"arm0": (0.0, -0.16, 0.06), "arm1": (0.0, 0.16, 0.06)}
 
 _FIRM = {"solref": (0.004, 1.0)}
 _GHOST = {"contype": 0, "conaffinity": 0, "mass": 0.0}
@@ -96,6 +107,10 @@ class PickPlaceHandover(Scene):
         x, y = bin_ + random.uniform(-1.0, 1.0, 2) * (0.06, 0.03)
         self._trash.put((x, y, SHELF_Z_M + TRASH_HALF_M), random.uniform(-0.6, 0.6))
 
+    def start_pose_in_base(self, arm: Arm, random: np.random.Generator) -> Pose:
+        start = super().start_pose_in_base(arm, random)
+        return Pose(start.position + _ASIDE_M[arm.name], start.quaternion_wxyz)
+
     def observe(self) -> dict[str, Array]:
         observations = {f"{arm}/tool_position_in_world": tool.position for arm, tool in self._tools.items()}
         for thing in (self._container, self._bin, self._trash_tray, self._lid, self._hammer, self._trash):
@@ -112,6 +127,19 @@ class PickPlaceHandover(Scene):
             _HANDED_OVER,
             np.where(up & fetcher & receiver, _HELD_BY_BOTH, self._stage * (fetcher | receiver)),
         )
+
+    def to_do(self, arm: str, done: Container[str]) -> str:
+        """Return what this arm's operator is to do now; also from what no subtask tells: who holds the hammer, how."""
+        if "hammer_handed_over" in done:
+            return super().to_do(arm, done)
+        fetcher, receiver = self._tools.values()
+        held = bool(self._holds_hammer(fetcher))
+        if held and bool(self._holds_hammer(receiver)):
+            return _BOTH_HOLD[arm]
+        along_m = float(self._hammer.frame(fetcher.position)[0])
+        if arm == "arm0" and "hammer_fetched" in done and held and along_m > _TOO_FAR_M:
+            return "Lay the hammer down and grip it closer to its head: your partner needs the free end of the handle."
+        return super().to_do(arm, done)
 
     def task_status(self) -> TaskStatus:
         handed_over = self._stage == _HANDED_OVER

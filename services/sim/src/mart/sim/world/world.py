@@ -222,6 +222,11 @@ class World:
             failed=reason or None,
         )
 
+    def to_do(self, arm: str, progress: TaskProgress | None = None) -> str:
+        """Return in a line what this arm's operator is to do now; progress: where it is known, else judged now."""
+        subtasks = (progress or self.progress()).subtasks
+        return self._scene.to_do(arm, {name for name, done in subtasks.items() if done})
+
     def _arm(self, name: str) -> MeasuredArm:
         return self._measured[self.task.arm(name).name]
 

@@ -19,6 +19,7 @@ import mujoco
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import State
+from mart.protocol.tasks import Ghost
 from mart.render import Image
 from mart.runtime.rate_limit import RateLimit
 from mart.runtime.watchdog import end_process, start_vital_thread
@@ -49,13 +50,17 @@ class SeatPicture:
 
 
 Sink = Callable[[SeatPicture | Thumbnail], None]
+GhostIn = Callable[[State], Ghost | None]
 
 
 class _RenderPipeline:
     """Hold what a picture of one size takes: a renderer, encoders, and the picture itself."""
 
-    def __init__(self, renderer: SeatRenderer, quality: Quality, frames_per_s: float) -> None:
+    def __init__(
+        self, renderer: SeatRenderer, quality: Quality, frames_per_s: float, ghost_in: GhostIn
+    ) -> None:
         self._renderer, self._full, self._frames_per_s = renderer, quality, frames_per_s
+        self._ghost_in = ghost_in
         self._prepare(quality)
 
     def resize(self, size: Fraction) -> None:
@@ -67,7 +72,7 @@ class _RenderPipeline:
 
     def draw(self, state: State) -> None:
         """Fill the picture with this state."""
-        self._renderer.draw(state.integration_state, state.tick, self.picture_rgb)
+        self._renderer.draw(state.integration_state, state.tick, self.picture_rgb, self._ghost_in(state))
 
     @property
     def view_rgb(self) -> Image:
@@ -85,7 +90,10 @@ class _RenderPipeline:
 
 
 class LiveView:
-    """Draw `camera` of `model` from `start` to `stop`. The sink is called on its thread: it may only hand over."""
+    """Draw `camera` of `model` from `start` to `stop`. The sink is called on its thread: it may only hand over.
+
+    ghost_in: what is shown with a state beside what is there.
+    """
 
     def __init__(
         self,
@@ -95,10 +103,11 @@ class LiveView:
         sink: Sink,
         quality: Quality = FAST,
         *,
+        ghost_in: GhostIn = lambda _: None,
         end: Callable[[str], None] = end_process,
     ) -> None:
         self._model, self._camera, self._sink, self._quality = model, camera, sink, quality
-        self._frames_per_s = frames_per_s
+        self._frames_per_s, self._ghost_in = frames_per_s, ghost_in
         self._queue = RenderQueue()
         self._streams: Mapping[Stream, float] = {}
         self._log_limit = RateLimit(1)
@@ -148,9 +157,8 @@ class LiveView:
     def _run(self) -> None:
         cv2.setNumThreads(1)
         try:
-            pipeline = _RenderPipeline(
-                SeatRenderer(self._model, self._camera, self._quality), self._quality, self._frames_per_s
-            )
+            renderer = SeatRenderer(self._model, self._camera, self._quality)
+            pipeline = _RenderPipeline(renderer, self._quality, self._frames_per_s, self._ghost_in)
         except MartError as error:
             _log.error("%s gets no picture: %s", self._camera, error)  # the sentence says it all
             self.failure = str(error)

@@ -13,6 +13,7 @@ import mujoco
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput, Unavailable
 from mart.protocol.messages import SceneReply, SceneRequest, State
+from mart.protocol.tasks import Task
 from mart.render import BodyPoses, export_scene
 from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.video.motion_to_photon import PictureStamps
@@ -47,15 +48,16 @@ class PageDrawing:
     def __init__(self, loop: asyncio.AbstractEventLoop, sink: Callable[[PoseMessage], None]) -> None:
         self._loop, self._sink = loop, sink
         self._model: mujoco.MjModel | None = None
+        self._task: Task | None = None
         self._exported: _ExportedScene | None = None
         self._making = asyncio.Lock()
         self._wanted = False
         self._poses: BodyPoses | None = None
         self._log_limit = RateLimit(1)
 
-    def use(self, model: mujoco.MjModel) -> None:
-        """Take a new model of the room; poses go on once a page has asked for its scene."""
-        self._model, self._exported, self._poses = model, None, None
+    def use(self, model: mujoco.MjModel, task: Task | None) -> None:
+        """Take a new model of the room, and its task if known; poses go on once a page has asked for the scene."""
+        self._model, self._task, self._exported, self._poses = model, task, None, None
 
     def want(self, wanted: bool) -> None:
         """Write poses from now on, or write none."""
@@ -88,7 +90,7 @@ class PageDrawing:
         if model is None:
             raise Unavailable("The room's model is not here yet; ask for its scene again in a moment.")
         if self._exported is None or self._exported.model is not model:
-            exported = await asyncio.to_thread(_export, model)
+            exported = await asyncio.to_thread(_export, model, self._task)
             if self._model is not model:  # replaced meanwhile
                 return exported
             self._exported = exported
@@ -96,6 +98,6 @@ class PageDrawing:
         return self._exported
 
 
-def _export(model: mujoco.MjModel) -> _ExportedScene:
-    scene = export_scene(model)
+def _export(model: mujoco.MjModel, task: Task | None) -> _ExportedScene:
+    scene = export_scene(model, task)
     return _ExportedScene(model, scene.sha256, gzip.compress(scene.data, _GZIP_LEVEL, mtime=0))

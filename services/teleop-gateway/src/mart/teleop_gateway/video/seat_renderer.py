@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 
 import mujoco
 import numpy as np
 
-from mart.protocol.messages import Model
+from mart.protocol.errors import InvalidInput, NotFound
+from mart.protocol.messages import Model, State
 from mart.protocol.pose import Pose
-from mart.protocol.tasks import get_task
+from mart.protocol.tasks import Ghost, Task, get_task
 from mart.render import Image, Renderer, load_model, viewpoint_id
 from mart.teleop_gateway.input.retarget import azimuth_of_camera_rad
 from mart.teleop_gateway.video import tick_code
@@ -53,6 +55,29 @@ def camera_azimuth_rad(message: Model, model: mujoco.MjModel, arm: str) -> float
     return azimuth_of_camera_rad(base_in_world.inverse() @ camera_in_world)
 
 
+def task_of(message: Model) -> Task | None:
+    """Return the task of the room that sent this; None where this version does not know it."""
+    try:
+        return get_task(message.task, len(message.arms))
+    except (NotFound, InvalidInput):
+        return None
+
+
+def ghosts_for(task: Task | None, arm: str) -> Callable[[State], Ghost | None]:
+    """Return what finds what the picture of `arm`'s operator shows beside what is there, from how far the task is.
+
+    Of a task that this version does not know, nothing.
+    """
+    if task is None:
+        return lambda _: None
+
+    def ghost_in(state: State) -> Ghost | None:
+        step = task.next_step(arm, {subtask.name for subtask in state.progress.subtasks if subtask.done})
+        return step.ghost if step else None
+
+    return ghost_in
+
+
 class SeatRenderer:
     """Draw one camera with the tick below it. Build, use and close it on one thread."""
 
@@ -64,13 +89,17 @@ class SeatRenderer:
         """Draw pictures of this quality's size from now on."""
         self._renderer.resize(quality.width_px, quality.view_height_px)
 
-    def draw(self, integration_state: bytes, tick: int, picture_rgb: Image) -> None:
+    def draw(
+        self, integration_state: bytes, tick: int, picture_rgb: Image, ghost: Ghost | None = None
+    ) -> None:
         """Fill `picture_rgb`, shape (height_px, width_px, 3) of the quality: the view, and the tick in the strip below.
+
+        ghost: what else is shown in the view.
 
         Raises InvalidInput where the state is not one of this model.
         """
         height_px = self._renderer.height_px
-        self._renderer.draw(integration_state, out=picture_rgb[:height_px])
+        self._renderer.draw(integration_state, picture_rgb[:height_px], ghost)
         tick_code.write(tick, picture_rgb[height_px:])
 
     def close(self) -> None:

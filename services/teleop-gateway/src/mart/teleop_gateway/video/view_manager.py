@@ -17,7 +17,13 @@ from mart.teleop_gateway.video.encoder import Stream
 from mart.teleop_gateway.video.live_view import LiveView, Sink
 from mart.teleop_gateway.video.page_drawing import PageDrawing
 from mart.teleop_gateway.video.quality import Quality
-from mart.teleop_gateway.video.seat_renderer import camera_azimuth_rad, drawn_model, load_plain_model
+from mart.teleop_gateway.video.seat_renderer import (
+    camera_azimuth_rad,
+    drawn_model,
+    ghosts_for,
+    load_plain_model,
+    task_of,
+)
 
 _log = logging.getLogger(__name__)
 
@@ -124,9 +130,10 @@ class ViewManager:
     async def _use(self, message: Model) -> None:
         model = await asyncio.to_thread(load_plain_model, message)
         azimuth_rad = camera_azimuth_rad(message, model, self._seat.arm)
-        self._pages.use(model)
-        drawn = drawn_model(model, self._quality)
-        view = LiveView(drawn, self._seat.arm, message.control_hz, self._sink, self._quality)
+        task, arm = task_of(message), self._seat.arm
+        self._pages.use(model, task)
+        drawn, ghosts = drawn_model(model, self._quality), ghosts_for(task, arm)
+        view = LiveView(drawn, arm, message.control_hz, self._sink, self._quality, ghost_in=ghosts)
         view.set_streams(self._limits_bps)
         view.set_resting(self._resting)
         # Where this is cancelled half-way, no model is drawn: the next one that is fetched must be used.

@@ -9,7 +9,6 @@ from mart.protocol.messages import Event
 from mart.protocol.vocabulary import ServiceKind
 from mart.web.lobby.room_json import Json
 
-SLOW = 0.95  # of real time: below it, people feel it
 LATE_MS = 200.0  # from hand to picture: above it, people lose speed
 LATE_P95_MS = 400.0
 BUSY_LOAD = 1.0  # programs that want to run, for each core of this machine
@@ -88,7 +87,7 @@ def rooms(seen: Iterable[Json]) -> Iterator[HealthFinding]:
                 f"waits for {late}",
                 "Ask them, or set their seat to script or hold once it is free.",
             )
-        elif room["tick"] and room["real_time_factor"] < SLOW and room["barrier"] == "running":
+        elif room["slow"]:
             mend = _BUSY
         yield HealthFinding("rooms", room["room"], found, mend)
 

@@ -17,7 +17,7 @@ from mart.protocol.messages import (
     outcome_word,
     phase_word,
 )
-from mart.protocol.tasks import get_task
+from mart.protocol.tasks import Subtask, get_task
 
 Json = dict[str, Any]
 
@@ -36,6 +36,7 @@ def seat_json(seat: Seat, holder_id: str) -> Json:
         "mine": mine,
         "policy": seat.policy,
         "relieved": seat.relieved,
+        "kept_s": seat.kept_s,
     }
 
 
@@ -83,6 +84,7 @@ def status_json(status: RoomStatus, holder_id: str) -> Json:
             for late in status.waiting_for
         ],
         "seats": [seat_json(seat, holder_id) for seat in status.seats],
+        "to_do": dict(status.to_do),
         "episode": _episode_json(status),
         "episodes_saved": status.episodes_saved,
         "episodes_good": status.episodes_good,
@@ -103,7 +105,8 @@ def _stop_json(status: RoomStatus) -> Json | None:
 
 
 def _task_json(status: RoomStatus) -> Json:
-    titles: dict[str, str] = {}
+    known: dict[str, Subtask] = {}
+    arms = [seat.arm for seat in status.seats]
     try:
         task = get_task(status.task, len(status.seats))
     except (NotFound, InvalidInput):  # a newer sim than this service: show the task under its own name
@@ -111,10 +114,15 @@ def _task_json(status: RoomStatus) -> Json:
     else:
         title, instruction = task.title, task.instruction
         time_limit_s = task.time_limit_s
-        titles = {subtask.name: subtask.title for subtask in task.subtasks}
+        known = {subtask.name: subtask for subtask in task.subtasks}
     progress = status.progress
     subtasks = [
-        {"name": subtask.name, "title": titles.get(subtask.name, subtask.name), "done": subtask.done}
+        {
+            "name": subtask.name,
+            "title": known[subtask.name].title if subtask.name in known else subtask.name,
+            "arms": list(known[subtask.name].arms or arms) if subtask.name in known else [],
+            "done": subtask.done,
+        }
         for subtask in progress.subtasks
     ]
     return {

@@ -6,10 +6,18 @@ from dataclasses import dataclass, replace
 
 from mart.protocol.errors import NotFound
 from mart.protocol.holders import is_held_by
-from mart.protocol.messages import RoomStatus, Seat
+from mart.protocol.messages import (
+    BARRIER_PHASE_PAUSED,
+    BARRIER_PHASE_RUNNING,
+    BARRIER_PHASE_STOPPED,
+    RoomStatus,
+    Seat,
+)
 
 SILENT_AFTER_S = 0.35  # a sim speaks ten times a second
 OVERTAKEN_WITHIN_S = 1.0  # by the answer to a request
+SLOW = 0.95  # of real time: below it, people feel it
+SLOW_AFTER_S = 2.0  # a hiccup is no alarm
 GONE_AFTER_S = 3.0  # without its liveliness token; a router's restart takes every token for about 2 s
 
 
@@ -18,6 +26,7 @@ class _Room:
     status: RoomStatus
     seen_s: float
     alive: bool
+    slow_since_s: float | None  # of every status since
 
 
 class RoomTable:
@@ -44,7 +53,9 @@ class RoomTable:
             and _is_older(status, known.status)
         ):
             return False
-        self._rooms[status.room] = _Room(status, now_s, status.room in self._alive)
+        before_s = known.slow_since_s if known is not None else None
+        slow_since_s = _slow_since_s(status, before_s, now_s)
+        self._rooms[status.room] = _Room(status, now_s, status.room in self._alive, slow_since_s)
         return True
 
     def set_alive(self, room: str, alive: bool) -> None:
@@ -98,6 +109,12 @@ class RoomTable:
         known = self._rooms[room]
         return not known.alive or now_s - known.seen_s > SILENT_AFTER_S
 
+    def is_slow(self, room: str, now_s: float) -> bool:
+        """Whether the world of `room` runs, and has run slower than real time for a while."""
+        known = self._rooms[room]
+        runs = known.status.barrier == BARRIER_PHASE_RUNNING
+        return runs and known.slow_since_s is not None and now_s - known.slow_since_s >= SLOW_AFTER_S
+
     def have_fallen_silent(self, now_s: float) -> bool:
         """Return whether any room has become stale since this was last asked."""
         before = self._stale
@@ -114,3 +131,14 @@ class RoomTable:
 
 def _is_older(status: RoomStatus, known: RoomStatus) -> bool:
     return status.boot == known.boot and status.wall_ns < known.wall_ns
+
+
+def _slow_since_s(status: RoomStatus, before_s: float | None, now_s: float) -> float | None:
+    """Return since when a room is slow, None where it is not; `before_s`: what held with the status before.
+
+    A world that is paused or stopped, or has not begun, is not slow; one that waits for somebody is neither.
+    """
+    stands = status.barrier in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED) or not status.tick
+    if stands or status.real_time_factor >= SLOW:
+        return None
+    return now_s if before_s is None else before_s

@@ -1,6 +1,6 @@
 // What the pages say: states in the words of the people who use them. Pure.
 
-import { armName, lateName } from "./arms.js";
+import { armName, holderName, lateName } from "./arms.js";
 
 /** 2.34 → "2.3 s" @type {(value: number) => string} */
 export const seconds = (value) => `${value.toFixed(1)} s`;
@@ -70,11 +70,31 @@ export function stoppedText(stop) {
   return `Stopped by ${stop.name}${stop.arm && `, ${armName(stop.arm).toLowerCase()}`}`;
 }
 
-/** "Waiting for Ana, 0.8 s", or nothing. @type {(room: Api.Room) => string} */
+/** "kept for 20 s more": the seat of somebody who is away; else nothing. @type {(seat: Api.Seat) => string} */
+export const keptFor = ({ kept_s: keptS }) => (keptS > 0 ? `kept for ${Math.ceil(keptS)} s more` : "");
+
+/** "Kept for Ana for 20 s more", or nothing. @type {(seat: Api.Seat) => string} */
+export const keptText = (seat) => keptFor(seat).replace(/^kept/, `Kept for ${seat.mine ? "you" : holderName(seat)}`);
+
+/**
+ * "Waiting for Ana, 0.8 s" or, where their seats are free after a while, "Paused, waiting for Ana, at most 18 s more".
+ * @param {Api.Room} room
+ */
 export function waitingText(room) {
   if (room.barrier === "stopped") return stoppedText(room.stop);
   if (!["stalled", "paused"].includes(room.barrier) || room.waiting_for.length === 0) return "";
   const names = room.waiting_for.map((late) => lateName(room.seats, late)).join(" and ");
-  const longest = Math.max(...room.waiting_for.map((late) => late.since_s));
-  return `${room.barrier === "paused" ? "Paused, waiting" : "Waiting"} for ${names}, ${seconds(longest)}`;
+  const since = seconds(longest(room.waiting_for, "since_s"));
+  if (room.barrier === "stalled") return `Waiting for ${names}, ${since}`;
+  const late = room.seats.filter((seat) => room.waiting_for.some(({ arm }) => arm === seat.arm));
+  const ends = late.every((seat) => seat.kept_s > 0);
+  const most = `at most ${Math.ceil(longest(late, "kept_s"))} s more`;
+  return `Paused, waiting for ${names}, ${ends ? most : since}`;
 }
+
+/**
+ * @template {string} Name
+ * @param {Record<Name, number>[]} all
+ * @param {Name} name
+ */
+const longest = (all, name) => Math.max(...all.map((one) => one[name]));

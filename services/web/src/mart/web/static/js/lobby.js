@@ -1,16 +1,16 @@
 // The lobby: join, see the rooms, take a seat.
 
 import * as api from "./api.js";
-import { armName, isFree } from "./arms.js";
+import { armName } from "./arms.js";
 import { byId, element, keepChildren, setShown, setText } from "./dom.js";
+import { keptText } from "./formatting.js";
 import { offerInvitation } from "./invite.js";
 import { followRooms } from "./live.js";
 import { newRoom } from "./new-room.js";
 import { roomCard } from "./room-card.js";
+import { TryOffer } from "./try-offer.js";
 
 /** @import { Part } from "./dom.js" */
-
-/** @typedef {{ room: Api.Room, seat: Api.Seat }} Place */
 
 const NAME_KEY = "mart.name";
 const POLICIES_MS = 5000;
@@ -30,6 +30,7 @@ const cards = new Map();
 let rooms = [];
 /** @type {Messages.Policy[]} */
 let policies = [];
+const offer = new TryOffer();
 let offered = false; // the form that opens a room
 /** Rooms that were closed here and are still told of. @type {Set<string>} */
 const closed = new Set();
@@ -76,7 +77,7 @@ async function submit(thenTry) {
     const person = await api.join(codeInput.value, name);
     localStorage.setItem(NAME_KEY, name);
     history.replaceState(null, "", "/");
-    if (thenTry) ({ rooms } = await api.rooms());
+    if (thenTry) await askRooms();
     if (thenTry && (await attempt(tryIt))) return;
     enter(person);
   } catch (error) {
@@ -143,45 +144,51 @@ function onClosed(room) {
 }
 
 function showNextAction() {
-  const mine = ownSeat();
-  const free = firstFreeSeat();
-  setText(tryButton, mine ? "Go to your seat" : "Try it");
-  tryButton.disabled = !mine && !free;
-  setText(byId("try-text"), nextActionText(mine, free));
+  offer.update(rooms, performance.now());
+  setText(tryButton, offer.place?.seat.mine ? "Go to your seat" : "Try it");
+  tryButton.disabled = !offer.place;
+  setText(byId("try-text"), nextActionText());
 }
 
-/**
- * @param {Place | undefined} mine
- * @param {Place | undefined} free
- */
-function nextActionText(mine, free) {
-  if (mine) return `${armName(mine.seat.arm)}, ${mine.room.title}`;
-  if (free) return `${armName(free.seat.arm)}, with the keyboard. Nothing is recorded until you say so.`;
+function nextActionText() {
+  if (offer.place) {
+    const { room, seat } = offer.place;
+    const where = `${armName(seat.arm)}, ${room.title}`;
+    return seat.mine ? where : `${where}, with the keyboard. Nothing is recorded until you say so.`;
+  }
   if (rooms.length === 0) return "No room is open. Open one below, and sit down.";
   if (rooms.every((room) => room.stale)) return "The simulation does not answer; this goes on by itself when it does.";
-  return "Every seat is taken. You can watch until one is free.";
+  return `Every seat is taken. ${keptSeat()}You can watch until one is free.`;
 }
 
-/** @type {(list: Api.Room[]) => Place[]} */
-const seatsOf = (list) => list.flatMap((room) => room.seats.map((seat) => ({ room, seat })));
-const ownSeat = () => seatsOf(rooms).find(({ seat }) => seat.mine);
-const firstFreeSeat = () => seatsOf(rooms.filter((room) => !room.stale)).find(({ seat }) => isFree(seat));
+/** "Blue arm: Kept for Ana for 20 s more. ": what may be free soonest; nothing where nobody is away. */
+function keptSeat() {
+  const away = rooms.flatMap(({ seats }) => seats.filter((seat) => seat.kept_s > 0));
+  const soonest = away.sort((one, other) => one.kept_s - other.kept_s)[0];
+  return soonest ? `${armName(soonest.arm)}: ${keptText(soonest)}. ` : "";
+}
 
 /** A room that is late by a moment is waited for: on a busy machine it looks as if it had no seat. */
 async function seatToTry() {
   const untilMs = performance.now() + PATIENCE_MS;
-  for (;;) {
-    const target = ownSeat() ?? firstFreeSeat();
-    if (target || performance.now() > untilMs) return target;
+  while (!offer.place && performance.now() < untilMs) {
     await new Promise((resolve) => {
       setTimeout(resolve, ASK_AGAIN_MS);
     });
-    ({ rooms } = await api.rooms());
+    await askRooms();
   }
+  return offer.place;
 }
 
-/** Takes the first free seat, lets scripts drive the others that nobody drives, and goes there. */
+async function askRooms() {
+  ({ rooms } = await api.rooms());
+  offer.update(rooms, performance.now());
+}
+
+/** Takes the seat that is named, lets scripts drive the others that nobody drives, and goes there. */
 async function tryIt() {
+  const news = offer.news(performance.now());
+  if (news) throw new Error(news);
   const target = await seatToTry();
   if (!target) throw new Error("No seat is free at the moment; one shows up here as soon as it is.");
   const { room, seat } = target;

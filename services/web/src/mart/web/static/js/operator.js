@@ -5,8 +5,8 @@ import { armName, badge, hasPicture } from "./arms.js";
 import { byId, letGoOfButton, letGoOnEscape, setShown, setText } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
-import { CUES } from "./facts.js";
 import { waitingText } from "./formatting.js";
+import { isCue, isOffered } from "./hud/command-kinds.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
 import { DisplayedTicks } from "./hud/displayed-ticks.js";
@@ -41,12 +41,15 @@ let status = null;
 let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
 let pictured = false; // by the present connection: its picture comes a round trip before its first word
+let beganMs = -Infinity; // when the gateway first told of this holder's seat
 
 const displayed = new DisplayedTicks();
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
 const panel = new InputPanel(roomName, armId, (error) => showNotice(api.messageOf(error)));
-const input = new KeyboardMouseInput(byId("picture"), onKey);
+const input = new KeyboardMouseInput(byId("picture"), (command, hasMoved) => {
+  if (!hasMoved || room?.episode.phase !== "recording") onKey(command); // a key that has just moved is still meant to
+}, () => confirm.withdraw());
 const link = new SeatLink({
   approach: () => approachAsPage(roomName, armId),
   wantsVideo: true,
@@ -163,6 +166,7 @@ function onShown(tick, nowMs) {
 function onStatus(tick) {
   drawn.onTick(tick.tick);
   input.adoptGripper(tick, status);
+  if (status === null) beganMs = performance.now();
   status = tick;
   if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
   render();
@@ -181,7 +185,8 @@ function render() {
   statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches });
   const told = isTold();
   const still = displayed.standStill(status?.tick ?? 0, performance.now());
-  showHealth({ told, live: link.state === LinkState.LIVE, still, status, room, drawn, link }, video);
+  const forMs = performance.now() - beganMs;
+  showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn, link }, video);
   stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
@@ -201,6 +206,7 @@ function showHolder(mine) {
 
 /** @param {Api.Room} shown */
 function showRoom(shown) {
+  drawn.onProgress(shown.progress.subtasks);
   showPartners(shown, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
   const waiting = shown.stale ? "" : waitingText(shown);
   setText(byId("waiting"), waiting);
@@ -218,9 +224,6 @@ function onKey(command) {
   else if (wanted === "discard" && statusBar.offers("reset")) press("reset");
   else if (!isOffered(wanted) || statusBar.offers(wanted)) press(wanted);
 }
-
-/** Whether it can be done only while a button for it is shown. @param {string} command */
-const isOffered = (command) => ["success", "failure", "discard", "back"].includes(command);
 
 /**
  * A key or a button of the status bar was pressed: some have to be pressed twice.
@@ -283,12 +286,6 @@ function perform(command) {
  * @returns {command is PageCommand}
  */
 const isPageCommand = (command) => command in ACTIONS;
-
-/**
- * @param {string} command
- * @returns {command is Messages.Cue}
- */
-const isCue = (command) => CUES.some((cue) => cue === command);
 
 /** @param {() => unknown} action */
 async function attempt(action) {

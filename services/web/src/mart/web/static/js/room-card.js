@@ -4,7 +4,7 @@ import * as api from "./api.js";
 import { armName, badge, hasPicture, holderName, isMachine, theArm } from "./arms.js";
 import { element, keepChildren, setShown, setText } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
-import { phaseText, plural, planText, waitingText } from "./formatting.js";
+import { keptText, phaseText, plural, planText, waitingText } from "./formatting.js";
 import { machineSelect } from "./machine-select.js";
 import { taskPicture } from "./task-picture.js";
 
@@ -156,7 +156,7 @@ function seatRow(room, arm, attempt) {
 
   /** @param {SeatNews} news */
   function update({ seat, room: where, policies, holdsOne }) {
-    setText(who, seat.ready ? `${holderName(seat)}, ready` : holderName(seat));
+    setText(who, keptText(seat) || (seat.ready ? `${holderName(seat)}, ready` : holderName(seat)));
     machine.update({ seat, room: where, policies });
     setShown(who, seat.operator === "human");
     setShown(machine.node, seat.operator !== "human");

@@ -31,12 +31,13 @@ export class KeyboardMouseInput {
 
   /**
    * @param {HTMLElement} picture where the pointer drags
-   * @param {(command: Command) => void} onCommand
+   * @param {(command: Command, hasMoved: boolean) => void} onCommand told whether the same key has just moved the arm
+   * @param {() => void} onClutch called when the clutch is pressed by key
    */
-  constructor(picture, onCommand) {
-    this.#keyboard = new Keyboard(onCommand);
+  constructor(picture, onCommand, onClutch) {
+    this.#keyboard = new Keyboard(onCommand, onClutch);
     this.#pointer = new Pointer(picture, this.#phone);
-    this.#devices = new HandheldDevices(onCommand);
+    this.#devices = new HandheldDevices((command) => onCommand(command, false));
   }
 
   /**

@@ -4,7 +4,7 @@ import { commandOf, directionOf, isMotion } from "./keys.js";
 
 /** @import { Command } from "./keys.js" */
 
-const AFTER_RELEASE_MS = 500; // a key that was meant to move must not end the episode
+const JUST_MS = 500;
 const CLUTCH = "Space";
 
 /** Which keys are held, and a call for each that commands. */
@@ -13,12 +13,18 @@ export class Keyboard {
   /** @type {Set<string>} */
   #held = new Set();
   #clutch = false;
-  #releasedMs = -Infinity;
+  /** When a key last moved the arm. @type {Map<string, number>} */
+  #movedMs = new Map();
   #onCommand;
+  #onClutch;
 
-  /** @param {(command: Command) => void} onCommand */
-  constructor(onCommand) {
+  /**
+   * @param {(command: Command, hasMoved: boolean) => void} onCommand told whether the same key has just moved the arm
+   * @param {() => void} onClutch called when the clutch is pressed
+   */
+  constructor(onCommand, onClutch) {
     this.#onCommand = onCommand;
+    this.#onClutch = onClutch;
     addEventListener("keydown", (event) => this.#down(event));
     addEventListener("keyup", (event) => this.#up(event));
     addEventListener("blur", () => this.release());
@@ -33,48 +39,46 @@ export class Keyboard {
 
   /** Lets go of every key. */
   release() {
-    this.#held.clear();
     this.#setClutch(false);
+    this.#held.clear();
   }
 
   /** @param {KeyboardEvent} event */
   #down(event) {
     if (isShortcut(event) || belongsToControl(event)) return;
-    const { code, repeat, timeStamp } = event;
+    const { code, repeat } = event;
     if (code === CLUTCH || isMotion(code) || commandOf(code)) event.preventDefault();
-    if (!repeat) this.#press(code, timeStamp);
-  }
-
-  /**
-   * @param {string} code
-   * @param {number} nowMs
-   */
-  #press(code, nowMs) {
-    this.#held.add(code);
-    const command = commandOf(code);
-    if (code === CLUTCH) this.#setClutch(this.toggles ? !this.#clutch : true);
-    else if (command && !this.#moves(code, nowMs)) this.#onCommand(command);
-  }
-
-  /** @param {KeyboardEvent} event */
-  #up({ code }) {
-    this.#held.delete(code);
-    if (code === CLUTCH && !this.toggles) this.#setClutch(false);
+    if (!repeat) this.#press(code);
   }
 
   /**
    * A key that both moves and commands moves while one drives.
    * @param {string} code
-   * @param {number} nowMs
    */
-  #moves(code, nowMs) {
-    return isMotion(code) && (this.#clutch || nowMs - this.#releasedMs < AFTER_RELEASE_MS);
+  #press(code) {
+    this.#held.add(code);
+    const command = commandOf(code);
+    const hasMoved = performance.now() - (this.#movedMs.get(code) ?? -Infinity) < JUST_MS;
+    if (code === CLUTCH) this.#setClutch(this.toggles ? !this.#clutch : true);
+    else if (command && !(this.#clutch && isMotion(code))) this.#onCommand(command, hasMoved);
+  }
+
+  /** @param {KeyboardEvent} event */
+  #up({ code }) {
+    this.#noteMoves();
+    this.#held.delete(code);
+    if (code === CLUTCH && !this.toggles) this.#setClutch(false);
   }
 
   /** @param {boolean} held */
   #setClutch(held) {
-    if (this.#clutch && !held) this.#releasedMs = performance.now();
+    if (held && !this.#clutch) this.#onClutch();
+    this.#noteMoves();
     this.#clutch = held;
+  }
+
+  #noteMoves() {
+    if (this.#clutch) for (const code of this.#held) this.#movedMs.set(code, performance.now());
   }
 }
 

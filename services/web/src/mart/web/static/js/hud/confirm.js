@@ -24,6 +24,11 @@ export class Confirm {
     return confirmed;
   }
 
+  /** Whoever drives on meant to move. */
+  withdraw() {
+    this.#set("");
+  }
+
   /** @param {string} command */
   #set(command) {
     clearTimeout(this.#timer);

@@ -8,16 +8,19 @@ const GOOD_MS = 100; // people begin to notice delay at 100 to 200 ms and lose s
 const FAIR_MS = 200;
 const GOOD_FACTOR = 0.95; // of real time: below it, people feel it
 const FAIR_FACTOR = 0.8;
+const STARTING_MS = 5000; // the first pictures of a seat cost more than those after them
 
 /** @import { DrawnPicture } from "../scene/drawn-picture.js" */
 /** @typedef {"good" | "fair" | "slow" | "none"} Grade */
 
 /**
- * What is known. `told`: the room is heard; `live`: the gateway is; `still`: newer pictures are due for a second.
+ * What is known. `told`: the room is heard; `live`: the gateway is; `still`: newer pictures are due for a second;
+ * `forMs`: since when the gateway has told of this seat.
  * @typedef {object} Known
  * @property {boolean} told
  * @property {boolean} live
  * @property {boolean} still
+ * @property {number} forMs
  * @property {StatusChannel.Tick | null} status
  * @property {Api.Room | null} room
  * @property {DrawnPicture} drawn
@@ -29,14 +32,25 @@ const FAIR_FACTOR = 0.8;
  * @param {Omit<Known, "drawn" | "link">} known
  * @returns {{ figure: string, grade: Grade, word: string, rate: string }}
  */
-export function healthOf({ told, live, still, status, room }) {
+export function healthOf({ told, live, still, forMs, status, room }) {
   if (!told || !room) return unknown("No link");
   if (room.barrier === "stopped") return unknown("Stopped");
   if (!live || !status) return unknown("No link");
   if (room.barrier === "paused") return unknown("Paused");
   const delayMs = status.latency?.p50_ms;
+  const factor = room.slow ? room.real_time_factor : 1; // a hiccup is no alarm
   const rate = `${room.real_time_factor.toFixed(2)}× real time`;
-  return { figure: milliseconds(delayMs), ...worst(delayMs, room.real_time_factor, still), rate };
+  return { figure: milliseconds(delayMs), ...begun(worst(delayMs, factor, still), forMs), rate };
+}
+
+/**
+ * What was found, unless it may only be the start.
+ * @param {{ grade: Grade, word: string }} found
+ * @param {number} forMs
+ * @returns {{ grade: Grade, word: string }}
+ */
+function begun(found, forMs) {
+  return forMs < STARTING_MS && found.grade !== "good" ? { grade: "none", word: "starting" } : found;
 }
 
 /**

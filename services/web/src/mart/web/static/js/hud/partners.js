@@ -2,7 +2,7 @@
 
 import { badge, holderName, theArm } from "../arms.js";
 import { byId, element, keepChildren, setShown, setText } from "../dom.js";
-import { seconds } from "../formatting.js";
+import { keptFor, seconds } from "../formatting.js";
 
 /** @import { Part } from "../dom.js" */
 /** @import { Cues } from "./cues.js" */
@@ -73,6 +73,7 @@ function partnerRow(arm, onScript) {
  * @param {Messages.EpisodePhase} phase
  */
 function stateText(seat, late, phase) {
+  if (seat.kept_s > 0) return `Away, ${keptFor(seat)}`;
   if (late) return `Late, ${seconds(late.since_s)}`;
   if (seat.operator === "hold") return "Holds still";
   if (seat.ready && phase === "practice") return "Ready";

@@ -2,7 +2,7 @@
 
 import { holderName, isMachine, theArm } from "../arms.js";
 import { LinkState } from "../link/seat-link.js";
-import { asSentence, clockTime, outcomeText, planText } from "../formatting.js";
+import { asSentence, clockTime, keptFor, keptText, outcomeText, planText } from "../formatting.js";
 import { canBeKept, lastEpisodeOf, lastLabel, lastText } from "./last-episode.js";
 
 /** @import { State } from "../link/seat-link.js" */
@@ -21,7 +21,10 @@ import { canBeKept, lastEpisodeOf, lastLabel, lastText } from "./last-episode.js
  * @property {string} figure
  * @property {string} limit
  * @property {string} detail
+ * @property {string} [now] what the task wants of this arm now
+ * @property {string} [goal] what everybody is to do in all
  * @property {string} [hint] what helps to begin
+ * @property {string} [warning] why the task could not be done now
  * @property {boolean} recording
  * @property {Action[]} actions
  */
@@ -62,7 +65,32 @@ const ACTIONS = {
  * @param {Known} known
  */
 export function statusBarView(known) {
-  return { ...whatHappens(known), plan: planText(known.room?.plan) };
+  const shown = whatHappens(known);
+  const warning = isBefore(known.room, shown) ? idleText(known.room) : "";
+  return { ...shown, plan: planText(known.room?.plan), warning };
+}
+
+/**
+ * Whether an episode can be begun here, or is about to begin.
+ * @param {Api.Room | null} room
+ * @param {View} view
+ * @returns {room is Api.Room}
+ */
+function isBefore(room, { actions }) {
+  if (!room || room.stale) return false;
+  return room.episode.phase === "countdown" || actions.some(({ command }) => ["ready", "unready"].includes(command));
+}
+
+/** Which arms the steps need and nobody drives, and what to do. @param {Api.Room} room */
+function idleText({ seats, progress: { subtasks } }) {
+  const idle = seats.filter((seat) => seat.operator === "hold").map((seat) => seat.arm);
+  const open = subtasks.filter((subtask) => subtask.arms.some((arm) => idle.includes(arm)));
+  const needed = idle.filter((arm) => open.some((subtask) => subtask.arms.includes(arm)));
+  if (needed.length === 0) return "";
+  const steps = open.map(({ title }) => `“${title}”`).join(", ");
+  const it = needed.length > 1 ? "them" : "it";
+  return `Nobody drives ${needed.map(theArm).join(" and ")}; without ${it} there is no success: ${steps}. `
+    + "Use a script there, or let somebody take the seat.";
 }
 
 /**
@@ -102,30 +130,38 @@ const PHASES = {
   practice(room, seat, looking) {
     const others = room.seats.filter((other) => other.operator === "human" && !other.mine);
     if (seat.ready) {
-      const late = others.filter((other) => !other.ready).map((other) => other.name);
+      const late = others.filter((other) => !other.ready).map(awaitedName);
       return view("Ready", late.length ? `Waiting for ${late.join(" and ")}.` : "Starting…", [ACTIONS.unready]);
     }
     const shown = practice(room, seat, looking);
     const eager = others.filter((other) => other.ready).map((other) => other.name);
     if (eager.length === 0) return shown;
     const are = eager.length > 1 ? "are" : "is";
-    return { ...shown, detail: `${eager.join(" and ")} ${are} ready to record. ${shown.detail}` };
+    return { ...shown, detail: `${eager.join(" and ")} ${are} ready to record. ${shown.detail}`.trim() };
   },
   countdown(room) {
     const figure = String(Math.max(1, Math.ceil(room.episode.remaining_s)));
     return { ...view("Starts in", room.instruction), figure };
   },
-  recording(room, _seat, { pending }) {
+  recording(room, seat, { pending }) {
+    const now = nowText(room, seat);
     if (room.unrecorded) return view("Not recorded", asSentence(room.unrecorded), RECORDING);
     const limit = room.time_limit_s ? `of ${clockTime(room.time_limit_s)}` : "";
     const figure = clockTime(room.episode.elapsed_s);
-    const detail = pending === "success" ? askedText(room) : "Success is seen by itself.";
-    return { ...view("Recording", detail, RECORDING), figure, limit, recording: true };
+    const detail = pending === "success" ? askedText(room) : "";
+    const shown = { ...view("Recording", detail, RECORDING), figure, limit, recording: true };
+    return { ...shown, now, goal: room.instruction, hint: "Success is seen by itself." };
   },
   ended(room) {
     return view(outcomeText(room.episode.outcome), `${asSentence(room.episode.reason)} Saving…`.trim());
   },
 };
+
+/** "Ana", or "Ana (away, seat kept for 20 s more)" of somebody who is away. @param {Api.Seat} seat */
+function awaitedName(seat) {
+  const kept = keptFor(seat);
+  return kept ? `${seat.name} (away, seat ${kept})` : seat.name;
+}
 
 /**
  * Before anybody is ready: the last episode until the next one begins, else the goal.
@@ -140,11 +176,19 @@ function practice(room, seat, { isNew = false, touch = false, reached = false })
     const keep = canBeKept(last) ? [ACTIONS.keep] : [];
     return view(lastLabel(last), lastText(last), [ACTIONS.again, ...keep, ACTIONS.reset]);
   }
-  const moves = touch ? FIRST_TOUCHES : FIRST_MOVES;
-  const rest = isReached(room.plan) ? "All that was planned is recorded; you may go on." : UNRECORDED;
-  const hint = isNew ? moves : rest;
-  return { ...view("Practice", room.instruction, [ACTIONS.ready, ACTIONS.reset]), hint };
+  const now = nowText(room, seat);
+  const shown = view("Practice", now ? "" : room.instruction, [ACTIONS.ready, ACTIONS.reset]);
+  return { ...shown, now, goal: room.instruction, hint: isNew ? firstMoves(touch) : restText(room) };
 }
+
+/** @param {boolean} touch */
+const firstMoves = (touch) => (touch ? FIRST_TOUCHES : FIRST_MOVES);
+
+/** @param {Api.Room} room */
+const restText = ({ plan }) => (isReached(plan) ? "All that was planned is recorded; you may go on." : UNRECORDED);
+
+/** What the task wants of this arm now; nothing where nobody says. @param {Api.Room} room @param {Api.Seat} seat */
+const nowText = ({ to_do: toDo }, { arm }) => toDo?.[arm] ?? "";
 
 /** What a success by hand is asked, where the task does not see it. @param {Api.Room} room */
 function askedText({ progress }) {
@@ -175,7 +219,7 @@ function watching(room, seat) {
     return view("Free seat", `Nobody drives ${theArm(seat.arm)}.`, [ACTIONS.take]);
   }
   if (isMachine(seat)) return besideMachine(room, seat);
-  return view("Watching", `${seat.name} drives.`, [ACTIONS.lobby]);
+  return view("Watching", asSentence(keptText(seat)) || `${seat.name} drives.`, [ACTIONS.lobby]);
 }
 
 /**

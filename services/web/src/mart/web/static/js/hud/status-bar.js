@@ -6,6 +6,7 @@ import { statusBarView } from "./status-bar-view.js";
 
 /** @import { Action, ActionCommand, Known } from "./status-bar-view.js" */
 
+const FOLDED_KEY = "mart.folded";
 const REACHED_MS = 8000; // how long "That is it!" stands
 
 /** Shows what is known of the own seat, and offers what can be done. */
@@ -19,6 +20,8 @@ export class StatusBar {
   /** @param {(command: ActionCommand) => void} onCommand called when a button is pressed */
   constructor(onCommand) {
     this.#onCommand = onCommand;
+    byId("fold").addEventListener("click", () => this.#fold(byId("fold").getAttribute("aria-expanded") === "true"));
+    this.#fold(localStorage.getItem(FOLDED_KEY) === "yes");
   }
 
   /**
@@ -35,8 +38,15 @@ export class StatusBar {
     setText(byId("state-plan"), view.plan);
     setText(byId("state-detail"), view.detail);
     setShown(byId("state-detail"), view.detail !== "");
-    setText(byId("state-hint"), view.hint ?? "");
-    setShown(byId("state-hint"), Boolean(view.hint));
+    for (const [id, text] of /** @type {const} */ ([
+      ["state-now", view.now],
+      ["state-hint", view.hint],
+      ["state-warning", view.warning],
+      ["state-goal", view.goal],
+    ])) {
+      setText(byId(id), text ?? "");
+      setShown(byId(id), Boolean(text));
+    }
     this.#showSubtasks(stepsOf(room, known.seat));
     this.#showActions(view.actions, pending);
   }
@@ -54,6 +64,14 @@ export class StatusBar {
     return this.#actions.some((action) => action.command === command);
   }
 
+  /** Leaves of the strip what one needs now, so that more of the picture is seen. @param {boolean} folded */
+  #fold(folded) {
+    localStorage.setItem(FOLDED_KEY, folded ? "yes" : "no");
+    setShown(byId("more"), !folded);
+    byId("fold").setAttribute("aria-expanded", String(!folded));
+    setText(byId("fold"), folded ? "More" : "Less");
+  }
+
   /** In practice the goal counts for as long as it takes to read it. @param {Api.Room | null} room */
   #reached(room) {
     const nowMs = performance.now();
@@ -64,6 +82,9 @@ export class StatusBar {
 
   /** @param {Api.Subtask[]} subtasks */
   #showSubtasks(subtasks) {
+    const reached = subtasks.filter((subtask) => subtask.done).length;
+    setShown(byId("steps"), subtasks.length > 0);
+    setText(byId("steps-done"), `${reached} of ${subtasks.length} steps done`);
     byId("subtasks").replaceChildren(
       ...subtasks.map(({ title, done }) => element("li", { class: done ? "done" : "" }, title)),
     );
