@@ -21,6 +21,7 @@ declare namespace StatusChannel {
     gripper: number;
     gripper_set: number;
     holding: boolean;
+    hand_scale: number;
     barrier: Messages.BarrierPhase;
     phase: Messages.EpisodePhase | "unspecified";
     ready: boolean;

@@ -62,6 +62,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "let_go": "",
         "gripper": 0.25,
         "gripper_set": 1,
+        "hand_scale": 1.0,
         "holding": False,
         "phase": "recording",
         "ready": True,

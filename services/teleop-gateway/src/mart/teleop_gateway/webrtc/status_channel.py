@@ -145,6 +145,7 @@ def tick(
             "gripper": round(driving.gripper, 3),
             "gripper_set": driving.gripper_set,
             "holding": driving.holding,
+            "hand_scale": driving.retarget.scale,
             "phase": phase_word(room.episode.phase),
             "ready": any(seat.ready for seat in room.seats if seat.arm == driving.arm),
             "barrier": barrier_word(room.barrier),

@@ -66,6 +66,7 @@ const drawn = new DrawnPicture({
   send: (message) => link.send(message),
   onShown,
   onChange: () => render(),
+  commanded: () => input.commandedSince(status),
 });
 const stop = emergencyStop({
   label: roomName,
