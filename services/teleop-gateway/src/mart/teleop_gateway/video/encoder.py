@@ -92,6 +92,11 @@ _CONSTANT_QUALITY = {
 }
 _BUFFER_S = 0.25  # of a limited stream: what a keyframe may take at once
 
+
+def _x264_params(options: Mapping[str, int]) -> str:
+    return ":".join(f"{name}={value}" for name, value in options.items())
+
+
 _RECIPES = MappingProxyType(
     {
         # Constrained baseline without reordering; an I picture that is asked for is an IDR.
@@ -102,9 +107,7 @@ _RECIPES = MappingProxyType(
             options={
                 "preset": "ultrafast",
                 "tune": "zerolatency",
-                "x264-params": ":".join(
-                    f"{name}={value}" for name, value in (_X264 | _CONSTANT_QUALITY).items()
-                ),
+                "x264-params": _x264_params(_X264 | _CONSTANT_QUALITY),
             },
         ),
         # libvpx at its fastest, without the camera denoiser that rendered pictures have no use for.
@@ -125,20 +128,18 @@ _RECIPES = MappingProxyType(
 )
 
 
-def _limited(recipe: _Recipe, limit_bps: int) -> _Recipe:
-    """Return a recipe for so many bits a second at most, and for less where the finest picture takes less."""
-    options = {
-        **recipe.options,
-        "maxrate": str(limit_bps),
-        "minrate": str(limit_bps if recipe.profile is None else 0),  # libvpx knows a constant rate by both
-        "bufsize": str(int(_BUFFER_S * limit_bps)),
-    }
-    if recipe.profile is not None:
-        options |= {
-            "x264-params": ":".join(f"{name}={value}" for name, value in _X264.items()),
-            "qmin": str(_FINEST_QP),
-        }
-    return replace(recipe, bitrate_bps=limit_bps, options=options)
+def _recipe(codec: Codec, limit_bps: float) -> _Recipe:
+    """Return how to encode with so many bits a second at most, and with less where the finest picture takes less."""
+    recipe = _RECIPES[codec]
+    if limit_bps >= (recipe.bitrate_bps or math.inf):
+        return recipe
+    limit = str(int(limit_bps))
+    limits = {"maxrate": limit, "bufsize": str(int(_BUFFER_S * limit_bps))}
+    if codec is Codec.H264:
+        limits |= {"x264-params": _x264_params(_X264), "qmin": str(_FINEST_QP)}
+    else:
+        limits |= {"minrate": limit}  # libvpx knows a constant rate by both
+    return replace(recipe, bitrate_bps=int(limit_bps), options={**recipe.options, **limits})
 
 
 class Encoder:
@@ -147,10 +148,7 @@ class Encoder:
     def __init__(
         self, stream: Stream, frames_per_s: float, quality: Quality = FAST, limit_bps: float = math.inf
     ) -> None:
-        codec = stream.codec
-        recipe = _RECIPES[codec]
-        if limit_bps < (recipe.bitrate_bps or math.inf):
-            recipe = _limited(recipe, int(limit_bps))
+        recipe = _recipe(stream.codec, limit_bps)
         context = av.CodecContext.create(recipe.encoder, "w")
         assert isinstance(context, VideoCodecContext)
         context.width, context.height, context.pix_fmt = quality.width_px, quality.height_px, "yuv420p"
@@ -159,7 +157,7 @@ class Encoder:
         context.bit_rate = recipe.bitrate_bps
         context.profile = recipe.profile
         context.options = dict(recipe.options)
-        if codec is Codec.H264:
+        if stream.codec is Codec.H264:
             level = h264_level(quality.width_px, quality.height_px, frames_per_s)
             context.options = {**recipe.options, "level": str(level)}
         context.thread_count = 1
