@@ -173,6 +173,9 @@ def test_what_the_receiver_reports_reaches_its_handlers() -> None:
         sender._RTCRtpSender__lsr, sender._RTCRtpSender__lsr_time = 5, time.time() - 0.3
         await sender._handle_rtcp_packet(report_of(sender._ssrc, 5, since_s=0.1))
         assert reports[-1].round_trip_s == pytest.approx(0.2, abs=0.05)
+        sender._RTCRtpSender__lsr_time = time.time() + 60  # the clock is set back
+        await sender._handle_rtcp_packet(report_of(sender._ssrc, 5, since_s=0.1))
+        assert math.isnan(reports[-1].round_trip_s)
         for source in (sender._ssrc, sender._ssrc + 1):
             fci = rtp.pack_remb_fci(512_000, [source])
             await sender._handle_rtcp_packet(rtp.RtcpPsfbPacket(rtp.RTCP_PSFB_APP, 1, 0, fci))

@@ -102,11 +102,15 @@ def sent_codec(transceiver: RTCRtpTransceiver) -> str:
 
 
 def _round_trip_s(sender: RTCRtpSender, info: rtp.RtcpReceiverInfo) -> float:
-    """Return how long sender's newest report and its answer took, NaN where the answer is to an older one."""
+    """Return how long sender's newest report and its answer took; NaN where the answer is to an older one.
+
+    NaN also where the clock was set back meanwhile.
+    """
     if not info.dlsr or info.lsr != sender._RTCRtpSender__lsr:  # type: ignore[attr-defined]  # noqa: SLF001
         return math.nan
     sent_s: float = sender._RTCRtpSender__lsr_time  # type: ignore[attr-defined]  # noqa: SLF001
-    return max(0.0, clock.wall_ns() * 1e-9 - sent_s - info.dlsr / 65_536)
+    took_s = clock.wall_ns() * 1e-9 - sent_s - info.dlsr / 65_536
+    return took_s if took_s >= 0 else math.nan
 
 
 def _estimate_bps(packet: rtp.RtcpPsfbPacket, sender: RTCRtpSender) -> int | None:
