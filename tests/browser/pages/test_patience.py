@@ -1,10 +1,20 @@
-"""A page's patience with a silent seat, tried with times of its own: an outage of seconds costs no new connection."""
+"""A page's patience with a silent seat: an outage of seconds costs no new connection."""
 
 from __future__ import annotations
 
 import pytest
+from playwright.sync_api import Browser, expect
 
+from mart.platform.run.running import Platform
 from tests.browser.pages.conftest import Run
+from tests.browser.pages.visits import driving, visit
+from tests.support.crashing import frozen_seat_process, frozen_service
+
+COUNTED = """
+globalThis.connections = 0;
+globalThis.RTCPeerConnection = new Proxy(RTCPeerConnection, {
+  construct: (...given) => { connections += 1; return Reflect.construct(...given); },
+});"""
 
 OUTAGE = """({ Patience, Verdict }, { untilMs, siteMs }) => {
   const [patience, told, lastWordMs] = [new Patience(), [], 300];
@@ -49,3 +59,15 @@ def test_a_connection_that_never_spoke_is_given_fifteen_seconds(run: Run) -> Non
       return [2000, 9000, 16_000, 16_001].map((nowMs) => patience.verdict(nowMs));
     }"""
     assert run("link/patience.js", script) == ["fine", "fine", "fine", "lost"]
+
+
+def test_a_dark_network_is_waited_for(platform: Platform, browser: Browser) -> None:
+    """Neither site nor seat is heard for longer than the site's answer takes, and then both."""
+    with visit(browser, platform) as visited:
+        visited.context.add_init_script(COUNTED)
+        with driving(visited) as page:
+            with frozen_service(platform, "web"), frozen_seat_process(platform, "arm0"):
+                expect(page.locator("#picture.live")).to_be_hidden()
+                page.wait_for_timeout(2_300)  # a lease of the bus is 4 s
+            expect(page.locator("#picture.live")).to_be_visible()
+            assert page.evaluate("() => connections") == 1
