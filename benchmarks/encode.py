@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import random
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -22,13 +22,10 @@ from aiortc.codecs.base import Encoder
 from aiortc.codecs.h264 import H264Encoder
 from aiortc.codecs.vpx import Vp8Encoder
 from report import Bar, report
+from support.moving_scene import moving_scene
 
-from mart.protocol.messages import Model
 from mart.render import Image
-from mart.sim.world.world import World
 from mart.teleop_gateway.video import encoder, tick_code
-from mart.teleop_gateway.video.quality import FAST
-from mart.teleop_gateway.video.seat_renderer import SeatRenderer, load_room_model
 
 CONTROL_HZ = 20.0
 FRAMES = 240
@@ -69,7 +66,7 @@ class Contender:
 
 
 def ours(codec: encoder.Codec, packer: Encoder) -> Contender:
-    encode = encoder.Encoder(codec, CONTROL_HZ).encode
+    encode = encoder.Encoder(encoder.Stream(codec), CONTROL_HZ).encode
 
     def to_packets(picture_rgb: Image, pts: int) -> list[bytes]:
         encoded = encode(encoder.to_i420(picture_rgb), pts, keyframe=False)
@@ -89,37 +86,13 @@ def theirs(name: str, stock: Encoder) -> Contender:
     return Contender(name, to_packets)
 
 
-def pictures() -> Iterator[Image]:
-    """A scene in which both arms move all the time."""
-    world = World.build("two_arm_multi_cube_lifting", CONTROL_HZ)
-    world.reset(seed=1)
-    model = load_room_model(Model(mjb=world.model_bytes(), sha256=world.model_sha256))
-    renderer = SeatRenderer(model, "arm0")
-    for tick in range(FRAMES + WARM_UP):
-        phase = 2 * np.pi * tick / 40
-        swing = (
-            0.3 * np.sin(phase),
-            0.5 * np.cos(phase),
-            0.3 * np.sin(2 * phase),
-            0.0,
-            0.0,
-            0.3 * np.cos(phase),
-            0.0,
-        )
-        world.step(np.tile(swing, (len(world.arms), 1)))
-        picture_rgb = FAST.blank_picture()
-        renderer.draw(world.integration_state(), tick, picture_rgb)
-        yield picture_rgb
-    renderer.close()
-
-
 def main() -> None:
     cv2.setNumThreads(1)
     h264, vp8 = (ours(encoder.Codec.H264, H264Encoder()), ours(encoder.Codec.VP8, Vp8Encoder()))
     stock_h264, stock_vp8 = theirs("aiortc_h264", H264Encoder()), theirs("aiortc_vp8", Vp8Encoder())
     contenders = [h264, vp8, stock_h264, stock_vp8]
     turns = random.Random(0)
-    for tick, picture_rgb in enumerate(pictures()):
+    for tick, picture_rgb in enumerate(moving_scene(CONTROL_HZ, FRAMES + WARM_UP)):
         pts = int(tick * encoder.CLOCK_HZ / CONTROL_HZ)
         for contender in turns.sample(contenders, len(contenders)):
             contender.take(picture_rgb, pts)

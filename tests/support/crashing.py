@@ -25,7 +25,24 @@ def kill_service_of(data_dir: Path, command: str) -> None:
 @contextlib.contextmanager
 def frozen_service(platform: Platform, command: str) -> Iterator[None]:
     """`mart {command} …` does nothing for the length of the block, and its connections stay open."""
-    pid = _service_pid(platform.options.data_dir, command)
+    with _frozen(_service_pid(platform.options.data_dir, command)):
+        yield
+
+
+@contextlib.contextmanager
+def frozen_seat_process(platform: Platform, arm: str) -> Iterator[None]:
+    """The gateway's process for the seat of `arm` does nothing for the length of the block."""
+    with _frozen(_seat_pid(platform, arm)):
+        yield
+
+
+def kill_seat_process(platform: Platform, arm: str) -> None:
+    """kill -9 of the gateway's process for the seat of `arm`."""
+    os.kill(_seat_pid(platform, arm), signal.SIGKILL)
+
+
+@contextlib.contextmanager
+def _frozen(pid: int) -> Iterator[None]:
     os.kill(pid, signal.SIGSTOP)
     try:
         yield
@@ -33,11 +50,10 @@ def frozen_service(platform: Platform, command: str) -> Iterator[None]:
         os.kill(pid, signal.SIGCONT)
 
 
-def kill_seat_process(platform: Platform, arm: str) -> None:
-    """kill -9 of the gateway's process for the seat of `arm`."""
+def _seat_pid(platform: Platform, arm: str) -> int:
     log = next(platform.logs_dir.glob("gateway-*.log")).read_text()
     served = re.findall(rf"{platform.options.room} {arm} is served by process (\d+)", log)
-    os.kill(int(served[-1]), signal.SIGKILL)
+    return int(served[-1])
 
 
 def _service_pid(data_dir: Path, command: str) -> int:

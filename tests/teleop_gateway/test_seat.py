@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 
 import pytest
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
@@ -13,6 +14,7 @@ from mart.protocol import clock, codec, keys
 from mart.protocol.errors import Conflict, Forbidden, InvalidInput, Unavailable
 from mart.protocol.messages import OPERATOR_POLICY, Event, Offer
 from mart.protocol.tokens import Role
+from mart.teleop_gateway.video.encoder import RECORDED, Audience, Codec, Stream
 from mart.teleop_gateway.webrtc import peers
 from tests.support.message_collector import MessageCollector
 from tests.teleop_gateway.browser import Browser, connected
@@ -127,6 +129,27 @@ def test_many_viewers_share_one_encode_and_the_ninth_is_refused(on_seat: OnSeat)
             before, start = len(recorded), seat.room.tick_number
             await asyncio.sleep(1.0)
             assert len(recorded) - before <= seat.room.tick_number - start + 2
+
+    on_seat(body)
+
+
+def test_a_holder_whose_link_is_thin_goes_on_with_a_stream_of_their_own(on_seat: OnSeat) -> None:
+    """The picture changes streams without a gap, there and back, and viewers keep everyone's."""
+
+    async def body(seat: SeatUnderTest) -> None:
+        viewing = connected(seat.exchange(Role.VIEWER))
+        async with connected(seat.exchange(Role.BROWSER)) as browser, viewing as viewer:
+            holder, watching = seat.seat._peers
+            assert holder._feedback is not None
+            for limit_bps, audience in ((200_000.0, Audience.HOLDER), (math.inf, Audience.EVERYONE)):
+                holder._feedback._rate._limit_bps = limit_bps
+                seat.seat._peers.on_limit()
+                assert holder.stream == Stream(Codec.H264, audience)
+                assert watching.stream == RECORDED
+                now = seat.room.tick_number
+                for page in (browser, viewer):
+                    while (await page.next_tick() or 0) <= now:
+                        pass
 
     on_seat(body)
 

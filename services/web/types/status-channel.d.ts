@@ -21,6 +21,7 @@ declare namespace StatusChannel {
     gripper: number;
     gripper_set: number;
     holding: boolean;
+    hand_scale: number;
     barrier: Messages.BarrierPhase;
     phase: Messages.EpisodePhase | "unspecified";
     ready: boolean;
@@ -38,6 +39,7 @@ declare namespace StatusChannel {
     type: "pong";
     t_us: number;
     gateway_ns: number;
+    picture_kbit_s?: number;
   }
 
   interface Replaced {

@@ -125,6 +125,20 @@ def test_the_orientation_sensor_is_read_into_the_session_frame(
     assert run("phone/orientation.js", script, angles) == pytest.approx(up, abs=1e-9)
 
 
+def test_a_hand_knows_how_far_it_has_moved_since_a_frame_of_the_same_press(run: Run) -> None:
+    script = """({ SentHands }) => {
+      const sent = new SentHands();
+      sent.add(1, [9, 9, 9], true);
+      sent.add(2, [0, 0, 0], false);
+      for (let number = 3; number <= 300; number += 1) sent.add(number, [number / 100, 0, -number / 50], true);
+      return [1, 2, 3, 200, 300, 301].map((number) => sent.movedSince(number));
+    }"""
+    first, open_clutch, old, then, newest, never = run("drive/sent-hands.js", script)
+    assert [first, open_clutch, old, never] == [None] * 4
+    assert then == pytest.approx([1, 0, -2])
+    assert newest == [0, 0, 0]
+
+
 def test_the_fastest_ping_tells_the_clock(run: Run) -> None:
     script = """({ ClockOffset }) => {
       const clock = new ClockOffset();

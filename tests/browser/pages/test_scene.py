@@ -7,11 +7,12 @@ from contextlib import closing
 from pathlib import Path
 
 import cv2
+import mujoco
 import numpy as np
 import pytest
 
 from mart.protocol.tasks import task_names
-from mart.render import BodyPoses, Image, Renderer, export_scene
+from mart.render import BodyPoses, Image, Renderer, export_scene, viewpoint_id
 from mart.sim.world import World
 from tests.browser.pages.conftest import Run
 from tests.render.scene_reading import read_poses
@@ -23,7 +24,7 @@ SEEN = Path("test-output/browser/scene")
 TO_BYTES = "(text) => Uint8Array.from(atob(text), (one) => one.charCodeAt(0)).buffer"
 
 DRAW = (
-    "async ({ SceneView }, { scene, poses, camera, subtasks, width, height }) => {"
+    "async ({ SceneView }, { scene, poses, camera, subtasks, commanded, width, height }) => {"
     f"  const bytes = {TO_BYTES};"
     "  const { parseScene } = await import('/static/js/scene/scene-file.js');"
     "  const { parsePoses } = await import('/static/js/scene/pose-message.js');"
@@ -32,6 +33,7 @@ DRAW = (
     "  view.resize(width, height);"
     "  view.setPoses(parsePoses(bytes(poses)));"
     "  view.showGhost(camera, subtasks);"
+    "  view.showCommanded(camera, commanded ?? null);"
     "  view.draw();"
     "  const pixels = new Uint8Array(4 * width * height);"
     "  const gl = view.context;"
@@ -85,6 +87,56 @@ def assert_alike(run: Run, name: str, world: World, step: str = "") -> None:
     difference = np.abs(drawn.astype(int) - wanted)
     assert difference.mean() < MOST_MEAN_ERROR
     assert (difference.max(axis=2) > 16).mean() < MOST_DIFFERENT
+
+
+def test_a_hand_that_is_far_ahead_of_the_arm_shows_where_the_tool_was_told_to_go(run: Run) -> None:
+    world = World.build("two_arm_multi_cube_lifting")
+    world.reset(3)
+    scene = export_scene(world.model, world.task)
+
+    def drawn(right_m: float, up_m: float, towards_m: float) -> Image:
+        told = {
+            "scene": encoded(scene.data),
+            "poses": encoded(BodyPoses(world.model, scene.sha256).message(world.integration_state(), 1)),
+            "camera": "arm0",
+            "subtasks": [],
+            "commanded": [right_m, up_m, towards_m],
+            "width": WIDTH_PX,
+            "height": HEIGHT_PX,
+        }
+        pixels = np.frombuffer(base64.b64decode(run("scene/scene-view.js", DRAW, told)), np.uint8)
+        return pixels.reshape(HEIGHT_PX, WIDTH_PX, 4)[::-1, :, :3]
+
+    usual = drawn(0.0, 0.0, 0.0)
+    assert np.array_equal(drawn(0.02, 0.0, 0.0), usual)  # an arm is never quite where the hand is
+    ahead = drawn(0.15, 0.05, 0.1)
+    kept("commanded", usual, ahead)
+    column, row = seen_at(world, (0.15, 0.05, 0.1))
+    changed = np.abs(ahead.astype(int) - usual).max(axis=2) > 16
+    assert changed[row - 4 : row + 5, column - 4 : column + 5].mean() > 0.5
+    assert 20 < changed.sum() < 0.05 * changed.size
+
+
+def seen_at(world: World, moved: tuple[float, float, float]) -> tuple[int, int]:
+    """The column and row of the tool's point, moved to the right, up and towards whoever looks, in arm0's picture."""
+    data = mujoco.MjData(world.model)
+    mujoco.mj_setState(
+        world.model,
+        data,
+        np.frombuffer(world.integration_state(), np.float64),
+        mujoco.mjtState.mjSTATE_INTEGRATION,
+    )
+    mujoco.mj_forward(world.model, data)
+    camera = viewpoint_id(world.model, "arm0")
+    axes, eye = data.cam_xmat[camera].reshape(3, 3), data.cam_xpos[camera]
+    right = axes[:, 0] * (1, 1, 0)
+    right /= np.linalg.norm(right)
+    towards = np.array((right[1], -right[0], 0.0))
+    tool = world.task.arm("arm0").pose_base_in_world @ world.tool_pose_in_base("arm0")
+    point = tool.position + moved[0] * right + moved[1] * np.array((0, 0, 1)) + moved[2] * towards
+    x, y, z = axes.T @ (point - eye)
+    focal_px = HEIGHT_PX / 2 / np.tan(np.radians(world.model.cam_fovy[camera]) / 2)
+    return round(WIDTH_PX / 2 - focal_px * x / z), round(HEIGHT_PX / 2 + focal_px * y / z)
 
 
 def kept(task: str, wanted: Image, drawn: Image) -> None:

@@ -10,7 +10,15 @@ from av.video.frame import PictureType
 
 from mart.render import Image
 from mart.teleop_gateway.video import tick_code
-from mart.teleop_gateway.video.encoder import CLOCK_HZ, Codec, EncodedPicture, Encoder, to_i420
+from mart.teleop_gateway.video.encoder import (
+    CLOCK_HZ,
+    RECORDED,
+    Codec,
+    EncodedPicture,
+    Encoder,
+    Stream,
+    to_i420,
+)
 from mart.teleop_gateway.video.h264_level import h264_level
 from mart.teleop_gateway.video.quality import FAST, FULL, Quality
 
@@ -34,7 +42,7 @@ def picture(tick: int) -> Image:
 
 
 def encode(codec: Codec, ticks: range, keyframes: frozenset[int] = frozenset()) -> list[EncodedPicture]:
-    encoder = Encoder(codec, FRAMES_PER_S)
+    encoder = Encoder(Stream(codec), FRAMES_PER_S)
     step = int(CLOCK_HZ / FRAMES_PER_S)
     return [encoder.encode(to_i420(picture(t)), t * step, keyframe=t in keyframes) for t in ticks]
 
@@ -115,7 +123,7 @@ def test_the_rate_stays_what_a_wireless_network_carries(codec: Codec) -> None:
 def test_a_larger_picture_says_its_tick_too(codec: Codec) -> None:
     rgb = FULL.blank_picture()
     tick_code.write(4711, rgb[FULL.view_height_px :])
-    encoded = Encoder(codec, FRAMES_PER_S, FULL).encode(to_i420(rgb), 0, keyframe=True)
+    encoded = Encoder(Stream(codec), FRAMES_PER_S, FULL).encode(to_i420(rgb), 0, keyframe=True)
     (frame,) = decoder(codec).decode(av.Packet(encoded.data))
     assert tick_code.read(np.asarray(frame.to_ndarray(format="gray"), np.uint8)) == 4711
 
@@ -128,7 +136,7 @@ def test_the_stream_says_the_level_that_its_size_and_rate_need(
     quality: Quality, frames_per_s: float, level: int
 ) -> None:
     """At 60 pictures of 960 x 744 a second there are 169,200 macroblocks; level 3.1 allows 108,000."""
-    encoder = Encoder(Codec.H264, frames_per_s, quality)
+    encoder = Encoder(RECORDED, frames_per_s, quality)
     data = encoder.encode(to_i420(quality.blank_picture()), 0, keyframe=True).data
     sps = data.index(b"\0\0\1\x67") + 4
     assert data[sps + 2] == level

@@ -88,10 +88,10 @@ def test_a_page_that_draws_sees_the_room_go_on_at_another_rate(model: mujoco.MjM
     slower = load_plain_model(model_message_of(world.at(world.control_hz / 2)))
 
     async def body(pages: Pages) -> None:
-        pages.drawing.use(model)
+        pages.drawing.use(model, None)
         pages.drawing.want(True)
         sha256 = (await pages.drawing.answer(SceneRequest())).sha256
-        pages.drawing.use(slower)
+        pages.drawing.use(slower, None)
         while pages.sent.empty():  # nobody asks for the scene again
             pages.drawing.offer(state, 1)
             await asyncio.sleep(0.01)

@@ -31,7 +31,7 @@ class StubView:
         self.may_stop = threading.Event()
         self._loop = asyncio.get_running_loop()
 
-    def set_codecs(self, codecs: object) -> None:
+    def set_streams(self, limits_bps: object) -> None:
         pass
 
     def set_resting(self, resting: bool) -> None:

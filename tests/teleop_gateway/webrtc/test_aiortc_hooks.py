@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import itertools
+import math
+import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,9 +22,10 @@ from aiortc import (
 )
 from aiortc.codecs import HEADER_EXTENSIONS
 
-from mart.teleop_gateway.video.encoder import Codec, EncodedPicture, Encoder, to_i420
+from mart.teleop_gateway.video.encoder import RECORDED, Codec, EncodedPicture, Encoder, to_i420
 from mart.teleop_gateway.video.tick_code import HEIGHT_PX, WIDTH_PX
 from mart.teleop_gateway.webrtc import aiortc_hooks
+from mart.teleop_gateway.webrtc.rate_control import ReceiverReport
 from mart.teleop_gateway.webrtc.track import EncodedTrack
 from tests.teleop_gateway.browser import Browser
 
@@ -38,7 +42,9 @@ class Sender:
         self.sender = self.connection.addTrack(self.track)
         aiortc_hooks.show_at_once(self.sender)
         aiortc_hooks.on_keyframe_request(self.sender, self.keyframe_wanted.set)
-        self._encoder = Encoder(Codec.H264, 20)
+        self.sent: list[tuple[int, int]] = []
+        aiortc_hooks.on_packet_sent(self.sender, lambda *packet: self.sent.append(packet))
+        self._encoder = Encoder(RECORDED, 20)
 
     def picture(self, number: int) -> EncodedPicture:
         """Noise: too large for one packet."""
@@ -129,6 +135,57 @@ def test_pli_reaches_the_handler() -> None:
     on_loop(body)
 
 
+def test_a_packet_is_known_when_it_is_sent_and_can_be_sent_again() -> None:
+    """The copy is a retransmission: of another source, with the number of the first in front of its payload."""
+
+    async def body() -> None:
+        async with streaming() as (sender, _):
+            assert len(sender.sent) == len(sender.packets)
+            number, size = sender.sent[-1]
+            first = rtp.RtpPacket.parse(sender.packets[-1], rtp.HeaderExtensionsMap())
+            assert (first.sequence_number, len(first.payload)) == (number, size)
+            await aiortc_hooks.send_again(sender.sender, number)
+            again = rtp.RtpPacket.parse(sender.packets[-1], rtp.HeaderExtensionsMap())
+            assert again.ssrc != first.ssrc
+            assert again.payload == number.to_bytes(2, "big") + first.payload
+            assert len(sender.sent) == len(sender.packets) - 1
+
+    on_loop(body)
+
+
+def report_of(source: int, last_report: int, since_s: float = 0.0) -> rtp.RtcpRrPacket:
+    """7 packets lost of 900."""
+    info = rtp.RtcpReceiverInfo(source, 1, 7, 900, 0, last_report, int(since_s * 65_536))
+    return rtp.RtcpRrPacket(ssrc=1, reports=[info])
+
+
+def test_what_the_receiver_reports_reaches_its_handlers() -> None:
+    async def body() -> None:
+        connection = RTCPeerConnection(RTCConfiguration([]))
+        sender: Any = connection.addTrack(EncodedTrack(lambda: None))
+        reports: list[ReceiverReport] = []
+        estimates_bps: list[int] = []
+        aiortc_hooks.on_feedback(sender, reports.append, estimates_bps.append)
+        await sender._handle_rtcp_packet(report_of(sender._ssrc + 1, 0))  # of another stream
+        await sender._handle_rtcp_packet(report_of(sender._ssrc, 0))
+        (report,) = reports
+        assert (report.lost, report.expected, math.isnan(report.round_trip_s)) == (7, 900, True)
+        sender._RTCRtpSender__lsr, sender._RTCRtpSender__lsr_time = 5, time.time() - 0.3
+        await sender._handle_rtcp_packet(report_of(sender._ssrc, 5, since_s=0.1))
+        assert reports[-1].round_trip_s == pytest.approx(0.2, abs=0.05)
+        sender._RTCRtpSender__lsr_time = time.time() + 60  # the clock is set back
+        await sender._handle_rtcp_packet(report_of(sender._ssrc, 5, since_s=0.1))
+        assert math.isnan(reports[-1].round_trip_s)
+        for source in (sender._ssrc, sender._ssrc + 1):
+            fci = rtp.pack_remb_fci(512_000, [source])
+            await sender._handle_rtcp_packet(rtp.RtcpPsfbPacket(rtp.RTCP_PSFB_APP, 1, 0, fci))
+        await sender._handle_rtcp_packet(rtp.RtcpPsfbPacket(rtp.RTCP_PSFB_APP, 1, 0, b"something else"))
+        assert estimates_bps == [512_000]
+        await connection.close()
+
+    on_loop(body)
+
+
 def test_the_negotiated_codec_is_known() -> None:
     async def body() -> None:
         async with streaming() as (sender, _):
@@ -156,5 +213,6 @@ def test_the_private_names_exist() -> None:
     """What the hooks replace: a rename in aiortc must fail here, not in the field."""
     source = RTCRtpSender.__init__.__code__.co_names
     assert "_RTCRtpSender__rtp_header_extensions_map" in source
+    assert {"_RTCRtpSender__rtp_history", "_RTCRtpSender__lsr", "_RTCRtpSender__lsr_time"} <= set(source)
     assert callable(RTCRtpSender._send_keyframe)
     assert {"configure", "set"} <= vars(rtp.HeaderExtensionsMap).keys()

@@ -9,7 +9,6 @@ from aioice import mdns
 from aiortc import RTCConfiguration, RTCPeerConnection
 
 from mart.protocol.tokens import Role
-from mart.teleop_gateway.video.encoder import Codec
 from mart.teleop_gateway.webrtc.peer import Peer
 
 NAME = "0c5c2a4d-1b0e-4a9e-9df4-0d3a3b1c2d3e.local"
@@ -24,7 +23,10 @@ class Unheard:
     def on_status(self, peer: Peer, text: str) -> None:
         """Nobody speaks."""
 
-    def on_keyframe_wanted(self, codec: Codec) -> None:
+    def on_keyframe_wanted(self, peer: Peer) -> None:
+        """Nobody watches."""
+
+    def on_limit(self) -> None:
         """Nobody watches."""
 
     def on_gone(self, peer: Peer) -> None:

@@ -11,8 +11,7 @@ import functools
 import logging
 import os
 import re
-from collections.abc import AsyncIterator
-from collections.abc import Set as AbstractSet
+from collections.abc import AsyncIterator, Mapping
 
 import pytest
 from aiortc.rtcsctptransport import WEBRTC_BINARY, WEBRTC_STRING
@@ -23,7 +22,7 @@ from mart.protocol.errors import InvalidInput
 from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryNetwork
-from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.encoder import Stream
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peers import Peers
@@ -46,7 +45,7 @@ class Listener:
     def on_left(self, peer: Peer) -> None:
         self.left.set()
 
-    def on_watched(self, codecs: AbstractSet[Codec]) -> None:
+    def on_watched(self, limits_bps: Mapping[Stream, float]) -> None:
         """Nothing to do."""
 
     def on_pose(self, peer: Peer, payload: bytes) -> None:
@@ -58,7 +57,7 @@ class Listener:
         with contextlib.suppress(InvalidInput):
             status_channel.parse(text)
 
-    def on_keyframe_wanted(self, codec: Codec) -> None:
+    def on_keyframe_wanted(self, stream: Stream) -> None:
         """Nothing to do."""
 
 

@@ -70,7 +70,7 @@ def test_no_message_is_more_than_a_seat_can_take(said: list[dict[str, Any]], now
         events=nobody,
         broadcaster=nobody,
     )
-    peer = cast("Peer", mock.MagicMock(role=Role.BROWSER, clock_offset_ns=None))
+    peer = cast("Peer", mock.MagicMock(role=Role.BROWSER, clock_offset_ns=None, limit_bps=3e5))
     for message in said:
         messages.on_status(peer, json.dumps(message))
     command = driving.receive(InputDevice.KEYBOARD, phone_frame(1).encode(), ToolMotion(HOME), 1.0, now_ns)

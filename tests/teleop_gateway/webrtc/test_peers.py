@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Set as AbstractSet
+import math
 from typing import Any, cast
 from unittest import mock
 
@@ -21,81 +21,12 @@ from mart.protocol.messages import (
 from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryNetwork
-from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.encoder import RECORDED, Codec
 from mart.teleop_gateway.webrtc import peers as module
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peers import MAX_VIEWERS, SILENT_S, Peers
 from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
-
-CONNECTS = "an offer of a page that connects"
-
-
-class StubPeer:
-    """A peer without a connection, last heard at 0 s."""
-
-    codec: Codec | None = None
-    track = None
-
-    def __init__(self, role: Role, _listener: object, _ice_servers: object, holder_id: str) -> None:
-        self.role = role
-        self.holder_id = holder_id
-        self.heard_s = 0.0
-        self.is_connected = False
-        self.is_closed = False
-        self.draws = False
-        self.poses = b""
-
-    async def answer(self, offer_sdp: str) -> str:
-        await asyncio.sleep(0)
-        self.is_connected = offer_sdp == CONNECTS
-        return offer_sdp
-
-    async def close(self) -> None:
-        self.is_closed = True
-
-    def send_status(self, text: str) -> None:
-        """Nobody hears it."""
-
-    def set_draws(self, draws: bool) -> None:
-        self.draws = draws
-
-    def send_poses(self, message: bytes) -> None:
-        self.poses = message
-
-
-class Leavers:
-    """Keeps the roles of those that left."""
-
-    def __init__(self) -> None:
-        self.left: list[Role] = []
-
-    def on_joined(self, peer: Peer) -> None:
-        peer.heard_s = {Role.BROWSER: 100.0, Role.PHONE: 90.0, Role.VIEWER: 89.0}[peer.role]
-
-    def on_left(self, peer: Peer) -> None:
-        self.left.append(peer.role)
-
-    def on_watched(self, codecs: AbstractSet[Codec]) -> None:
-        """Nobody watches."""
-
-    def on_pose(self, peer: Peer, payload: bytes) -> None:
-        """Nobody drives."""
-
-    def on_status(self, peer: Peer, text: str) -> None:
-        """Nobody speaks."""
-
-    def on_keyframe_wanted(self, codec: Codec) -> None:
-        """Nobody watches."""
-
-
-async def seated() -> tuple[Peers, Leavers]:
-    """A browser that was heard at 100 s, a phone at 90 s, and a viewer at 89 s."""
-    peers = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list)
-    leavers = Leavers()
-    peers.attach(leavers)
-    for role in (Role.BROWSER, Role.PHONE, Role.VIEWER):
-        await peers.answer(role, "", "ana")
-    return peers, leavers
+from tests.teleop_gateway.webrtc.stub_peers import CONNECTS, StubPeer, seated
 
 
 @pytest.fixture(autouse=True)
@@ -137,15 +68,11 @@ def test_a_page_that_draws_watches_no_video_and_is_told_poses() -> None:
         peers, _ = await seated()
         browser, _, viewer = cast("list[StubPeer]", list(peers))
         browser.codec = viewer.codec = Codec.H264
-        assert (peers.any_draws, peers.holder_draws, peers.codecs()) == (
-            False,
-            False,
-            frozenset({Codec.H264}),
-        )
+        assert (peers.any_draws, peers.holder_draws, peers.streams()) == (False, False, {RECORDED: math.inf})
         peers.set_draws(cast("Peer", viewer), True)
-        assert (peers.any_draws, peers.holder_draws, peers.codecs()) == (True, False, frozenset({Codec.H264}))
+        assert (peers.any_draws, peers.holder_draws, peers.streams()) == (True, False, {RECORDED: math.inf})
         peers.set_draws(cast("Peer", browser), True)
-        assert (peers.any_draws, peers.holder_draws, peers.codecs()) == (True, True, frozenset())
+        assert (peers.any_draws, peers.holder_draws, peers.streams()) == (True, True, {})
         peers.set_draws(cast("Peer", viewer), False)
         peers.put_poses(b"poses")
         assert (browser.poses, viewer.poses) == (b"poses", b"")

@@ -62,6 +62,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "let_go": "",
         "gripper": 0.25,
         "gripper_set": 1,
+        "hand_scale": 1.0,
         "holding": False,
         "phase": "recording",
         "ready": True,
@@ -170,4 +171,5 @@ def test_a_ping_comes_back_as_it_was_sent() -> None:
     ping = status_channel.parse(status_channel.ping(123456.75))
     assert isinstance(ping, status_channel.PingMessage)
     assert json.loads(status_channel.pong(ping, 42)) == {"type": "pong", "t_us": 123456.75, "gateway_ns": 42}
+    assert json.loads(status_channel.pong(ping, 42, 351_400.0))["picture_kbit_s"] == 351
     assert status_channel.parse(status_channel.clock_offset(-5)) == status_channel.ClockMessage(-5)

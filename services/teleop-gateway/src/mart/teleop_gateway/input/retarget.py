@@ -54,8 +54,8 @@ class Retarget:
     """
 
     def __init__(self, azimuth_rad: float, scale: float = 1.0) -> None:
+        self.scale = scale
         self._azimuth_rad = azimuth_rad
-        self._scale = scale
         self._grip: _ClutchReference | None = None
         self._stopping: Stopping | None = None
 
@@ -98,7 +98,7 @@ class Retarget:
 
     def _moved(self, grip: _ClutchReference, phone_in_session: Pose) -> Pose:
         before = grip.phone_in_session
-        shift = self._scale * (phone_in_session.position - before.position)
+        shift = self.scale * (phone_in_session.position - before.position)
         turn = quaternion_multiply(
             phone_in_session.quaternion_wxyz, quaternion_conjugate(before.quaternion_wxyz)
         )

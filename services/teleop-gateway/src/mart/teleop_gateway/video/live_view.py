@@ -9,8 +9,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections import deque
-from collections.abc import Callable
-from collections.abc import Set as AbstractSet
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from statistics import median
@@ -26,16 +25,16 @@ from mart.render import Image
 from mart.runtime.rate_limit import RateLimit
 from mart.runtime.watchdog import end_process, start_vital_thread
 from mart.teleop_gateway.video.adaptive_resolution import AdaptiveResolution, at_full_size
-from mart.teleop_gateway.video.encoder import CLOCK_HZ, Codec, EncodedPicture, Encoder, to_i420
+from mart.teleop_gateway.video.encoder import RECORDED, EncodedPicture, Stream
 from mart.teleop_gateway.video.motion_to_photon import PictureStamps
 from mart.teleop_gateway.video.quality import FAST, Quality
 from mart.teleop_gateway.video.render_queue import RenderQueue, RenderQueueClosed, UndrawnState
 from mart.teleop_gateway.video.seat_renderer import SeatRenderer
+from mart.teleop_gateway.video.stream_encoders import StreamEncoders
 from mart.teleop_gateway.video.thumbnail import Thumbnail, ThumbnailMaker
 
 _log = logging.getLogger(__name__)
 
-KEYFRAME_EVERY_S = 2.0
 _REPEAT_AFTER_S = 0.5  # a resting world is sent again: whoever lost the last picture gets it
 _KEYFRAME_WITHIN_S = 0.05
 _RATE_WINDOW = 40
@@ -88,7 +87,7 @@ class _RenderPipeline:
     def _prepare(self, quality: Quality) -> None:
         self._quality = quality
         self.picture_rgb = quality.blank_picture()
-        self.encoders = {codec: Encoder(codec, self._frames_per_s, quality) for codec in Codec}
+        self.encoders = StreamEncoders(self._frames_per_s, quality)
 
 
 class LiveView:
@@ -111,7 +110,7 @@ class LiveView:
         self._model, self._camera, self._sink, self._quality = model, camera, sink, quality
         self._frames_per_s, self._ghost_in = frames_per_s, ghost_in
         self._queue = RenderQueue()
-        self._keyframe_s = dict.fromkeys(Codec, -KEYFRAME_EVERY_S)
+        self._streams: Mapping[Stream, float] = {}
         self._log_limit = RateLimit(1)
         self._times_s: deque[float] = deque(maxlen=_RATE_WINDOW)
         self._took_s: deque[float] = deque(maxlen=_RATE_WINDOW)  # as at full size
@@ -134,20 +133,21 @@ class LiveView:
         """Draw this state next, in the place of one that is not drawn yet. `received_ns` is when it came here."""
         self._queue.offer(state, received_ns)
 
-    def set_codecs(self, codecs: AbstractSet[Codec]) -> None:
-        """Encode in these codecs. H.264 is always made: the recorder keeps what the operator saw."""
-        self._queue.set_codecs(codecs)
+    def set_streams(self, limits_bps: Mapping[Stream, float]) -> None:
+        """Make these streams, with so many bits a second; infinity without a limit. The recorded one is always made."""
+        self._streams = limits_bps
+        self._queue.set_streams(limits_bps)
 
     def set_resting(self, resting: bool) -> None:
         """Draw thumbnails alone; or draw every state again, from a keyframe on."""
         self._resting = resting
         if not resting:
-            for codec in Codec:
-                self._queue.request_keyframe(codec)
+            for stream in {RECORDED, *self._streams}:
+                self._queue.request_keyframe(stream)
 
-    def request_keyframe(self, codec: Codec) -> None:
-        """Make the next picture in this codec a keyframe."""
-        self._queue.request_keyframe(codec)
+    def request_keyframe(self, stream: Stream) -> None:
+        """Make the next picture of this stream a keyframe."""
+        self._queue.request_keyframe(stream)
 
     def frames_per_s(self) -> float:
         """Return the rate of the last pictures; 0 where nothing was drawn for a second."""
@@ -210,13 +210,8 @@ class LiveView:
                     self._sink(thumbnail)
 
     def _encode(self, pipeline: _RenderPipeline, drawn: UndrawnState, rendered_ns: int) -> None:
+        limits_bps, wanted = self._queue.take_orders()
         now_s = clock.monotonic_s()
-        watched, wanted = self._queue.take_orders()
-        picture_i420 = to_i420(pipeline.picture_rgb)
-        for codec in sorted(watched | {Codec.H264}):
-            keyframe = codec in wanted or now_s - self._keyframe_s[codec] >= KEYFRAME_EVERY_S
-            encoded = pipeline.encoders[codec].encode(picture_i420, int(now_s * CLOCK_HZ), keyframe)
-            if encoded.keyframe:
-                self._keyframe_s[codec] = now_s
+        for encoded in pipeline.encoders.encode(pipeline.picture_rgb, now_s, limits_bps, wanted):
             stamps = PictureStamps(drawn.received_ns, rendered_ns, clock.wall_ns())
             self._sink(SeatPicture(encoded, drawn.state.tick, drawn.state.stamps.stepped_ns, stamps))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 
-from mart.teleop_gateway.video.encoder import Codec, EncodedPicture
+from mart.teleop_gateway.video.encoder import RECORDED, EncodedPicture
 from mart.teleop_gateway.video.live_view import SeatPicture
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
 from mart.teleop_gateway.video.thumbnail import Thumbnail
@@ -41,6 +41,6 @@ class PictureRelay:
 
     def _pass_on(self, picture: SeatPicture) -> None:
         self._to_peers(picture.encoded)
-        if picture.encoded.codec is Codec.H264 and not self._holder_draws():
+        if picture.encoded.stream == RECORDED and not self._holder_draws():
             self._latency.on_picture(picture.tick, picture.stamps)
             self._on_drawn(picture.tick)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Set as AbstractSet
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from mart.protocol import clock
 from mart.protocol.messages import State
-from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.encoder import Stream
 
 
 @dataclass(frozen=True)
@@ -25,8 +25,8 @@ class RenderQueue:
     def __init__(self) -> None:
         self._changed = threading.Condition()
         self._newest: UndrawnState | None = None
-        self._keyframes: set[Codec] = set()
-        self._codecs: frozenset[Codec] = frozenset()
+        self._keyframes: set[Stream] = set()
+        self._limits_bps: Mapping[Stream, float] = {}
         self._closed = False
 
     def offer(self, state: State, received_ns: int) -> None:
@@ -35,16 +35,16 @@ class RenderQueue:
             self._newest = UndrawnState(state, received_ns)
             self._changed.notify()
 
-    def request_keyframe(self, codec: Codec) -> None:
-        """Want the next picture in this codec to be a keyframe."""
+    def request_keyframe(self, stream: Stream) -> None:
+        """Want the next picture of this stream to be a keyframe."""
         with self._changed:
-            self._keyframes.add(codec)
+            self._keyframes.add(stream)
             self._changed.notify()
 
-    def set_codecs(self, codecs: AbstractSet[Codec]) -> None:
-        """Tell which codecs somebody watches."""
+    def set_streams(self, limits_bps: Mapping[Stream, float]) -> None:
+        """Tell which streams somebody watches, and their limits, bits a second."""
         with self._changed:
-            self._codecs = frozenset(codecs)
+            self._limits_bps = dict(limits_bps)
 
     def close(self) -> None:
         """Tell whoever takes that there will be no more."""
@@ -68,11 +68,14 @@ class RenderQueue:
             fresh, self._newest = self._newest, None
             return fresh
 
-    def take_orders(self) -> tuple[frozenset[Codec], frozenset[Codec]]:
-        """Return the codecs that somebody watches, and those of which a keyframe is wanted: once, for each wish."""
+    def take_orders(self) -> tuple[Mapping[Stream, float], frozenset[Stream]]:
+        """Return the streams that somebody watches with their limits, and those of which a keyframe is wanted.
+
+        Each wish is told once.
+        """
         with self._changed:
             wanted, self._keyframes = frozenset(self._keyframes), set()
-            return self._codecs, wanted
+            return self._limits_bps, wanted
 
 
 class RenderQueueClosed(Exception):  # an end, not an error

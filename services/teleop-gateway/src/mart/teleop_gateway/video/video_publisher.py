@@ -8,7 +8,7 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 from mart.protocol import codec, keys
 from mart.runtime.bus.base import Bus
 from mart.teleop_gateway.served_seats import SeatAddress
-from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.encoder import RECORDED
 from mart.teleop_gateway.video.live_view import SeatPicture
 from mart.teleop_gateway.video.thumbnail import Thumbnail
 
@@ -28,12 +28,12 @@ class VideoPublisher:
         self._stills.close()
 
     def put(self, made: SeatPicture | Thumbnail) -> None:
-        """Publish what was made, from any one thread; VP8 is left out, it is for peers only."""
+        """Publish what was made, from any one thread; other streams than the recorded one are for peers only."""
         if isinstance(made, Thumbnail):
             image = CompressedImage(frame_id=self._arm, data=made.jpeg, format="jpeg")
             image.timestamp.FromNanoseconds(made.image_ns)
             self._stills.put(codec.encode(image))
-        elif made.encoded.codec is Codec.H264:
+        elif made.encoded.stream == RECORDED:
             video = CompressedVideo(frame_id=self._arm, data=made.encoded.data, format="h264")
             video.timestamp.FromNanoseconds(made.image_ns)
             self._video.put(codec.encode(video))

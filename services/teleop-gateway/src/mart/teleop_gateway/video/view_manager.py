@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable
-from collections.abc import Set as AbstractSet
+from collections.abc import Callable, Mapping
 
 from mart.protocol import keys
 from mart.protocol.errors import MartError
@@ -14,7 +13,7 @@ from mart.protocol.messages import Model, State
 from mart.protocol.received import decode_received
 from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.served_seats import SeatAddress
-from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.encoder import Stream
 from mart.teleop_gateway.video.live_view import LiveView, Sink
 from mart.teleop_gateway.video.page_drawing import PageDrawing
 from mart.teleop_gateway.video.quality import Quality
@@ -55,7 +54,7 @@ class ViewManager:
         self._sink, self._on_azimuth, self._quality = sink, on_azimuth, quality
         self._boot = 0
         self._sha256 = ""
-        self._codecs: frozenset[Codec] = frozenset()
+        self._limits_bps: Mapping[Stream, float] = {}
         self._view: LiveView | None = None
         self._fetching: asyncio.Task[None] | None = None
         self._stopping: asyncio.Future[None] | None = None  # the view before
@@ -75,11 +74,11 @@ class ViewManager:
             self._fetching.cancel()
         self._fetching = self._bus.spawn(self._fetch())
 
-    def set_codecs(self, codecs: AbstractSet[Codec]) -> None:
-        """Encode in these codecs, now and in every later view."""
-        self._codecs = frozenset(codecs)
+    def set_streams(self, limits_bps: Mapping[Stream, float]) -> None:
+        """Make these streams, with so many bits a second, now and in every later view."""
+        self._limits_bps = dict(limits_bps)
         if self._view is not None:
-            self._view.set_codecs(self._codecs)
+            self._view.set_streams(self._limits_bps)
 
     def set_resting(self, resting: bool) -> None:
         """Draw nothing but thumbnails, now and in every later view, because nobody needs the pictures; or draw on."""
@@ -88,10 +87,10 @@ class ViewManager:
             if self._view is not None:
                 self._view.set_resting(resting)
 
-    def request_keyframe(self, codec: Codec) -> None:
-        """Make the next picture in this codec a keyframe."""
+    def request_keyframe(self, stream: Stream) -> None:
+        """Make the next picture of this stream a keyframe."""
         if self._view is not None:
-            self._view.request_keyframe(codec)
+            self._view.request_keyframe(stream)
 
     def frames_per_s(self) -> float:
         """Return the rate of the last pictures; 0 where there are none."""
@@ -139,7 +138,7 @@ class ViewManager:
         self._pages.use(model, task)
         drawn, ghosts = drawn_model(model, self._quality), ghosts_for(task, arm)
         view = LiveView(drawn, arm, message.control_hz, self._sink, self._quality, ghost_in=ghosts)
-        view.set_codecs(self._codecs)
+        view.set_streams(self._limits_bps)
         view.set_resting(self._resting)
         # Where this is cancelled half-way, no model is drawn: the next one that is fetched must be used.
         self._sha256 = ""

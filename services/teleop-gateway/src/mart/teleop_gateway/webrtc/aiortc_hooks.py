@@ -7,11 +7,16 @@ picture comes more steadily than with the receiver's own smoothing.
 
 from __future__ import annotations
 
+import contextlib
+import math
 from collections.abc import Callable
 
 from aiortc import RTCPeerConnection, RTCRtpSender, RTCRtpTransceiver, RTCSctpTransport, rtp
 from aiortc.codecs import HEADER_EXTENSIONS
 from aiortc.rtcrtpparameters import RTCRtpHeaderExtensionParameters, RTCRtpParameters
+
+from mart.protocol import clock
+from mart.teleop_gateway.webrtc.rate_control import ReceiverReport
 
 PLAYOUT_DELAY_URI = "http://www.webrtc.org/experiments/rtp-hdrext/playout-delay"
 _FREE_ID = 4  # aiortc takes 1 to 3; a browser that offers the extension brings its own number
@@ -33,6 +38,38 @@ def show_at_once(sender: RTCRtpSender) -> None:
 def on_keyframe_request(sender: RTCRtpSender, handler: Callable[[], None]) -> None:
     """Call `handler` on PLI and FIR: a sender of encoded pictures only sets a flag that nobody reads."""
     sender._send_keyframe = handler  # type: ignore[method-assign]  # noqa: SLF001
+
+
+def on_feedback(
+    sender: RTCRtpSender, on_report: Callable[[ReceiverReport], None], on_estimate: Callable[[int], None]
+) -> None:
+    """Call `on_report` with every report of the receiver, `on_estimate` with what it can receive, bits a second."""
+    handle = sender._handle_rtcp_packet  # noqa: SLF001
+
+    async def handle_and_tell(packet: rtp.AnyRtcpPacket) -> None:
+        await handle(packet)
+        if isinstance(packet, rtp.RtcpRrPacket | rtp.RtcpSrPacket):
+            for info in packet.reports:
+                if info.ssrc == sender._ssrc:  # noqa: SLF001
+                    round_trip_s = _round_trip_s(sender, info)
+                    on_report(ReceiverReport(info.packets_lost, info.highest_sequence, round_trip_s))
+        elif isinstance(packet, rtp.RtcpPsfbPacket) and packet.fmt == rtp.RTCP_PSFB_APP:
+            estimate_bps = _estimate_bps(packet, sender)
+            if estimate_bps is not None:
+                on_estimate(estimate_bps)
+
+    sender._handle_rtcp_packet = handle_and_tell  # type: ignore[method-assign]  # noqa: SLF001
+
+
+def on_packet_sent(sender: RTCRtpSender, handler: Callable[[int, int], None]) -> None:
+    """Call `handler` with the sequence number and the bytes of every packet that is sent for the first time."""
+    sender._RTCRtpSender__rtp_history = _SentPackets(handler)  # type: ignore[attr-defined]  # noqa: SLF001
+
+
+async def send_again(sender: RTCRtpSender, sequence_number: int) -> None:
+    """Send a packet once more, as its retransmission; nothing where it was sent long ago, or the connection ended."""
+    with contextlib.suppress(ConnectionError):
+        await sender._retransmit(sequence_number)  # noqa: SLF001
 
 
 def on_unreadable(sctp: RTCSctpTransport, handler: Callable[[Exception], None]) -> None:
@@ -62,6 +99,36 @@ async def close_connection(connection: RTCPeerConnection) -> None:
 def sent_codec(transceiver: RTCRtpTransceiver) -> str:
     """Return the codec that was negotiated for sending: "H264", "VP8"."""
     return transceiver._codecs[0].name  # noqa: SLF001
+
+
+def _round_trip_s(sender: RTCRtpSender, info: rtp.RtcpReceiverInfo) -> float:
+    """Return how long sender's newest report and its answer took; NaN where the answer is to an older one.
+
+    NaN also where the clock was set back meanwhile.
+    """
+    if not info.dlsr or info.lsr != sender._RTCRtpSender__lsr:  # type: ignore[attr-defined]  # noqa: SLF001
+        return math.nan
+    sent_s: float = sender._RTCRtpSender__lsr_time  # type: ignore[attr-defined]  # noqa: SLF001
+    took_s = clock.wall_ns() * 1e-9 - sent_s - info.dlsr / 65_536
+    return took_s if took_s >= 0 else math.nan
+
+
+def _estimate_bps(packet: rtp.RtcpPsfbPacket, sender: RTCRtpSender) -> int | None:
+    try:
+        estimate_bps, sources = rtp.unpack_remb_fci(packet.fci)
+    except ValueError:
+        return None
+    return estimate_bps if sender._ssrc in sources else None  # noqa: SLF001
+
+
+class _SentPackets(dict[int, rtp.RtpPacket]):
+    def __init__(self, handler: Callable[[int, int], None]) -> None:
+        super().__init__()
+        self._handler = handler
+
+    def __setitem__(self, slot: int, packet: rtp.RtpPacket) -> None:
+        super().__setitem__(slot, packet)
+        self._handler(packet.sequence_number, len(packet.payload))
 
 
 class _NoPlayoutDelay(rtp.HeaderExtensionsMap):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import math
 from collections.abc import Sequence
 from typing import Protocol
 
@@ -22,7 +23,7 @@ from mart.protocol.queryables import MAX_SDP_CHARACTERS
 from mart.protocol.tokens import Role
 from mart.runtime.ice_servers import IceServer
 from mart.runtime.rate_limit import RateLimit
-from mart.teleop_gateway.video.encoder import Codec, EncodedPicture
+from mart.teleop_gateway.video.encoder import Audience, Codec, EncodedPicture, Stream
 from mart.teleop_gateway.webrtc.aiortc_hooks import (
     close_connection,
     offer_playout_delay,
@@ -33,6 +34,7 @@ from mart.teleop_gateway.webrtc.aiortc_hooks import (
 )
 from mart.teleop_gateway.webrtc.ice_candidates import bounded_candidates
 from mart.teleop_gateway.webrtc.named_candidates import add_named
+from mart.teleop_gateway.webrtc.sender_feedback import SenderFeedback
 from mart.teleop_gateway.webrtc.track import EncodedTrack
 
 _log = logging.getLogger(__name__)
@@ -51,8 +53,11 @@ class PeerListener(Protocol):
     def on_status(self, peer: Peer, text: str) -> None:
         """Take a message of its status channel."""
 
-    def on_keyframe_wanted(self, codec: Codec) -> None:
+    def on_keyframe_wanted(self, peer: Peer) -> None:
         """Take that it cannot go on without a keyframe."""
+
+    def on_limit(self) -> None:
+        """Take that its link may carry more or less than it did."""
 
     def on_gone(self, peer: Peer) -> None:
         """Take that its connection has ended."""
@@ -70,6 +75,8 @@ class Peer:
         self.holder_id = holder_id
         self.codec: Codec | None = None
         self.track: EncodedTrack | None = None
+        self._audience = Audience.EVERYONE
+        self._feedback: SenderFeedback | None = None
         self.clock_offset_ns: int | None = None  # gateway clock minus the peer's, once it has told
         self.heard_s = clock.monotonic_s()
         self.draws = False  # its page draws by itself: it wants poses and no video
@@ -109,16 +116,34 @@ class Peer:
         """Send where the bodies are; dropped like a message of the status channel: the next tick's is newer."""
         _send(self._bodies, message)
 
+    @property
+    def stream(self) -> Stream | None:
+        """Return the stream whose pictures it is shown; None where it needs none."""
+        return None if self.codec is None or self.draws else Stream(self.codec, self._audience)
+
+    @property
+    def limit_bps(self) -> float:
+        """Return how many bits a second of pictures its link carries; infinity where nothing says so."""
+        return self._feedback.limit_bps if self._feedback is not None else math.inf
+
     def show_video(self, encoded: EncodedPicture) -> None:
-        """Send a picture, unless this peer has another codec, or none, or draws by itself."""
-        if self.track is not None and self.codec is encoded.codec and not self.draws:
+        """Send a picture of its stream."""
+        if self.track is not None and self.stream == encoded.stream:
             self.track.put(encoded)
+
+    def set_audience(self, audience: Audience) -> None:
+        """Show it the stream for these from now on, which begins with a keyframe."""
+        if audience is not self._audience:
+            self._audience = audience
+            if self.track is not None:
+                self.track.restart()
 
     def set_draws(self, draws: bool) -> None:
         """Take whether its page draws by itself; where it does not any more, video begins with a keyframe."""
-        if self.draws and not draws and self.track is not None:
-            self.track.restart()
+        restarts = self.draws and not draws
         self.draws = draws
+        if restarts and self.track is not None:
+            self.track.restart()
 
     async def close(self) -> None:
         """Return when the connection has ended."""
@@ -126,6 +151,8 @@ class Peer:
             self._looking_up.cancel()
         if self.track is not None:
             self.track.stop()
+        if self._feedback is not None:
+            self._feedback.close()
         await close_connection(self._connection)
 
     async def _negotiate(self, offer_sdp: str) -> None:
@@ -148,6 +175,7 @@ class Peer:
         sender = self._connection.addTrack(self.track)
         show_at_once(sender)
         on_keyframe_request(sender, self._want_keyframe)
+        self._feedback = SenderFeedback(sender, self._listener.on_limit)
         (transceiver,) = self._connection.getTransceivers()
         codecs = RTCRtpSender.getCapabilities("video").codecs
         order = {"video/H264": 0, "video/VP8": 1, "video/rtx": 2}
@@ -155,8 +183,7 @@ class Peer:
         return sender
 
     def _want_keyframe(self) -> None:
-        if self.codec is not None:
-            self._listener.on_keyframe_wanted(self.codec)
+        self._listener.on_keyframe_wanted(self)
 
     def _on_channel(self, channel: RTCDataChannel) -> None:
         if channel.label == "pose":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Set as AbstractSet
+from collections.abc import Mapping
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
@@ -12,7 +12,7 @@ from mart.teleop_gateway.input.cues import CueFilter
 from mart.teleop_gateway.input.driving import InputDevice
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.seat_events import SeatEvents
-from mart.teleop_gateway.video.encoder import Codec
+from mart.teleop_gateway.video.encoder import Stream
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton, PageDraws
 from mart.teleop_gateway.video.page_drawing import PageDrawing
 from mart.teleop_gateway.video.view_manager import ViewManager
@@ -57,15 +57,15 @@ class PeerMessages:
         if peer.role in _DEVICES:
             self._input.disconnect(_DEVICES[peer.role])
 
-    def on_watched(self, codecs: AbstractSet[Codec]) -> None:
+    def on_watched(self, limits_bps: Mapping[Stream, float]) -> None:
         """Encode what somebody watches, and nothing else."""
-        self._views.set_codecs(codecs)
+        self._views.set_streams(limits_bps)
         self._pages.want(self._peers.any_draws)
         self._broadcaster.rest_where_unneeded()
 
-    def on_keyframe_wanted(self, codec: Codec) -> None:
+    def on_keyframe_wanted(self, stream: Stream) -> None:
         """Make the next picture one that needs none before it."""
-        self._views.request_keyframe(codec)
+        self._views.request_keyframe(stream)
 
     def on_pose(self, peer: Peer, payload: bytes) -> None:
         """Drive the arm by a phone frame."""
@@ -81,7 +81,7 @@ class PeerMessages:
             return
         match message:
             case status_channel.PingMessage():
-                peer.send_status(status_channel.pong(message, clock.wall_ns()))
+                peer.send_status(status_channel.pong(message, clock.wall_ns(), peer.limit_bps))
             case status_channel.ClockMessage(offset_ns):
                 peer.clock_offset_ns = offset_ns
             case status_channel.SeenMessage(tick, t_us) if peer.clock_offset_ns is not None:

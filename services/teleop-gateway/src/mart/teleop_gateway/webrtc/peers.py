@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterator, Sequence
-from collections.abc import Set as AbstractSet
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Protocol
 
+from mart.protocol import clock
 from mart.protocol.errors import Conflict
 from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.ice_servers import IceServer
-from mart.teleop_gateway.video.encoder import Codec, EncodedPicture
+from mart.runtime.rate_limit import RateLimit
+from mart.teleop_gateway.video.encoder import Audience, EncodedPicture, Stream
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
 
@@ -33,8 +35,8 @@ class PeersListener(Protocol):
     def on_left(self, peer: Peer) -> None:
         """Take the end of a peer, for whatever reason."""
 
-    def on_watched(self, codecs: AbstractSet[Codec]) -> None:
-        """Take which codecs are watched, whenever somebody joins or leaves."""
+    def on_watched(self, limits_bps: Mapping[Stream, float]) -> None:
+        """Take which streams are watched, and with how many bits a second, whenever that changes."""
 
     def on_pose(self, peer: Peer, payload: bytes) -> None:
         """Take a phone frame of a driving peer."""
@@ -42,7 +44,7 @@ class PeersListener(Protocol):
     def on_status(self, peer: Peer, text: str) -> None:
         """Take a message of the status channel."""
 
-    def on_keyframe_wanted(self, codec: Codec) -> None:
+    def on_keyframe_wanted(self, stream: Stream) -> None:
         """Take that somebody cannot go on without a keyframe."""
 
 
@@ -56,6 +58,8 @@ class Peers:
         self._listener: PeersListener | None = None
         self._driving: dict[Role, Peer] = {}
         self._viewers: list[Peer] = []
+        self._viewers_wishes = RateLimit(1)
+        self._told_bps: Mapping[Stream, float] = {}
 
     def __iter__(self) -> Iterator[Peer]:
         yield from self._driving.values()
@@ -87,7 +91,7 @@ class Peers:
             raise Conflict("Others came to watch this seat meanwhile; try again.")
         if self._listener is not None:
             self._listener.on_joined(peer)
-            self._listener.on_watched(self.codecs())
+            self._tell_streams()
         return sdp
 
     def _make_room(self, holder_id: str) -> None:
@@ -108,9 +112,13 @@ class Peers:
             self._drop(self._driving[role])
         self._driving[role] = peer
 
-    def codecs(self) -> frozenset[Codec]:
-        """Return the codecs that are being watched."""
-        return frozenset(peer.codec for peer in self if peer.codec is not None and not peer.draws)
+    def streams(self) -> Mapping[Stream, float]:
+        """Return the streams that are being watched, and how many bits a second the worst link to each carries."""
+        limits_bps: dict[Stream, float] = {}
+        for peer in self:
+            if peer.stream is not None:
+                limits_bps[peer.stream] = min(limits_bps.get(peer.stream, math.inf), peer.limit_bps)
+        return limits_bps
 
     @property
     def any_draws(self) -> bool:
@@ -127,11 +135,10 @@ class Peers:
         """Take that a peer's page draws by itself, or wants video."""
         if peer.draws != draws:
             peer.set_draws(draws)
-            if self._listener is not None:
-                self._listener.on_watched(self.codecs())
+            self._tell_streams()
 
     def put(self, encoded: EncodedPicture) -> None:
-        """Show a picture to all who watch its codec."""
+        """Show a picture to all who watch its stream."""
         for peer in self:
             peer.show_video(encoded)
 
@@ -175,15 +182,35 @@ class Peers:
         if self._listener is not None and self._is_present(peer):
             self._listener.on_status(peer, text)
 
-    def on_keyframe_wanted(self, codec: Codec) -> None:
-        """Pass on that a keyframe is wanted."""
-        if self._listener is not None:
-            self._listener.on_keyframe_wanted(codec)
+    def on_keyframe_wanted(self, peer: Peer) -> None:
+        """Pass on that a keyframe is wanted; of everyone's pictures one a second for all viewers.
+
+        A keyframe is as large as ten other pictures, and whoever drives gets it, too. The next regular one is near.
+        """
+        stream = peer.stream
+        if self._listener is None or stream is None:
+            return
+        spoils = peer.role is Role.VIEWER and stream.audience is Audience.EVERYONE
+        if not spoils or self._viewers_wishes.allows(clock.monotonic_s()):
+            self._listener.on_keyframe_wanted(stream)
+
+    def on_limit(self) -> None:
+        """Show whose link carries less than everyone's stream a stream for such, and the others everyone's."""
+        for peer in self:
+            own = Audience.VIEWERS if peer.role is Role.VIEWER else Audience.HOLDER
+            peer.set_audience(Audience.EVERYONE if math.isinf(peer.limit_bps) else own)
+        if self.streams() != self._told_bps:
+            self._tell_streams()
 
     def on_gone(self, peer: Peer) -> None:
         """Let a peer go whose connection has ended by itself."""
         if self._is_present(peer):
             self._drop(peer)
+
+    def _tell_streams(self) -> None:
+        self._told_bps = self.streams()
+        if self._listener is not None:
+            self._listener.on_watched(self._told_bps)
 
     def _is_present(self, peer: Peer) -> bool:
         return any(peer is present for present in self)
@@ -195,5 +222,5 @@ class Peers:
             self._viewers.remove(peer)
         if self._listener is not None:
             self._listener.on_left(peer)
-            self._listener.on_watched(self.codecs())
+            self._tell_streams()
         self._bus.spawn(peer.close())

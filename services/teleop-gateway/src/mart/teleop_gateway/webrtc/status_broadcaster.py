@@ -34,7 +34,7 @@ class StatusBroadcaster:
     def rest_where_unneeded(self) -> None:
         """Let the view rest where all who look draw by themselves, and nobody records what it sees."""
         recorded = self.status.episode.phase in _RECORDED
-        self._views.set_resting(self._peers.any_draws and not self._peers.codecs() and not recorded)
+        self._views.set_resting(self._peers.any_draws and not self._peers.streams() and not recorded)
 
     async def run(self) -> None:
         """Tell until cancelled; peers that have been silent for too long are dropped on the way."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -99,9 +100,10 @@ def parse(text: str | bytes) -> PeerMessage:
     )
 
 
-def pong(ping: PingMessage, gateway_ns: int) -> str:
-    """Return the answer to a ping."""
-    return _text({"type": "pong", "t_us": ping.t_us, "gateway_ns": gateway_ns})
+def pong(ping: PingMessage, gateway_ns: int, limit_bps: float = math.inf) -> str:
+    """Return the answer to a ping, with how many bits a second of pictures the peer's link carries, where it limits."""
+    limit = {} if math.isinf(limit_bps) else {"picture_kbit_s": round(limit_bps * 1e-3)}
+    return _text({"type": "pong", "t_us": ping.t_us, "gateway_ns": gateway_ns, **limit})
 
 
 def replaced() -> str:
@@ -143,6 +145,7 @@ def tick(
             "gripper": round(driving.gripper, 3),
             "gripper_set": driving.gripper_set,
             "holding": driving.holding,
+            "hand_scale": driving.retarget.scale,
             "phase": phase_word(room.episode.phase),
             "ready": any(seat.ready for seat in room.seats if seat.arm == driving.arm),
             "barrier": barrier_word(room.barrier),

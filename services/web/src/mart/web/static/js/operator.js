@@ -66,6 +66,7 @@ const drawn = new DrawnPicture({
   send: (message) => link.send(message),
   onShown,
   onChange: () => render(),
+  commanded: () => input.commandedSince(status),
 });
 const stop = emergencyStop({
   label: roomName,
@@ -186,7 +187,7 @@ function render() {
   const told = isTold();
   const still = displayed.standStill(status?.tick ?? 0, performance.now());
   const forMs = performance.now() - beganMs;
-  showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn }, video);
+  showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn, link }, video);
   stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());

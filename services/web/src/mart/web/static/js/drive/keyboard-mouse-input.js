@@ -4,6 +4,7 @@ import { encodeFrame, Flag } from "./frame.js";
 import { HandheldDevices } from "./handheld-devices.js";
 import { Keyboard } from "./keyboard.js";
 import { Pointer } from "./pointer.js";
+import { SentHands } from "./sent-hands.js";
 import { everyFrame } from "./ticker.js";
 import { VirtualPhone } from "./virtual-phone.js";
 
@@ -27,6 +28,7 @@ export class KeyboardMouseInput {
   #gripper = 0;
   #stopPressedMs = -Infinity;
   #sequence = 0;
+  #sent = new SentHands();
   #lastMs = 0;
 
   /**
@@ -93,6 +95,17 @@ export class KeyboardMouseInput {
   }
 
   /**
+   * How far the tool was told to go since the tick that this status is of: x right, y up, z towards the person, metres.
+   * @param {StatusChannel.Tick | null} status
+   * @returns {Vector | null}
+   */
+  commandedSince(status) {
+    const moved = status?.engaged && status.input === "keyboard" ? this.#sent.movedSince(status.sequence) : null;
+    const scale = status?.hand_scale ?? 1;
+    return moved && [scale * moved[0], scale * moved[1], scale * moved[2]];
+  }
+
+  /**
    * What the input panel shows.
    * @param {StatusChannel.Tick | null} status
    * @returns {HandView}
@@ -115,6 +128,7 @@ export class KeyboardMouseInput {
       (performance.now() - this.#stopPressedMs < STOP_TOLD_MS ? Flag.EMERGENCY_STOP : 0);
     this.#sequence += 1;
     const { position, quaternionWxyz } = this.#phone;
+    this.#sent.add(this.#sequence, position, engaged);
     const [sequence, seenTick, gripper] = [this.#sequence, this.seenTick, this.#gripper];
     return encodeFrame({ seatEpoch, sequence, seenTick, sentUs, position, quaternionWxyz, gripper, flags });
   }

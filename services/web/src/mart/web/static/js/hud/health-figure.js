@@ -24,11 +24,12 @@ const STARTING_MS = 5000; // the first pictures of a seat cost more than those a
  * @property {StatusChannel.Tick | null} status
  * @property {Api.Room | null} room
  * @property {DrawnPicture} drawn
+ * @property {{ pictureKbitS: number }} link what the network carries, 0 where that is enough
  */
 
 /**
  * What the figure says. Pure.
- * @param {Omit<Known, "drawn">} known
+ * @param {Omit<Known, "drawn" | "link">} known
  * @returns {{ figure: string, grade: Grade, word: string, rate: string }}
  */
 export function healthOf({ told, live, still, forMs, status, room }) {
@@ -100,9 +101,11 @@ export function showHealth(known, video) {
  * @param {Known} known
  * @param {HTMLVideoElement} video
  */
-function showBreakdown({ told, live, status, room, drawn }, video) {
+function showBreakdown({ told, live, status, room, drawn, link }, video) {
   const factor = room && told ? `${room.real_time_factor.toFixed(2)}×` : "–";
-  const rows = [...breakdown(live ? status : null, video, drawn), ["Real time", factor]];
+  const isLimited = link.pictureKbitS > 0 && !drawn.isShown;
+  const limit = isLimited ? [["Picture limited by your network", `${link.pictureKbitS} kbit/s`]] : [];
+  const rows = [...breakdown(live ? status : null, video, drawn), ...limit, ["Real time", factor]];
   const cells = rows.map(([name = "", value = ""]) => [element("dt", {}, name), element("dd", {}, value)]);
   byId("breakdown").replaceChildren(...cells.flat());
 }

@@ -2,15 +2,12 @@
 
 import { messageOf, siteAnswers, statusOf } from "../api.js";
 import { ClockOffset } from "./clock-offset.js";
+import { Patience, PATIENCE_MS, Verdict } from "./patience.js";
 import { Peer } from "./peer.js";
 
-const SILENT_MS = 250; // the gateway speaks 20 times a second
-const LOST_MS = 1500; // a hiccup is not worth a new connection
-const PATIENCE_MS = 6000; // nor is an outage: the old one is back at its end, a new one takes seven round trips
 const LAST_WORD_MS = 300;
 const WATCH_MS = 50;
 const PING_MS = 1000;
-const CONNECT_MS = 15000;
 const FIRST_RETRY_MS = 250;
 const LONGEST_RETRY_MS = 4000;
 const CONFLICT = 409; // somebody else has the seat: it may be ours again at any moment
@@ -45,7 +42,7 @@ export const LinkState = Object.freeze({
 
 /**
  * Keeps a page connected to a seat. `problem`: why it does not connect, in words; `epoch`, `role`: whose seat it is and
- * what one may do there.
+ * what one may do there; `pictureKbitS`: what its picture is limited to, 0 without a limit.
  */
 export class SeatLink {
   /** @type {State} */
@@ -54,15 +51,17 @@ export class SeatLink {
   epoch = 0;
   /** @type {Api.PeerRole | ""} */
   role = "";
+  pictureKbitS = 0; // that the network carries, where that is less than the picture takes
   #options;
   /** @type {Peer | null} */
   #peer = null;
   #clock = new ClockOffset();
-  #heardMs = 0;
+  #patience = new Patience();
   #retryMs = FIRST_RETRY_MS;
   #attempt = 0; // an older attempt's late answers are not heard
   #retry = 0;
   #asking = false; // whether the site is there
+  #watched = false; // from an attempt's begin to its end
   #closed = true;
 
   /** @param {LinkOptions} options */
@@ -113,8 +112,10 @@ export class SeatLink {
     this.#drop();
     const attempt = this.#attempt;
     this.#clock = new ClockOffset();
+    this.pictureKbitS = 0;
     this.#setState(LinkState.CONNECTING);
-    this.#heardMs = performance.now() + CONNECT_MS - PATIENCE_MS;
+    this.#watched = true;
+    this.#patience.begin(performance.now());
     try {
       const peer = await this.#reach(await this.#options.approach(), attempt);
       if (attempt !== this.#attempt) {
@@ -160,10 +161,11 @@ export class SeatLink {
       this.close(LinkState.REPLACED);
       return;
     }
-    this.#heardMs = performance.now();
+    this.#patience.heard(performance.now());
     this.#retryMs = FIRST_RETRY_MS;
     this.#setState(LinkState.LIVE);
     if (message.type === "pong") {
+      this.pictureKbitS = message.picture_kbit_s ?? 0;
       this.send({ type: "clock", offset_ns: Math.round(this.#clock.pong(message, nowUs())) });
     } else if (message.type === "tick") {
       this.#options.onStatus(message);
@@ -176,24 +178,24 @@ export class SeatLink {
 
   /** @param {number} nowMs */
   #watch(nowMs) {
-    if (this.#closed || !this.#heardMs) return;
-    const silentMs = nowMs - this.#heardMs;
-    if (this.state === LinkState.LIVE && silentMs > SILENT_MS) this.#setState(LinkState.SILENT);
-    if (silentMs > PATIENCE_MS) this.#lose();
-    else if (this.state === LinkState.SILENT && silentMs > LOST_MS) void this.#askSite();
+    if (this.#closed || !this.#watched) return;
+    const verdict = this.#patience.verdict(nowMs);
+    if (this.state === LinkState.LIVE && verdict !== Verdict.FINE) this.#setState(LinkState.SILENT);
+    if (verdict === Verdict.LOST) this.#lose();
+    else if (verdict === Verdict.ASK) void this.#askSite();
   }
 
-  /** A site that answers while the seat is silent: it is not the network that is gone, and waiting would not help. */
   async #askSite() {
     if (this.#asking) return;
     this.#asking = true;
-    const [attempt, heardMs] = [this.#attempt, this.#heardMs];
+    const attempt = this.#attempt;
+    const isLost = this.#patience.ask();
     const answers = await siteAnswers(PATIENCE_MS);
     await new Promise((resolve) => {
       setTimeout(resolve, LAST_WORD_MS);
     });
     this.#asking = false;
-    if (answers && attempt === this.#attempt && heardMs === this.#heardMs) this.#lose();
+    if (answers && attempt === this.#attempt && isLost()) this.#lose();
   }
 
   #lose() {
@@ -207,7 +209,7 @@ export class SeatLink {
   #drop() {
     clearTimeout(this.#retry);
     this.#attempt += 1;
-    this.#heardMs = 0;
+    this.#watched = false;
     this.#peer?.close();
     this.#peer = null;
   }

@@ -33,6 +33,7 @@ const SLOW_FOR_MS = 24 * 60 * 60 * 1000;
  * @property {(message: StatusChannel.ToGateway) => void} send
  * @property {(tick: number, nowMs: number) => void} onShown a tick is on the canvas; five times a second at most
  * @property {() => void} onChange
+ * @property {() => readonly [number, number, number] | null} commanded how far the tool was told to go meanwhile
  */
 
 /** Draws a seat's view from poses. `why`: why there is video, in words; empty while it draws or nothing is known. */
@@ -205,6 +206,7 @@ export class DrawnPicture {
     if (!view || !poses || !this.isShown) return;
     const startMs = performance.now();
     view.setPoses(poses);
+    view.showCommanded(this.#options.arm, this.#options.commanded());
     view.draw();
     this.#draws += 1;
     if (startMs - this.#measuredMs >= MEASURE_EVERY_MS) this.#measure(view, poses.tick, startMs);

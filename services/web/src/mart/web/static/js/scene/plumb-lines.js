@@ -1,6 +1,7 @@
 // The line from every tool down to its spot, which shows how high the tool is.
 
 import { Vector3 } from "../../vendor/three.mjs";
+import { placedOn } from "./on-body.js";
 
 /** @import { Group, Mesh } from "../../vendor/three.mjs" */
 
@@ -30,24 +31,13 @@ export class PlumbLines {
   /** Hangs the lines anew. */
   hang() {
     for (const { body, position_m: onBody, foot_body: footBody, foot_m: onFoot, geom, mesh } of this.#lines) {
-      const tool = this.#placed(this.#tool, body, onBody);
-      const foot = this.#placed(this.#foot, footBody, onFoot);
+      const tool = placedOn(this.#tool, this.#bodies[body], onBody);
+      const foot = placedOn(this.#foot, this.#bodies[footBody], onFoot);
       const heightM = tool.z - foot.z;
       mesh.visible = heightM > SHORTEST_M;
       mesh.position.set(tool.x, tool.y, foot.z + heightM / 2);
       mesh.scale.setZ((geom.scale[2] ?? 1) * heightM);
       mesh.updateMatrix();
     }
-  }
-
-  /**
-   * @param {Vector3} into
-   * @param {number} index of the body
-   * @param {SceneFile.Numbers} onBody
-   */
-  #placed(into, index, [x = 0, y = 0, z = 0]) {
-    const body = this.#bodies[index];
-    into.set(x, y, z);
-    return body ? into.applyQuaternion(body.quaternion).add(body.position) : into;
   }
 }

@@ -11,6 +11,7 @@ import {
   Scene,
   WebGLRenderer,
 } from "../../vendor/three.mjs";
+import { CommandedTool, inWorld } from "./commanded-tool.js";
 import { ghostOf } from "./ghost.js";
 import { Materials } from "./materials.js";
 import { PlumbLines } from "./plumb-lines.js";
@@ -35,6 +36,7 @@ export class SceneView {
   #bodies;
   #cameras;
   #plumbLines;
+  #commanded;
   /** @type {Map<SceneFile.Ghost, Group>} */
   #ghosts;
 
@@ -57,8 +59,10 @@ export class SceneView {
     this.#bodies = description.bodies.map(() => new Group());
     const world = new Group();
     this.#plumbLines = new PlumbLines(description.plumb_lines, this.#bodies, (geom) => this.#made(geom));
+    this.#commanded = new CommandedTool(description, this.#bodies, (geom) => this.#made(geom));
     this.#ghosts = new Map(description.ghosts.map((ghost) => [ghost, this.#grouped(ghost.geoms)]));
-    this.#scene.add(world, ...this.#bodies, ...this.#plumbLines.meshes, ...this.#ghosts.values());
+    const lines = [...this.#plumbLines.meshes, ...this.#commanded.meshes];
+    this.#scene.add(world, ...this.#bodies, ...lines, ...this.#ghosts.values());
     for (const geom of description.geoms) (this.#bodies[geom.body] ?? world).add(this.#made(geom));
     this.showGhost("", []);
   }
@@ -113,6 +117,15 @@ export class SceneView {
   showGhost(arm, subtasks) {
     const shown = ghostOf([...this.#ghosts.keys()], arm, subtasks);
     for (const [ghost, group] of this.#ghosts) group.visible = ghost === shown;
+  }
+
+  /**
+   * Shows where an arm's tool was told to go since what is seen: so far on the screen, metres; null where it was not.
+   * @param {string} arm
+   * @param {readonly [number, number, number] | null} moved
+   */
+  showCommanded(arm, moved) {
+    this.#commanded.show(arm, moved && inWorld(this.camera, moved));
   }
 
   /** Draws what is there now. */
