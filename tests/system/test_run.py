@@ -97,9 +97,10 @@ def _environment(data_dir: Path) -> dict[str, str]:
 
 @contextlib.contextmanager
 def _running(command: list[str], environment: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
-    """Ends with the test, also where that fails."""
+    """Ends with the test, also where that fails. It hears a closed terminal though the tests themselves may not."""
     pipe = subprocess.PIPE
-    with subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, text=True) as process:
+    heard = ["env", "--default-signal=HUP", *command]
+    with subprocess.Popen(heard, env=environment, stdout=pipe, stderr=pipe, text=True) as process:
         try:
             yield process
         finally:
