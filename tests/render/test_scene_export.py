@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mart.protocol.errors import InvalidInput
-from mart.protocol.tasks import task_names
+from mart.protocol.tasks import get_task, task_names
 from mart.render.scene_export import export_scene
 from mart.sim.world import World
 from tests.render.scene_reading import read_scene
@@ -35,12 +35,35 @@ def test_a_task_is_whole_in_its_scene(task: str) -> None:
     assert [camera["name"] for camera in described["cameras"]] == [
         model.camera(camera).name for camera in range(model.ncam)
     ]
-    assert {geom["mesh"] for geom in described["geoms"]} == set(range(len(described["meshes"])))
+    lines = [line["geom"] for line in described["plumb_lines"]]
+    assert len(lines) == len(get_task(task).arms)
+    assert {geom["mesh"] for geom in [*described["geoms"], *lines]} == set(range(len(described["meshes"])))
     for mesh in range(len(described["meshes"])):
         positions, normals, triangles = scene.mesh(mesh)
         assert triangles.max() == len(positions) - 1
         np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, atol=0.02)
     assert {geom["body"] for geom in described["geoms"]} == set(range(-1, len(described["bodies"])))
+
+
+def test_a_plumb_line_hangs_from_the_tool_to_its_spot() -> None:
+    world = World.build("two_arm_multi_cube_lifting")
+    described = read_scene(export_scene(world.model).data).description
+    line = described["plumb_lines"][1]
+    assert (described["bodies"][line["body"]], described["bodies"][line["foot_body"]]) == (
+        "arm1/hand",
+        "arm1/shadow",
+    )
+    np.testing.assert_allclose(line["position_m"], world.model.site("arm1/tool").pos, atol=1e-6)
+
+
+def test_the_ghosts_of_a_task_say_whose_step_they_are() -> None:
+    task = get_task("two_arm_pick_place_handover")
+    model = World.build(task.name).model
+    (ghost,) = read_scene(export_scene(model, task).data).description["ghosts"]
+    assert ghost["subtask"] == "hammer_handed_over"
+    assert ghost["after"]["arm0"] == ["lid_removed", "hammer_fetched"]
+    assert len(ghost["geoms"]) == 4  # handle, head, plumb line and its foot
+    assert read_scene(export_scene(model).data).description["ghosts"] == []
 
 
 def test_a_model_has_one_scene_and_another_model_another() -> None:

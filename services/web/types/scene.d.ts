@@ -34,6 +34,22 @@ declare namespace SceneFile {
     texture_scale?: Numbers;
   }
 
+  /** A line from a tool, at `position_m` of a body, down to `foot_m` of another; `geom`: a metre of it. */
+  interface PlumbLine {
+    body: number;
+    position_m: Numbers;
+    foot_body: number;
+    foot_m: Numbers;
+    geom: Geom;
+  }
+
+  /** What is shown until a subtask is done; `after`: by arm whose step it is, when which others are. */
+  interface Ghost {
+    subtask: string;
+    after: Record<string, string[]>;
+    geoms: Geom[];
+  }
+
   interface Light {
     ambient: Numbers;
     diffuse: Numbers;
@@ -53,9 +69,11 @@ declare namespace SceneFile {
     near_m: number;
     far_m: number;
     geoms: Geom[];
+    ghosts: Ghost[];
     headlight: Light | null;
     lights: (Light & { direction: Numbers })[];
     meshes: MeshEntry[];
+    plumb_lines: PlumbLine[];
     textures: Texture[];
   }
 

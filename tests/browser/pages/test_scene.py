@@ -23,7 +23,7 @@ SEEN = Path("test-output/browser/scene")
 TO_BYTES = "(text) => Uint8Array.from(atob(text), (one) => one.charCodeAt(0)).buffer"
 
 DRAW = (
-    "async ({ SceneView }, { scene, poses, camera, width, height }) => {"
+    "async ({ SceneView }, { scene, poses, camera, subtasks, width, height }) => {"
     f"  const bytes = {TO_BYTES};"
     "  const { parseScene } = await import('/static/js/scene/scene-file.js');"
     "  const { parsePoses } = await import('/static/js/scene/pose-message.js');"
@@ -31,6 +31,7 @@ DRAW = (
     "  view.lookThrough(camera);"
     "  view.resize(width, height);"
     "  view.setPoses(parsePoses(bytes(poses)));"
+    "  view.showGhost(camera, subtasks);"
     "  view.draw();"
     "  const pixels = new Uint8Array(4 * width * height);"
     "  const gl = view.context;"
@@ -52,20 +53,35 @@ def test_a_picture_drawn_in_a_page_is_like_the_servers(run: Run, task: str) -> N
     world.reset(3)
     for _ in range(20):
         world.step(np.tile((0.5, 0.3, -0.2, 0.1, 0.0, 0.2, 1.0), (len(world.arms), 1)))
-    state = world.integration_state()
-    scene = export_scene(world.model)
+    assert_alike(run, task, world)
+
+
+def test_a_ghost_is_drawn_as_the_server_draws_it(run: Run) -> None:
+    world = World.build("two_arm_pick_place_handover")
+    world.reset(3)
+    assert_alike(run, "ghost", world, step="hammer_handed_over")
+
+
+def assert_alike(run: Run, name: str, world: World, step: str = "") -> None:
+    """Both pictures show the same, at the same place; `step`: what is to be done next."""
+    task, state = world.task, world.integration_state()
+    steps = [subtask.name for subtask in task.subtasks]
+    ghost = task.subtasks[steps.index(step)].ghost if step else None
+    scene = export_scene(world.model, task)
     with closing(Renderer(world.model, "arm0", WIDTH_PX, HEIGHT_PX)) as renderer:
-        wanted = renderer.draw(state)
+        wanted = renderer.draw(state, ghost=ghost)
+    done = steps[: steps.index(step)] if step else []
     told = {
         "scene": encoded(scene.data),
         "poses": encoded(BodyPoses(world.model, scene.sha256).message(state, 1)),
         "camera": "arm0",
+        "subtasks": [{"name": one, "done": one in done} for one in steps],
         "width": WIDTH_PX,
         "height": HEIGHT_PX,
     }
     pixels = np.frombuffer(base64.b64decode(run("scene/scene-view.js", DRAW, told)), np.uint8)
     drawn = pixels.reshape(HEIGHT_PX, WIDTH_PX, 4)[::-1, :, :3]
-    kept(task, wanted, drawn)
+    kept(name, wanted, drawn)
     difference = np.abs(drawn.astype(int) - wanted)
     assert difference.mean() < MOST_MEAN_ERROR
     assert (difference.max(axis=2) > 16).mean() < MOST_DIFFERENT

@@ -46,7 +46,7 @@ def test_a_scene_is_named_by_its_digest_and_sent_to_whoever_lacks_it(model: mujo
     async def body(pages: Pages) -> None:
         with pytest.raises(Unavailable):
             await pages.drawing.answer(SceneRequest())
-        pages.drawing.use(model)
+        pages.drawing.use(model, None)
         replies = await asyncio.gather(*(pages.drawing.answer(SceneRequest()) for _ in range(3)))
         assert replies[0] == replies[1] == replies[2]
         assert hashlib.sha256(gzip.decompress(replies[0].scene_gzip)).hexdigest() == replies[0].sha256
@@ -62,7 +62,7 @@ def test_poses_are_of_the_scene_that_was_asked_for_and_only_while_they_are_wante
     state = State(tick=7, integration_state=world.integration_state())
 
     async def body(pages: Pages) -> None:
-        pages.drawing.use(model)
+        pages.drawing.use(model, None)
         pages.drawing.want(True)
         pages.drawing.offer(state, 1)  # nobody has the scene
         sha256 = (await pages.drawing.answer(SceneRequest())).sha256
@@ -74,7 +74,7 @@ def test_poses_are_of_the_scene_that_was_asked_for_and_only_while_they_are_wante
         pages.drawing.want(False)
         pages.drawing.offer(state, 4)
         pages.drawing.want(True)
-        pages.drawing.use(model)  # the room has started anew
+        pages.drawing.use(model, None)  # the room has started anew
         pages.drawing.offer(state, 5)
         await pages.drawing.answer(SceneRequest())
         pages.drawing.offer(state, 6)
@@ -88,10 +88,10 @@ def test_a_page_that_draws_sees_the_room_go_on_at_another_rate(model: mujoco.MjM
     slower = load_plain_model(model_message_of(world.at(world.control_hz / 2)))
 
     async def body(pages: Pages) -> None:
-        pages.drawing.use(model)
+        pages.drawing.use(model, None)
         pages.drawing.want(True)
         sha256 = (await pages.drawing.answer(SceneRequest())).sha256
-        pages.drawing.use(slower)
+        pages.drawing.use(slower, None)
         while pages.sent.empty():  # nobody asks for the scene again
             pages.drawing.offer(state, 1)
             await asyncio.sleep(0.01)
@@ -106,7 +106,7 @@ def test_what_pages_cannot_draw_is_said(model: mujoco.MjModel) -> None:
     )
 
     async def body(pages: Pages) -> None:
-        pages.drawing.use(endless)
+        pages.drawing.use(endless, None)
         with pytest.raises(InvalidInput):
             await pages.drawing.answer(SceneRequest())
 

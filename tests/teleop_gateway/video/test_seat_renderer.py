@@ -20,6 +20,7 @@ from mart.teleop_gateway.video.seat_renderer import (
     camera_azimuth_rad,
     ghosts_for,
     load_room_model,
+    task_of,
 )
 
 
@@ -121,10 +122,10 @@ def test_where_to_hold_the_hammer_is_shown_while_it_is_the_step() -> None:
     state = State()
     for name in ("lid_removed", "hammer_fetched", "trash_cleared", "hammer_handed_over", "hammer_placed"):
         state.progress.subtasks.add(name=name, done=name in ("lid_removed", "hammer_fetched"))
-    ghost = ghosts_for(room, "arm0")(state)
+    ghost = ghosts_for(task_of(room), "arm0")(state)
     assert ghost is not None
     assert ghost.body == "hammer"
-    assert ghosts_for(room, "arm1")(state) is None  # who still has to clear the trash
+    assert ghosts_for(task_of(room), "arm1")(state) is None  # who still has to clear the trash
     state.progress.subtasks[3].done = True
-    assert ghosts_for(room, "arm0")(state) is None
-    assert ghosts_for(Model(task="juggling", arms=["arm0"]), "arm0")(state) is None
+    assert ghosts_for(task_of(room), "arm0")(state) is None
+    assert ghosts_for(task_of(Model(task="juggling", arms=["arm0"])), "arm0")(state) is None

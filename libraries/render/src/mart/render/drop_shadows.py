@@ -13,13 +13,23 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from mart.render.decor import add_column
+from mart.render.decor import Color, add_column
 
 _SUFFIX = "/shadow"
 _WIDE_M = 0.09  # half of a side, at least: what is held in a hand hides no spot
 _LEVEL = 0.97  # cosine of the tilt up to which something counts as a surface
 _HIDDEN_GROUP = 3
 _LINE_RADIUS_M, _LINE_ALPHA, _SHORTEST_M = 0.003, 0.75, 0.01
+
+
+@dataclass(frozen=True)
+class PlumbLine:
+    """Say of a line from a tool down to its spot which site is above, which geom is below, and how it looks."""
+
+    site: int
+    foot_geom: int
+    radius_m: float
+    rgba: Color
 
 
 @dataclass(frozen=True)
@@ -48,16 +58,24 @@ class DropShadows:
             data.geom_xpos[spot.geom, 2] += lift_m
             data.xpos[spot.own_body, 2] += lift_m
 
+    def plumb_lines(self) -> list[PlumbLine]:
+        """Return the lines from tools down to their spots."""
+        return [
+            PlumbLine(spot.site, spot.geom, _LINE_RADIUS_M, self._line_rgba(spot))
+            for spot in self._spots
+            if spot.site >= 0
+        ]
+
     def add_plumb_lines(self, scene: mujoco.MjvScene, data: mujoco.MjData) -> None:
         """Add a line from every tool in `data` down to its spot, which has been lifted: it shows the tool's height."""
-        for spot in self._spots:
-            if spot.site < 0:
-                continue
-            x, y, top_m = data.site_xpos[spot.site].tolist()
-            foot_m = float(data.geom_xpos[spot.geom, 2])
+        for line in self.plumb_lines():
+            x, y, top_m = data.site_xpos[line.site].tolist()
+            foot_m = float(data.geom_xpos[line.foot_geom, 2])
             if top_m - foot_m > _SHORTEST_M:
-                color = np.append(2.0 * self._model.geom_rgba[spot.geom, :3], _LINE_ALPHA).astype(np.float32)
-                add_column(scene, (x, y, foot_m), top_m - foot_m, _LINE_RADIUS_M, color)
+                add_column(scene, (x, y, foot_m), top_m - foot_m, line.radius_m, line.rgba)
+
+    def _line_rgba(self, spot: _Spot) -> Color:
+        return np.append(2.0 * self._model.geom_rgba[spot.geom, :3], _LINE_ALPHA).astype(np.float32)
 
     def _top_m(self, data: mujoco.MjData, geom: int, spot: _Spot, x: float, y: float) -> float:
         """Return how high the box's upper side is under (x, y); 0 where it is not there, or casts the spot itself."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,11 @@ import mujoco
 import numpy as np
 
 from mart.protocol.errors import InvalidInput
+from mart.protocol.tasks import Subtask, Task
 from mart.render import unit_shapes
+from mart.render.decor import add_column
+from mart.render.drop_shadows import DropShadows, PlumbLine
+from mart.render.ghosts import add_ghost
 from mart.render.moving_bodies import moving_bodies
 from mart.render.scene_buffers import MeshEntry, SceneBuffer
 from mart.render.unit_shapes import Corners, Numbers
@@ -30,9 +34,12 @@ class PageScene:
     sha256: str
 
 
-def export_scene(model: mujoco.MjModel) -> PageScene:
-    """Return the scene of a model. Raises InvalidInput, in a sentence, for what pages cannot draw."""
-    data = _SceneExport(model).written()
+def export_scene(model: mujoco.MjModel, task: Task | None = None) -> PageScene:
+    """Return the scene of a model, with the ghosts of its task where it is known.
+
+    Raises InvalidInput, in a sentence, for what pages cannot draw.
+    """
+    data = _SceneExport(model).written(task.subtasks if task else ())
     return PageScene(data, hashlib.sha256(data).hexdigest())
 
 
@@ -49,7 +56,7 @@ class _SceneExport:
         self._textures: dict[int, int] = {}
         self._pictures: list[dict[str, Any]] = []
 
-    def written(self) -> bytes:
+    def written(self, subtasks: Sequence[Subtask]) -> bytes:
         model = self._model
         geoms = [self._geom(seen) for seen in _seen_geoms(model, self._data)]
         extent_m = float(model.stat.extent)
@@ -58,10 +65,12 @@ class _SceneExport:
             "cameras": [self._camera(camera) for camera in range(model.ncam)],
             "far_m": float(model.vis.map.zfar) * extent_m,
             "geoms": geoms,
+            "ghosts": [self._ghost(subtasks, step) for step in range(len(subtasks)) if subtasks[step].ghost],
             "headlight": _headlight(model),
             "lights": [self._light(light) for light in np.flatnonzero(model.light_active).tolist()],
             "meshes": [entry.as_json() for entry in self._entries],
             "near_m": float(model.vis.map.znear) * extent_m,
+            "plumb_lines": [self._plumb_line(line) for line in DropShadows(model).plumb_lines()],
             "textures": self._pictures,
         }
         return self._buffer.joined(description)
@@ -73,20 +82,60 @@ class _SceneExport:
         matrix = self._data.geom_xmat[geom]
         position = self._model.geom_pos[geom] if moves else self._data.geom_xpos[geom]
         quaternion = self._model.geom_quat[geom] if moves else _quaternion(matrix)
-        mesh, scale = self._shape(seen)
         return {
             "body": self._bodies.index(body) if moves else -1,
+            **self._seen(seen, position, quaternion),
+            **self._texture_of(seen),
+        }
+
+    def _seen(self, seen: mujoco.MjvGeom, position_m: Numbers, quaternion: Numbers) -> dict[str, Any]:
+        mesh, scale = self._shape(seen)
+        return {
             "emission": float(seen.emission),
             "mesh": mesh,
             "plane": seen.type == _Type.mjGEOM_PLANE,
-            "position_m": _listed(position),
+            "position_m": _listed(position_m),
             "quaternion": _listed(quaternion),
             "rgba": _listed(seen.rgba),
             "scale": _listed(scale),
             "shininess": float(seen.shininess) * 128.0,
             "specular": float(seen.specular),
-            **self._texture_of(seen),
         }
+
+    def _ghost(self, subtasks: Sequence[Subtask], step: int) -> dict[str, Any]:
+        """Return what is shown until a subtask is done, and by arm after which others: before, it is not its step."""
+        subtask = subtasks[step]
+        scene = mujoco.MjvScene(self._model, maxgeom=_MAX_GEOMS)
+        assert subtask.ghost is not None
+        add_ghost(scene, self._model, subtask.ghost)
+        return {
+            "after": {
+                arm: [before.name for before in subtasks[:step] if arm in before.to_do]
+                for arm in subtask.to_do
+            },
+            "geoms": self._decor(scene),
+            "subtask": subtask.name,
+        }
+
+    def _plumb_line(self, line: PlumbLine) -> dict[str, Any]:
+        """Return a line, a metre of it, and by which bodies and where on them it hangs."""
+        model = self._model
+        scene = mujoco.MjvScene(model, maxgeom=_MAX_GEOMS)
+        add_column(scene, (0.0, 0.0, 0.0), 1.0, line.radius_m, line.rgba)
+        return {
+            "body": self._bodies.index(int(model.site_bodyid[line.site])),
+            "foot_body": self._bodies.index(int(model.geom_bodyid[line.foot_geom])),
+            "foot_m": _listed(model.geom_pos[line.foot_geom]),
+            "geom": self._decor(scene)[0],
+            "position_m": _listed(model.site_pos[line.site]),
+        }
+
+    def _decor(self, scene: mujoco.MjvScene) -> list[dict[str, Any]]:
+        """Return the shapes of a scene that are no geoms of the model."""
+        return [
+            {"body": -1, **self._seen(one, one.pos, _quaternion(np.ravel(one.mat).astype(np.float64)))}
+            for one in scene.geoms[: scene.ngeom]
+        ]
 
     def _shape(self, seen: mujoco.MjvGeom) -> tuple[int, Numbers]:
         """Return the index of a geom's mesh, and by what it is stretched."""
@@ -106,7 +155,7 @@ class _SceneExport:
             case _Type.mjGEOM_CYLINDER:
                 return self._mesh((kind,), lambda: unit_shapes.cylinder(slices, stacks)), size
             case _Type.mjGEOM_CAPSULE:
-                radius_m, _, half_m = self._model.geom_size[seen.objid][[0, 0, 1]].tolist()
+                radius_m, _, half_m = [round(length, 6) for length in size.tolist()]
                 made: tuple[float, ...] = (kind, radius_m, half_m)
                 return self._mesh(made, lambda: unit_shapes.capsule(slices, stacks, radius_m, half_m)), unit
             case _Type.mjGEOM_PLANE if size[:2].all():

@@ -13,6 +13,7 @@ import mujoco
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput, MartError, Unavailable
 from mart.protocol.messages import SceneReply, SceneRequest, State
+from mart.protocol.tasks import Task
 from mart.render import BodyPoses, export_scene
 from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.video.motion_to_photon import PictureStamps
@@ -47,6 +48,7 @@ class PageDrawing:
     def __init__(self, loop: asyncio.AbstractEventLoop, sink: Callable[[PoseMessage], None]) -> None:
         self._loop, self._sink = loop, sink
         self._model: mujoco.MjModel | None = None
+        self._task: Task | None = None
         self._exported: _ExportedScene | None = None
         self._making = asyncio.Lock()
         self._remaking: asyncio.Future[None] | None = None  # kept, or it might be collected
@@ -54,9 +56,12 @@ class PageDrawing:
         self._poses: BodyPoses | None = None
         self._log_limit = RateLimit(1)
 
-    def use(self, model: mujoco.MjModel) -> None:
-        """Take a new model of the room; poses go on where a page draws, else when one has asked for its scene."""
-        self._model, self._exported, self._poses = model, None, None
+    def use(self, model: mujoco.MjModel, task: Task | None) -> None:
+        """Take a new model of the room, and its task if known.
+
+        Poses go on where a page draws, else when one has asked for the scene.
+        """
+        self._model, self._task, self._exported, self._poses = model, task, None, None
         if self._wanted:
             self._remaking = asyncio.ensure_future(self._remake())
 
@@ -98,7 +103,7 @@ class PageDrawing:
         if model is None:
             raise Unavailable("The room's model is not here yet; ask for its scene again in a moment.")
         if self._exported is None or self._exported.model is not model:
-            exported = await asyncio.to_thread(_export, model)
+            exported = await asyncio.to_thread(_export, model, self._task)
             if self._model is not model:  # replaced meanwhile
                 return exported
             self._exported = exported
@@ -106,6 +111,6 @@ class PageDrawing:
         return self._exported
 
 
-def _export(model: mujoco.MjModel) -> _ExportedScene:
-    scene = export_scene(model)
+def _export(model: mujoco.MjModel, task: Task | None) -> _ExportedScene:
+    scene = export_scene(model, task)
     return _ExportedScene(model, scene.sha256, gzip.compress(scene.data, _GZIP_LEVEL, mtime=0))

@@ -11,7 +11,7 @@ import numpy as np
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import Model, State
 from mart.protocol.pose import Pose
-from mart.protocol.tasks import Ghost, get_task
+from mart.protocol.tasks import Ghost, Task, get_task
 from mart.render import Image, Renderer, load_model, viewpoint_id
 from mart.teleop_gateway.input.retarget import azimuth_of_camera_rad
 from mart.teleop_gateway.video import tick_code
@@ -55,14 +55,20 @@ def camera_azimuth_rad(message: Model, model: mujoco.MjModel, arm: str) -> float
     return azimuth_of_camera_rad(base_in_world.inverse() @ camera_in_world)
 
 
-def ghosts_for(message: Model, arm: str) -> Callable[[State], Ghost | None]:
+def task_of(message: Model) -> Task | None:
+    """Return the task of the room that sent this; None where this version does not know it."""
+    try:
+        return get_task(message.task, len(message.arms))
+    except (NotFound, InvalidInput):
+        return None
+
+
+def ghosts_for(task: Task | None, arm: str) -> Callable[[State], Ghost | None]:
     """Return what finds what the picture of `arm`'s operator shows beside what is there, from how far the task is.
 
     Of a task that this version does not know, nothing.
     """
-    try:
-        task = get_task(message.task, len(message.arms))
-    except (NotFound, InvalidInput):
+    if task is None:
         return lambda _: None
 
     def ghost_in(state: State) -> Ghost | None:

@@ -23,6 +23,7 @@ from mart.teleop_gateway.video.seat_renderer import (
     drawn_model,
     ghosts_for,
     load_plain_model,
+    task_of,
 )
 
 _log = logging.getLogger(__name__)
@@ -134,9 +135,9 @@ class ViewManager:
     async def _use(self, message: Model) -> None:
         model = await asyncio.to_thread(load_plain_model, message)
         azimuth_rad = camera_azimuth_rad(message, model, self._seat.arm)
-        self._pages.use(model)
-        drawn, arm = drawn_model(model, self._quality), self._seat.arm
-        ghosts = ghosts_for(message, arm)
+        task, arm = task_of(message), self._seat.arm
+        self._pages.use(model, task)
+        drawn, ghosts = drawn_model(model, self._quality), ghosts_for(task, arm)
         view = LiveView(drawn, arm, message.control_hz, self._sink, self._quality, ghost_in=ghosts)
         view.set_codecs(self._codecs)
         view.set_resting(self._resting)

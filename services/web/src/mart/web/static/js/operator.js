@@ -206,6 +206,7 @@ function showHolder(mine) {
 
 /** @param {Api.Room} shown */
 function showRoom(shown) {
+  drawn.onProgress(shown.progress.subtasks);
   showPartners(shown, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
   const waiting = shown.stale ? "" : waitingText(shown);
   setText(byId("waiting"), waiting);

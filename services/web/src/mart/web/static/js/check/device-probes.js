@@ -1,12 +1,13 @@
 // What this device and this browser can do.
 
+import { isSoftware, rendererOf } from "../scene/webgl.js";
+
 /** @typedef {{ renderer: string, software: boolean, drawMs: number } | null} Drawing */
 /** @typedef {{ ar: boolean, vr: boolean }} Xr */
 /** @typedef {"told" | "silent" | "ask" | "denied"} Motion */
 /** @typedef {{ h264: boolean, vp8: boolean }} Codecs */
 
 const SENSOR_MS = 700;
-const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
 /** Which of our codecs the browser can receive. @returns {Codecs} */
 export function codecs() {
@@ -54,11 +55,10 @@ export function drawing() {
   const canvas = Object.assign(document.createElement("canvas"), { width: 640, height: 480 });
   const gl = canvas.getContext("webgl2");
   if (!gl) return null;
-  const info = gl.getExtension("WEBGL_debug_renderer_info");
-  const renderer = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  const renderer = rendererOf(gl);
   const drawMs = timedDraws(gl);
   gl.getExtension("WEBGL_lose_context")?.loseContext();
-  return { renderer, software: SOFTWARE.test(renderer), drawMs };
+  return { renderer, software: isSoftware(renderer), drawMs };
 }
 
 const DRAWS = 20;

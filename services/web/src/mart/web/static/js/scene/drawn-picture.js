@@ -5,6 +5,7 @@ import { setShown } from "../dom.js";
 import { DrawTimes, drawn, timeDraws } from "./draw-times.js";
 import { parsePoses } from "./pose-message.js";
 import { parseScene } from "./scene-file.js";
+import { isSoftware, webglRenderer } from "./webgl.js";
 
 /** @import { SceneView } from "./scene-view.js" */
 
@@ -17,7 +18,6 @@ const QUIET_MS = 1000; // poses come with every tick; where they stop, the room 
 const RETRY_MS = 3000;
 const MOST_LOST = 3;
 const LARGEST_RATIO = 1.5; // pixels for each of the page's; more costs phones more than it shows
-const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i; // not worth twenty draws: it takes 100 ms each
 const BAD_REQUEST = 400; // this room cannot be drawn in a page
 const SLOW_KEY = "mart.drawsSlowly";
 const SLOW_FOR_MS = 24 * 60 * 60 * 1000;
@@ -95,6 +95,14 @@ export class DrawnPicture {
   }
 
   /**
+   * Takes how far the task is: a step may have to show something.
+   * @param {Api.Subtask[]} subtasks
+   */
+  onProgress(subtasks) {
+    this.#view?.showGhost(this.#options.arm, subtasks);
+  }
+
+  /**
    * Takes a message of poses; the newest is drawn with the next picture of the display.
    * @param {ArrayBuffer} bytes
    */
@@ -142,7 +150,7 @@ export class DrawnPicture {
   async #prepare() {
     const renderer = webglRenderer();
     if (!renderer) throw new WebGLMissing("this browser has no WebGL 2.");
-    if (SOFTWARE.test(renderer) && this.#options.choice === "auto") {
+    if (isSoftware(renderer) && this.#options.choice === "auto") { // twenty draws would take two seconds
       throw new WebGLMissing("this browser draws without a graphics card, which is slower than video.");
     }
     const { sha256, bytes } = await fetchScene(this.#options.room, this.#options.arm);
@@ -272,16 +280,6 @@ export class DrawnPicture {
 
 /** There is no WebGL here: trying again would not help. */
 class WebGLMissing extends Error {}
-
-/** Who draws WebGL here, empty where nobody does. Asked before three.js is, which complains aloud. */
-function webglRenderer() {
-  const gl = new OffscreenCanvas(1, 1).getContext("webgl2");
-  if (!gl) return "";
-  const named = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = String(gl.getParameter(named ? named.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
-  gl.getExtension("WEBGL_lose_context")?.loseContext(); // a page has sixteen
-  return name || "unnamed";
-}
 
 /** Whether this device was found too slow within a day. */
 function wasSlow() {

@@ -11,7 +11,9 @@ import {
   Scene,
   WebGLRenderer,
 } from "../../vendor/three.mjs";
+import { ghostOf } from "./ghost.js";
 import { Materials } from "./materials.js";
+import { PlumbLines } from "./plumb-lines.js";
 import { QUATERNION_STEP } from "./pose-message.js";
 import { meshArrays } from "./scene-file.js";
 
@@ -32,6 +34,9 @@ export class SceneView {
   /** @type {Group[]} */
   #bodies;
   #cameras;
+  #plumbLines;
+  /** @type {Map<SceneFile.Ghost, Group>} */
+  #ghosts;
 
   /**
    * Raises an Error where there is no WebGL.
@@ -51,8 +56,11 @@ export class SceneView {
     this.#geometries = description.meshes.map((mesh) => madeGeometry(scene, mesh));
     this.#bodies = description.bodies.map(() => new Group());
     const world = new Group();
-    this.#scene.add(world, ...this.#bodies);
+    this.#plumbLines = new PlumbLines(description.plumb_lines, this.#bodies, (geom) => this.#made(geom));
+    this.#ghosts = new Map(description.ghosts.map((ghost) => [ghost, this.#grouped(ghost.geoms)]));
+    this.#scene.add(world, ...this.#bodies, ...this.#plumbLines.meshes, ...this.#ghosts.values());
     for (const geom of description.geoms) (this.#bodies[geom.body] ?? world).add(this.#made(geom));
+    this.showGhost("", []);
   }
 
   /** The drawing context, for whoever watches over it; three.js makes no other than of WebGL 2. */
@@ -94,6 +102,17 @@ export class SceneView {
       const step = QUATERNION_STEP;
       body.quaternion.set(qx * step, qy * step, qz * step, qw * step).normalize();
     }
+    this.#plumbLines.hang();
+  }
+
+  /**
+   * Shows what the arm's next step has to show beside what is there.
+   * @param {string} arm
+   * @param {Api.Subtask[]} subtasks
+   */
+  showGhost(arm, subtasks) {
+    const shown = ghostOf([...this.#ghosts.keys()], arm, subtasks);
+    for (const [ghost, group] of this.#ghosts) group.visible = ghost === shown;
   }
 
   /** Draws what is there now. */
@@ -108,6 +127,13 @@ export class SceneView {
     for (const geometry of this.#geometries) geometry.dispose();
     this.#renderer.dispose();
     this.#renderer.forceContextLoss();
+  }
+
+  /** @param {SceneFile.Geom[]} geoms */
+  #grouped(geoms) {
+    const group = new Group();
+    group.add(...geoms.map((geom) => this.#made(geom)));
+    return group;
   }
 
   /** @param {SceneFile.Geom} geom */
