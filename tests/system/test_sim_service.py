@@ -137,7 +137,6 @@ def test_what_does_not_exist_is_named(client: RoomClient, endpoint: str, tmp_pat
         (["--task", "two_arm_multi_cube_liftin"], "Did you mean 'two_arm_multi_cube_lifting'?"),
         (["--arms", "7"], "7 arms were asked for"),
         (["--room", "Room 1"], "lower-case"),
-        (["--control-hz", "0"], "control_hz"),
     ):
         with started(["sim", *options], endpoint, tmp_path) as refused:
             assert refused.process.wait(30) == 1
