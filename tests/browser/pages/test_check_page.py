@@ -91,7 +91,7 @@ def test_a_device_is_checked_before_one_has_joined(
         page = ana.page
         page.goto(platform.url)
         page.get_by_role("link", name="See whether it is ready").click()
-        expect(page.get_by_role("heading", name="Not ready")).to_be_visible()
+        expect(page.get_by_role("heading", name="Not checked yet")).to_be_visible()
         expect(page.locator("#first")).to_contain_text("join code")
         expect(page.locator(".finding", has_text="Delay")).to_contain_text("over HTTPS")
         ana.noise.clear()  # the browser tells of each 401

@@ -30,8 +30,8 @@ def task(arms: int) -> Task:
                 "The tray is up",
                 coordinated=True,
                 to_do={
-                    arm.name: f"Grip the {arm.color_name} handle; when your partner holds the other one, lift slowly, "
-                    "level, more than 10 cm."
+                    arm.name: f"Turn your fingers across the {arm.color_name} handle and grip it; when your partner "
+                    "holds the other one, lift slowly, level, more than 10 cm."
                     for arm in placed
                 },
             ),

@@ -18,6 +18,8 @@ const CLOCK_OFF_S = 600;
 const DAYS_LEFT = 7;
 const NEARER = "Use a cable, move nearer to the access point, or leave a VPN.";
 
+const NOT_TRIED = "not tried";
+
 /**
  * @param {string} name
  * @param {string} found
@@ -74,7 +76,7 @@ export function clockRow(aheadS) {
 export function connectionRow(connection, hasRelay) {
   const name = "Way to the server";
   if (!connection) {
-    return needed(name, "not tried", "Give the join code above: connections are for those who may come in.");
+    return needed(name, NOT_TRIED, "Give the join code above: connections are for those who may come in.");
   }
   if (connection.way === "direct") return needed(name, "direct, by WebRTC");
   if (connection.way === "relay") return needed(name, "by a relay (TURN)");
@@ -189,7 +191,7 @@ export function gamepadRow(names) {
  */
 export function conclusion(rows) {
   const missing = rows.find(({ kind, needed: wanted }) => wanted && kind === "poor");
-  if (missing) return { title: "Not ready", first: missing.mend };
+  if (missing) return { title: missing.found === NOT_TRIED ? "Not checked yet" : "Not ready", first: missing.mend };
   const poor = rows.filter(({ kind }) => kind === "poor").length;
   const more = poor === 1 ? "One thing below could be better." : `${poor} things below could be better.`;
   return { title: "Ready", first: poor ? more : "" };

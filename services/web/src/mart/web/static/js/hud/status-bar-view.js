@@ -114,7 +114,7 @@ function whatHappens(known) {
 }
 
 const RECORDING = [ACTIONS.success, ACTIONS.failure, ACTIONS.discard];
-const FIRST_MOVES = "Hold space: W A S D move over the table, Q lifts, E lowers, arrows turn. G works the gripper.";
+const FIRST_MOVES = "Hold space: W A S D move over the table, Q lifts, E lowers, ← → turn round. G works the gripper.";
 const FIRST_TOUCHES = "Drag the picture to move. Two fingers: up and down go away and towards you, sideways turns.";
 const UNRECORDED = "Nothing is recorded until everybody is ready.";
 
