@@ -196,6 +196,7 @@ def test_a_cut_anywhere_keeps_every_whole_chunk(
 @given(where=st.integers(0, 10**6), spoilt=st.binary(min_size=1, max_size=20))
 @example(where=26, spoilt=b"\x00\x00\x00\x00\x00\x02")  # an index whose first byte says footer
 @example(where=103, spoilt=b"\x00\x00\x10")  # how many entries an index has, in its content
+@example(where=240, spoilt=b"\x00\x00\x00\x00\x9d")  # how much a chunk unpacks to: 10 MB
 def test_spoilt_bytes_cost_the_chunks_they_are_in(
     where: int,
     spoilt: bytes,

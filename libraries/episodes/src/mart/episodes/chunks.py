@@ -37,11 +37,11 @@ class UnpackingBudget:
         """Count what a chunk says it unpacks to, before it is unpacked."""
         if size_bytes > MAX_CHUNK_BYTES:
             raise ValueError(f"a chunk of {size_bytes} bytes exceeds {MAX_CHUNK_BYTES}")
-        self._left_bytes -= size_bytes
-        if self._left_bytes < 0:
+        if size_bytes > self._left_bytes:
             raise ValueError(
                 f"its chunks unpack to more than {self._limit_bytes} bytes, which no file of this size does"
             )
+        self._left_bytes -= size_bytes
 
     def spend_message(self) -> None:
         """Count one message."""
@@ -82,21 +82,29 @@ def _unpacked(chunk: Chunk, budget: UnpackingBudget) -> bytes:
     said = chunk.uncompressed_size
     match chunk.compression:
         case "":
-            budget.spend_bytes(max(said, len(chunk.data)))
+            _require_size(len(chunk.data), said)
+            budget.spend_bytes(said)
             data = chunk.data
         case "zstd":
-            budget.spend_bytes(max(said, zstandard.frame_content_size(chunk.data)))
+            size_bytes = zstandard.frame_content_size(chunk.data)
+            if size_bytes >= 0:  # a spoilt size costs its chunk, not what the rest of the file may unpack to
+                _require_size(size_bytes, said)
+            budget.spend_bytes(said)
             data = zstandard.decompress(chunk.data, said) if said else b""
         case "lz4":
             budget.spend_bytes(said)
             data = _unpacked_lz4(chunk.data, said)
         case other:
             raise ValueError(f"a chunk is packed with {other[:16]!r}; zstd, lz4 and nothing are known")
-    if len(data) != said:
-        raise ValueError(f"a chunk holds {len(data)} bytes and says {said}")
+    _require_size(len(data), said)
     if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
         raise ValueError("a chunk does not match its checksum")
     return data
+
+
+def _require_size(size_bytes: int, said: int) -> None:
+    if size_bytes != said:
+        raise ValueError(f"a chunk holds {size_bytes} bytes and says {said}")
 
 
 def _unpacked_lz4(packed: bytes, size_bytes: int) -> bytes:
