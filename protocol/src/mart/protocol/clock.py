@@ -24,3 +24,8 @@ def sleep_s(duration_s: float) -> None:
     """Blocks this thread; pacing only, never to wait for an event."""
     if duration_s > 0:
         time.sleep(duration_s)
+
+
+def thread_cpu_s() -> float:
+    """Return the seconds for which the calling thread has been at work on a core, without what it waited for."""
+    return time.thread_time()

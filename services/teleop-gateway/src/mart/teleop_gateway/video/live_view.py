@@ -157,7 +157,7 @@ class LiveView:
         return (len(times_s) - 1) / (times_s[-1] - times_s[0])
 
     def picture_s(self) -> float:
-        """Return the median of what pictures took, drawn and encoded at full size; 0 where there are none."""
+        """Return the median of what pictures took of a core, drawn and encoded at full size; 0 where there are none."""
         took_s = tuple(self._took_s)
         return median(took_s) if took_s and self.frames_per_s() else 0.0
 
@@ -183,7 +183,7 @@ class LiveView:
         rendered_ns, size = 0, resolution.size
         while True:
             undrawn = self._queue.wait(_REPEAT_AFTER_S, _KEYFRAME_WITHIN_S)
-            begun_s = clock.monotonic_s()
+            begun_s, begun_cpu_s = clock.monotonic_s(), clock.thread_cpu_s()
             if self._resting and not thumbnails.is_due(begun_s):
                 drawn = None  # what is sent again must not be older than what pages have drawn
                 continue
@@ -203,7 +203,7 @@ class LiveView:
             if undrawn is not None:
                 now_s = clock.monotonic_s()
                 if not self._resting:  # else it was not encoded
-                    self._took_s.append(at_full_size(now_s - begun_s, size))
+                    self._took_s.append(at_full_size(clock.thread_cpu_s() - begun_cpu_s, size))
                 resolution.record(now_s - begun_s, now_s)
                 thumbnail = thumbnails.take(pipeline.view_rgb, undrawn.state.stamps.stepped_ns, now_s)
                 if thumbnail is not None:
