@@ -88,6 +88,7 @@ def main() -> None:
             for follows, found in ((True, metrics), (False, peer)):
                 displayed = show(pictures, rate, network.options, seconds, follows=follows)
                 found.update(figures(network, displayed))
+                print("followed" if follows else "ignored", figures(network, displayed), flush=True)
             bars += bars_of(network, metrics)
     except Unavailable as error:
         print(f"Left out: {error}")
