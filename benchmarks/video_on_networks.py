@@ -48,7 +48,9 @@ NETWORKS = (
 
 
 def figures(network: Network, displayed: Displayed) -> dict[str, float]:
-    """Return what a network's run says, named after it."""
+    """Return what a network's run says, named after it; of one that showed nothing, that alone."""
+    if len(displayed.at_ms) < 2:
+        return {f"{network.name}_displayed_per_s": 0.0}
     third = len(displayed.delay_ms) // 3
     first, last = displayed.delay_ms[:third], displayed.delay_ms[-third:]
     seconds = (displayed.at_ms[-1] - displayed.at_ms[0]) / 1e3
