@@ -48,7 +48,9 @@ NETWORKS = (
 
 
 def figures(network: Network, displayed: Displayed) -> dict[str, float]:
-    """Return what a network's run says, named after it."""
+    """Return what a network's run says, named after it; of one that showed nothing, that alone."""
+    if len(displayed.at_ms) < 2:
+        return {f"{network.name}_displayed_per_s": 0.0}
     third = len(displayed.delay_ms) // 3
     first, last = displayed.delay_ms[:third], displayed.delay_ms[-third:]
     seconds = (displayed.at_ms[-1] - displayed.at_ms[0]) / 1e3
@@ -88,6 +90,7 @@ def main() -> None:
             for follows, found in ((True, metrics), (False, peer)):
                 displayed = show(pictures, rate, network.options, seconds, follows=follows)
                 found.update(figures(network, displayed))
+                print("followed" if follows else "ignored", figures(network, displayed), flush=True)
             bars += bars_of(network, metrics)
     except Unavailable as error:
         print(f"Left out: {error}")

@@ -51,7 +51,6 @@ class Displayed:
     delay_ms: np.ndarray[Any, np.dtype[np.float64]]
     kbit_s: float
     memory_mb: tuple[float, float]  # of the sender at most, until the begin and until the end
-    limit_kbit_s: float  # at the end; infinity without
 
     def freezes(self, longer_ms: float = 200.0) -> int:
         """Count the gaps that are so much longer than the usual one."""
@@ -135,14 +134,12 @@ async def _show(pictures: Sequence[Image], frames_per_s: float, seconds: float) 
             await page.evaluate("sdp => window.peer.setRemoteDescription({type: 'answer', sdp})", answer)
             drawn_ms, sent = await _send(pictures, frames_per_s, _SETTLE_S + seconds, peers, orders)
         shown = [row for row in await page.evaluate("() => window.shown") if row[1] in drawn_ms]
-        (peer,) = peers
-        limit_kbit_s = peer.limit_bps / 1e3
         await peers.close()
     at_ms = np.array([at_ms for at_ms, _ in shown])
     delay_ms = np.array([at_ms - drawn_ms[pts] for at_ms, pts in shown])
     settled = at_ms > at_ms[0] + 1e3 * _SETTLE_S
     kbit_s, memory_mb = sent
-    return Displayed(at_ms[settled], delay_ms[settled], kbit_s, memory_mb, limit_kbit_s)
+    return Displayed(at_ms[settled], delay_ms[settled], kbit_s, memory_mb)
 
 
 async def _send(
