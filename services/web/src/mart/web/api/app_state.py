@@ -30,7 +30,7 @@ def _wrong_codes() -> FailureDelay:
 
 
 def _joins() -> RequestLimit:
-    return RequestLimit("people who joined", count=60, window_s=600.0)
+    return RequestLimit("people who joined", count=200, window_s=600.0)
 
 
 def _offers() -> RequestLimit:
