@@ -65,7 +65,7 @@ class Platform:
     async def open(self, bus: AsyncBus, arm: str = "arm0", epoch: int = 0) -> None:
         opening = codec.encode(OpenSeat(room=ROOM, arm=arm, seat_epoch=epoch))
         raise_error(
-            codec.decode(OpenSeatReply, await bus.query(keys.open_seat("gateway-1"), opening, 10)).error
+            codec.decode(OpenSeatReply, await bus.query(keys.open_seat("gateway-1"), opening, 60)).error
         )
 
     def exchange(self, bus: AsyncBus, role: Role, epoch: int, arm: str = "arm0") -> Exchange:
@@ -73,7 +73,7 @@ class Platform:
             await self.open(bus, arm, epoch)
             token = SeatToken(ROOM, arm, epoch, role, "ana", clock.wall_ns() * 1e-9 + 60)
             offer = codec.encode(Offer(token=tokens.sign(token, self._secret), sdp=sdp))
-            answer = codec.decode(Answer, await bus.query(keys.signal(ROOM, arm, role), offer, 10))
+            answer = codec.decode(Answer, await bus.query(keys.signal(ROOM, arm, role), offer, 60))
             raise_error(answer.error)
             return answer.sdp
 
@@ -124,7 +124,7 @@ def test_a_claim_is_served_by_a_warm_process(platform: Platform) -> None:
         epoch = await platform.claim(bus)
         await platform.open(bus)
         await platform.release(bus)
-        await bus.query(keys.model(ROOM), b"", 10)
+        await bus.query(keys.model(ROOM), b"", 60)
         epoch = await platform.claim(bus)  # by now a spare is warm
         async with connected(platform.exchange(bus, Role.BROWSER, epoch)) as browser:
             ticks = [await browser.next_tick() for _ in range(3)]
