@@ -29,7 +29,7 @@ def test_a_collection_outlasts_its_router(tmp_path: Path) -> None:
         ) as collecting,
     ):
         assert collecting.stdout is not None
-        printed = []
+        printed: list[str] = []
         for line in collecting.stdout:  # not `communicate`, which would lose what came with the first line
             if not printed:
                 kill_service_of(tmp_path, "router")
