@@ -47,6 +47,14 @@ def _begin_anew(config: pytest.Config) -> None:
         os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
 
 
+def pytest_make_parametrize_id(val: object, argname: str) -> str | None:
+    """Name long bytes by their length: compressed or packed, they may differ between processes.
+
+    Workers that name a test differently collect different tests, and then no test runs at all.
+    """
+    return f"{argname}_of_{len(val)}_bytes" if isinstance(val, bytes) and len(val) > 16 else None
+
+
 @pytest.hookimpl(tryfirst=True)  # before `-m` chooses
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     for item in items:
