@@ -1,7 +1,15 @@
 // The words that partners can say by one press.
 
 /** @type {Record<Messages.Cue, string>} */
-const WORDS = { have_it: "I have it", go: "Go", wait: "Wait", slower: "Slower", thanks: "Thanks" };
+const WORDS = {
+  have_it: "I have it",
+  go: "Go",
+  wait: "Wait",
+  slower: "Slower",
+  thanks: "Thanks",
+  let_go: "Let go",
+  come_closer: "Come closer",
+};
 
 /** A cue as people say it; one that this page does not know, as it is. @type {(cue: string) => string} */
 export const cueText = (cue) => (isCue(cue) ? WORDS[cue] : cue);
