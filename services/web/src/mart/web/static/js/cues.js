@@ -19,3 +19,13 @@ export const cueText = (cue) => (isCue(cue) ? WORDS[cue] : cue);
  * @returns {cue is Messages.Cue}
  */
 const isCue = (cue) => cue in WORDS;
+
+/**
+ * Whether what obeys cues waits once `cue` has been said: as `mart.operators.obedience` has it.
+ * @param {boolean} waits before
+ * @param {string} cue
+ */
+export function waitsAfter(waits, cue) {
+  if (cue === "wait") return true;
+  return waits && !["go", "thanks", "come_closer"].includes(cue);
+}
