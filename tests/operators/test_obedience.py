@@ -14,17 +14,17 @@ from mart.operators.obedience import LET_GO_S, Obedience, held
 from mart.protocol.messages import (
     CUE_COME_CLOSER,
     CUE_GO,
-    CUE_HAVE_IT,
     CUE_LET_GO,
     CUE_SLOWER,
     CUE_THANKS,
     CUE_WAIT,
     Cue,
+    cue_from_word,
 )
 from mart.protocol.pose import Pose, quaternion_exp
 from tests.operators.rooms import POSE, TASK
 
-CUES = (CUE_HAVE_IT, CUE_GO, CUE_WAIT, CUE_SLOWER, CUE_THANKS, CUE_LET_GO, CUE_COME_CLOSER)
+CUES = (cue_from_word("have_it"), CUE_GO, CUE_WAIT, CUE_SLOWER, CUE_THANKS, CUE_LET_GO, CUE_COME_CLOSER)
 ENDS_WAIT = (CUE_GO, CUE_THANKS, CUE_COME_CLOSER)
 ARM = "arm0"
 

@@ -14,12 +14,12 @@ from mart.operators import SeatView, ToolTarget
 from mart.protocol.messages import (
     CUE_COME_CLOSER,
     CUE_GO,
-    CUE_HAVE_IT,
     CUE_LET_GO,
     CUE_SLOWER,
     CUE_THANKS,
     CUE_WAIT,
     Cue,
+    cue_from_word,
 )
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import get_task
@@ -27,7 +27,7 @@ from mart.sim.experts import ScriptedOperator, get_skill
 from mart.sim.experts.plan import OperatorObservation, Waypoint, never, wait
 from tests.sim.experts.humans import human
 
-CUES = (CUE_HAVE_IT, CUE_GO, CUE_WAIT, CUE_SLOWER, CUE_THANKS, CUE_LET_GO, CUE_COME_CLOSER)
+CUES = (cue_from_word("have_it"), CUE_GO, CUE_WAIT, CUE_SLOWER, CUE_THANKS, CUE_LET_GO, CUE_COME_CLOSER)
 ENDS_WAIT = (CUE_GO, CUE_THANKS, CUE_COME_CLOSER)
 HZ = 20
 TRAY = get_task("two_arm_drink_tray_lifting")
