@@ -2,19 +2,20 @@
 
 People are emulated: scripts of the skill `average` with their errors, tremor and delays. Assistants are scripts of the
 skill `expert` that obey cues; the person gives them as late as such a person notices and presses. Every episode is
-played twice from the same world, by the full crew of people, who say nothing, and by one of them with assistants; the
-person sits at another arm each time. A hand waits while its tool is where it was a second before, within 2 cm. Time is
-simulated; an episode ends with success, failure or the time that a trial of the task allows.
+played three times from the same world: by the full crew, who say nothing, by one of them with assistants, and by that
+one who says nothing to them. The person sits at another arm each time. A hand waits while its tool is where it was a
+second before, within 2 cm. Time is simulated; an episode ends with success, failure or the time of the task's trial.
 
-`assistants.py 40` plays 40 episodes a cell.
+`assistants.py 40` plays 40 episodes a cell. The table goes to docs/how-to-run-a-session.md.
 """
 
 from __future__ import annotations
 
 import sys
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from statistics import mean
 
 import numpy as np
@@ -22,6 +23,7 @@ from report import Bar, report
 from support.emulated_person import EmulatedVoice
 
 from mart.operators import SeatView
+from mart.protocol.messages import Cue
 from mart.sim.experts import ScriptedOperator, get_skill
 from mart.sim.world import World
 
@@ -30,8 +32,10 @@ TASKS = {
     "handover": "two_arm_pick_place_handover",
     "wiping": "three_arm_lift_wiping",
 }
-EPISODES = 8
+EPISODES = 20
 PERSON, ASSISTANT = get_skill("average"), get_skill("expert")
+PAGE = Path(__file__).parents[1] / "docs/how-to-run-a-session.md"
+BEGIN, END = "<!-- assistants: begin -->", "<!-- assistants: end -->"
 WAITS_WITHIN_M, WAITS_S = 0.02, 1.0
 
 
@@ -55,21 +59,31 @@ def main() -> None:
     for name, task in TASKS.items():
         world = World.build(task)
         crew = [play(world, number, None) for number in range(episodes)]
-        alone = [play(world, number, world.arms[number % len(world.arms)]) for number in range(episodes)]
+        alone = [play(world, number, seat_of(world, number)) for number in range(episodes)]
+        silent = [play(world, number, seat_of(world, number), speaks=False) for number in range(episodes)]
         metrics |= figures(name, alone)
-        peer |= figures(name, crew)
-        rows += [row(name, "full crew", crew), row(name, "one with assistants", alone)]
+        peer |= figures(name, crew) | figures(f"{name}_silent", silent)
+        rows += [
+            row(name, "full crew", crew),
+            row(name, "one with assistants", alone),
+            row(name, "the same, without cues", silent),
+        ]
         bars += [
-            Bar.at_least(f"{name}: successes beside the crew's", rate(alone) - rate(crew), -0.25),
+            Bar.at_least(f"{name}: success rate less the crew's", rate(alone) - rate(crew), -0.25),
             Bar.at_most(
-                f"{name}: people's seconds a success beside the crew's", per_success(alone, crew), 1.0
+                f"{name}: people's seconds a success, times the crew's", people_s(alone) / people_s(crew), 1.0
             ),
         ]
-    print(*table(rows), sep="\n")
+    write_table(rows, episodes)
     report("assistants", metrics, peer, bars)
 
 
-def play(world: World, number: int, person: str | None) -> Played:
+def seat_of(world: World, number: int) -> str:
+    """Return the person's arm in the episode of this number."""
+    return world.arms[number % len(world.arms)]
+
+
+def play(world: World, number: int, person: str | None, *, speaks: bool = True) -> Played:
     """Play one episode in the world of this number; person: whose arm is a person's, None: all are."""
     world.reset(number)
     people = (person,) if person else world.arms
@@ -79,28 +93,32 @@ def play(world: World, number: int, person: str | None) -> Played:
     }
     for operator in operators.values():
         operator.begin(number)
-    voice = EmulatedVoice(world.task, person, PERSON.notice_s) if person else None
+    voice = EmulatedVoice(world.task, person, PERSON.notice_s) if person and speaks else None
     stillness = {arm: Stillness(round(WAITS_S * world.control_hz)) for arm in people}
-    limit_s, tick = world.task.trial_limit_s, 0
-    progress = world.progress()
-    while not (progress.success or progress.failed or world.sim_time_s >= limit_s):
-        actions = []
-        for arm, operator in operators.items():
-            view = view_of(world, arm, number, tick)
-            target = operator.act(view)[arm]
-            actions.append(world.action_for(arm, target.pose_tool_in_base, target.gripper))
-            if arm in stillness:
-                stillness[arm].see(view.poses_tool_in_base[arm].position)
-            if voice and arm == person:
-                cues = voice.due(view, target)
-        for cue in cues if voice and person else ():
-            for arm in world.arms:
-                if arm != person:
-                    operators[arm].on_cue(cue, person)
-        world.step(actions)
+    progress, tick = world.progress(), 0
+    while not (progress.success or progress.failed or world.sim_time_s >= world.task.trial_limit_s):
+        views = {arm: view_of(world, arm, number, tick) for arm in world.arms}
+        targets = {arm: operators[arm].act(view)[arm] for arm, view in views.items()}
+        for arm, still in stillness.items():
+            still.see(views[arm].poses_tool_in_base[arm].position)
+        if voice and person:
+            tell(operators, person, voice.due(views[person], targets[person]))
+        world.step(
+            [
+                world.action_for(arm, target.pose_tool_in_base, target.gripper)
+                for arm, target in targets.items()
+            ]
+        )
         progress, tick = world.progress(), tick + 1
     waiting_s = mean(still.ticks for still in stillness.values()) / world.control_hz
     return Played(progress.success, world.sim_time_s, waiting_s, voice.count if voice else 0, len(people))
+
+
+def tell(operators: Mapping[str, ScriptedOperator], person: str, cues: Sequence[Cue]) -> None:
+    """Give the person's cues to every other arm."""
+    for cue in cues:
+        for arm in operators.keys() - {person}:
+            operators[arm].on_cue(cue, person)
 
 
 def view_of(world: World, arm: str, episode: int, tick: int) -> SeatView:
@@ -131,10 +149,6 @@ def people_s(played: Sequence[Played]) -> float:
     return sum(one.people * one.time_s for one in played) / max(sum(one.success for one in played), 1)
 
 
-def per_success(alone: Sequence[Played], crew: Sequence[Played]) -> float:
-    return people_s(alone) / people_s(crew)
-
-
 def figures(name: str, played: Sequence[Played]) -> dict[str, float]:
     times_s = [one.time_s for one in played if one.success]
     return {
@@ -154,14 +168,14 @@ def row(name: str, who: str, played: Sequence[Played]) -> tuple[str, ...]:
         who,
         f"{of['_success']} of {len(played)}",
         f"{of['_time_s']:.1f}",
-        f"{of['_waiting_s']:.1f} ({of['_waiting_share']:.0%})",
+        f"{of['_waiting_s']:.1f} ({100 * of['_waiting_share']:.0f} %)",
         f"{of['_people_s_a_success']:.0f}",
         f"{of['_cues']:.1f}",
     )
 
 
-def table(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    """Lines of Markdown, for the docs."""
+def write_table(rows: Sequence[tuple[str, ...]], episodes: int) -> None:
+    """Write a Markdown table into the page, between its marks."""
     head = (
         "task",
         "who",
@@ -171,7 +185,14 @@ def table(rows: Sequence[tuple[str, ...]]) -> list[str]:
         "people's s a success",
         "cues an episode",
     )
-    return [f"| {' | '.join(cells)} |" for cells in (head, ("---",) * len(head), *rows)]
+    lines = [f"| {' | '.join(cells)} |" for cells in (head, ("---",) * len(head), *rows)]
+    caption = f"{episodes} episodes a row, simulated seconds; time is that of successes:"
+    before, begin, rest = PAGE.read_text().partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not (begin and end):
+        raise SystemExit(f"{PAGE} lacks {BEGIN} or {END}; put them where the table belongs.")
+    PAGE.write_text("\n".join([before + begin, "", caption, "", *lines, "", end + after]))
+    print(*lines, sep="\n")
 
 
 if __name__ == "__main__":

@@ -121,10 +121,13 @@ class SeatDriver(Generic[K]):
         for room, status in statuses.items():
             self._people[room] = {seat.arm for seat in status.seats if seat.operator == OPERATOR_HUMAN}
             self._follow_seats(room, status)
-        for room, event in self._watch.cues():
-            self._tell(room, event)
         for room, state in states.items():
             self._show(room, state)
+        for (
+            room,
+            event,
+        ) in self._watch.cues():  # after the states: a reset forgets what was said before it alone
+            self._tell(room, event)
         self._forget_silent(now_s)
         self._speak(clock.monotonic_s())
         self._throttled_log.report(self._watch.unusable, clock.monotonic_s())
