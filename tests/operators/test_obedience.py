@@ -32,18 +32,19 @@ said = st.lists(st.sampled_from(CUES), max_size=12)
 
 
 class Gripper(Operator):
-    """Closes, and goes a full step forward at every tick."""
+    """Closes, and goes forward: what it asks for is a full step, or further."""
 
     def __init__(self) -> None:
         self.heard: list[tuple[Cue, str]] = []
         self.acted = 0
+        self.step_m = 0.05
 
     def on_cue(self, cue: Cue, arm: str) -> None:
         self.heard.append((cue, arm))
 
     def act(self, view: SeatView) -> Mapping[str, ToolTarget]:
         self.acted += 1
-        return {ARM: view.step(ARM, (0.05, 0.0, 0.0), (0.0, 0.0, 0.5), gripper=1.0)}
+        return {ARM: view.step(ARM, (self.step_m, 0.0, 0.0), (0.0, 0.0, 0.5), gripper=1.0)}
 
 
 class Arm:
@@ -121,6 +122,8 @@ def test_slower_is_half_a_step_also_towards_a_far_target_and_lasts_until_go() ->
     arm.hear(CUE_WAIT).moves_m()
     assert arm.hear(CUE_THANKS).moves_m() == pytest.approx(0.025)
     assert arm.hear(CUE_GO).moves_m() == pytest.approx(0.05)
+    arm.driver.step_m = 0.5  # of which a room would let the tool go 0.05
+    assert arm.hear(CUE_SLOWER).moves_m() == pytest.approx(0.025)
 
 
 def test_let_go_opens_a_closed_gripper_for_a_second_and_stays_open_while_it_waits() -> None:
