@@ -150,17 +150,17 @@ def test_a_policy_obeys_the_people_of_its_room_alone(stand: Stand) -> None:
     part = stand.policies["alone"].parts["arm1"]
 
     def asked_after(cue: Cue) -> int:  # a word of arm0's, in three ticks
-        before = len(part.given)
-        event = Event(room="room-1", tick=stand.tick, cue_given=Event.CueGiven(arm="arm0", cue=cue))
-        stand.bus.publisher(keys.event("room-1")).put(codec.encode(event))
+        before, given = len(part.given), Event.CueGiven(arm="arm0", cue=cue)
+        said = codec.encode(Event(room="room-1", tick=stand.tick, cue_given=given))
+        stand.bus.publisher(keys.event("room-1")).put(said)
+        stand.driver.work()
         assert [stand.show() for _ in range(3)] == [[("arm1", 2)]] * 3
         return len(part.given) - before
 
     assert asked_after(CUE_WAIT) == 3  # nobody sits there
     stand.room.seats.claim("arm0", "ana", "Ana", OPERATOR_HUMAN)
     stand.room.publish()
-    assert asked_after(CUE_WAIT) == 0
-    assert asked_after(CUE_GO) == 3
+    assert [asked_after(CUE_WAIT), asked_after(CUE_GO)] == [0, 3]
 
 
 def test_a_policy_of_a_slower_rate_speaks_at_every_tick_and_acts_at_its_own(stand: Stand) -> None:
