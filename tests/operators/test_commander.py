@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from mart.operators import Operator, SeatView, ToolTarget
 from mart.operators.commander import SeatCommander
 from mart.protocol.errors import Corrupt, InvalidInput, Unavailable
-from mart.protocol.messages import OPERATOR_POLICY, pose_from_message
+from mart.protocol.messages import CUE_GO, CUE_SLOWER, CUE_WAIT, OPERATOR_POLICY, Cue, pose_from_message
 from mart.protocol.pose import Pose
 from tests.operators.rooms import POSE, TASK, Riser, state_of
 
@@ -198,3 +198,36 @@ def test_a_pose_that_is_none_cannot_be_made() -> None:
 def test_an_error_in_words_stays_what_it_is() -> None:
     with pytest.raises(Unavailable):
         commander_of(Saying(Unavailable("The camera is away; plug it in."))).observe(state_of(1))
+
+
+class Listener(Riser):
+    """A riser that keeps what it hears."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.heard: list[tuple[Cue, str]] = []
+
+    def on_cue(self, cue: Cue, arm: str) -> None:
+        if cue == CUE_SLOWER:
+            raise ZeroDivisionError
+        self.heard.append((cue, arm))
+
+
+def test_a_word_of_a_partner_is_heard_and_none_of_its_own_seat_or_of_before_it_began() -> None:
+    listener = Listener()
+    commander = commander_of(listener)
+    commander.hear(CUE_GO, "arm1", tick=5)
+    commander.observe(state_of(5))
+    for arm, tick in (("arm0", 6), ("arm1", 4), ("arm1", 5)):
+        commander.hear(CUE_WAIT, arm, tick)
+    assert listener.heard == [(CUE_WAIT, "arm1")]
+    commander.observe(state_of(9, episode=2, after_reset=True))
+    commander.hear(CUE_GO, "arm1", tick=8)  # said before the reset, and late
+    assert listener.heard == [(CUE_WAIT, "arm1")]
+
+
+def test_an_operator_that_fails_at_a_word_is_told_by_its_name() -> None:
+    commander = commander_of(Listener())
+    commander.observe(state_of(5))
+    with pytest.raises(InvalidInput, match="ZeroDivisionError"):
+        commander.hear(CUE_SLOWER, "arm1", tick=5)

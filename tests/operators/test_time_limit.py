@@ -11,7 +11,7 @@ from mart.operators import Operator, SeatView, ToolTarget
 from mart.operators.commander import SeatCommander
 from mart.operators.time_limit import TimeLimitedOperator
 from mart.protocol.errors import InvalidInput, Unavailable
-from mart.protocol.messages import OPERATOR_POLICY
+from mart.protocol.messages import CUE_GO, OPERATOR_POLICY, Cue
 from tests.operators.rooms import TASK, Riser, state_of
 
 
@@ -40,6 +40,18 @@ def test_who_answers_in_time_is_heard() -> None:
     riser = Riser()
     assert len(observe(riser, limit_s=60.0).commands(0)) == 1
     assert riser.begun == [1]
+
+
+def test_a_cue_is_handed_on() -> None:
+    class Listener(Riser):
+        heard: Cue | None = None
+
+        def on_cue(self, cue: Cue, arm: str) -> None:
+            self.heard = cue
+
+    listener = Listener()
+    observe(listener, limit_s=60.0).hear(CUE_GO, "arm1", tick=1)
+    assert listener.heard == CUE_GO
 
 
 def test_who_hangs_is_given_up() -> None:

@@ -93,7 +93,7 @@ def test_words_of_enums_go_both_ways() -> None:
         assert m.operator_word(m.operator_from_word(word)) == word
     for word in ("success", "failure", "discarded"):
         assert m.outcome_word(m.outcome_from_word(word)) == word
-    for word in ("have_it", "go", "wait", "slower", "thanks"):
+    for word in ("have_it", "go", "wait", "slower", "thanks", "let_go", "come_closer"):
         assert m.cue_word(m.cue_from_word(word)) == word
     assert m.phase_word(m.EPISODE_PHASE_RECORDING) == "recording"
     assert m.barrier_word(m.BARRIER_PHASE_PAUSED) == "paused"
@@ -102,5 +102,5 @@ def test_words_of_enums_go_both_ways() -> None:
             m.operator_from_word(bad)
         with pytest.raises(InvalidInput, match="must be"):
             m.outcome_from_word(bad)
-        with pytest.raises(InvalidInput, match="have_it, go, wait, slower or thanks"):
+        with pytest.raises(InvalidInput, match="have_it, go, wait, slower, thanks, let_go or come_closer"):
             m.cue_from_word(bad)

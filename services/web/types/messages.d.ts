@@ -3,7 +3,7 @@
 
 declare namespace Messages {
   type BarrierPhase = "running" | "stalled" | "paused" | "stopped";
-  type Cue = "have_it" | "go" | "wait" | "slower" | "thanks";
+  type Cue = "have_it" | "go" | "wait" | "slower" | "thanks" | "let_go" | "come_closer";
   type EpisodePhase = "practice" | "countdown" | "recording" | "ended";
   type JobState = "queued" | "running" | "done" | "failed" | "cancelled";
   type Operator = "hold" | "human" | "policy" | "script";

@@ -35,7 +35,7 @@ def test_a_partner_sees_what_is_said_and_for_how_long(
         visit(browser, platform) as ben,
         driving(ana) as anas,
     ):
-        expect(anas.get_by_role("button", name="Wait")).to_be_hidden()  # a script would not heed it
+        expect(anas.get_by_role("button", name="Wait")).to_be_visible()  # the script obeys
         page = takes_the_other_seat(ben)
         expect(anas.get_by_role("button", name="Wait")).to_be_visible()
         page.keyboard.press("2")
@@ -50,6 +50,16 @@ def test_a_partner_sees_what_is_said_and_for_how_long(
         expect(page.get_by_role("button", name="Go", exact=True)).not_to_have_class("said")
         leaves(page)
         expect(anas.get_by_role("button", name="Wait")).to_be_hidden()
+
+
+def test_a_script_waits_for_who_says_so_until_told_to_go(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        chip = page.locator(".partner[data-arm=arm1]")
+        expect(chip).to_contain_text("Moving")
+        page.keyboard.press("3")
+        expect(chip).to_contain_text("Waits for you")
+        page.keyboard.press("2")
+        expect(chip).to_contain_text("Moving")
 
 
 def test_what_is_said_while_recording_is_in_the_file(browser: Browser, platform: Platform) -> None:

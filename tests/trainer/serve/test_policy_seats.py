@@ -14,11 +14,14 @@ from mart.operators.driver import SeatDriver
 from mart.protocol import codec, keys
 from mart.protocol.errors import NotFound, Unavailable
 from mart.protocol.messages import (
+    CUE_GO,
+    CUE_WAIT,
     OPERATOR_HOLD,
     OPERATOR_HUMAN,
     OPERATOR_POLICY,
     ArmState,
     Command,
+    Cue,
     Event,
     Observation,
     Operator,
@@ -139,6 +142,25 @@ def test_a_joint_policy_drives_all_its_seats_with_one_memory(stand: Stand) -> No
     stand.room.publish()
     assert stand.show() == [("arm0", 4), ("arm1", 2)]
     assert stand.loaded == ["together"]
+
+
+def test_a_policy_obeys_the_people_of_its_room_alone(stand: Stand) -> None:
+    stand.assign("arm1", "alone")
+    stand.show()
+    part = stand.policies["alone"].parts["arm1"]
+
+    def asked_after(cue: Cue) -> int:  # a word of arm0's, in three ticks
+        before, given = len(part.given), Event.CueGiven(arm="arm0", cue=cue)
+        said = codec.encode(Event(room="room-1", tick=stand.tick, cue_given=given))
+        stand.bus.publisher(keys.event("room-1")).put(said)
+        stand.driver.work()
+        assert [stand.show() for _ in range(3)] == [[("arm1", 2)]] * 3
+        return len(part.given) - before
+
+    assert asked_after(CUE_WAIT) == 3  # nobody sits there
+    stand.room.seats.claim("arm0", "ana", "Ana", OPERATOR_HUMAN)
+    stand.room.publish()
+    assert [asked_after(CUE_WAIT), asked_after(CUE_GO)] == [0, 3]
 
 
 def test_a_policy_of_a_slower_rate_speaks_at_every_tick_and_acts_at_its_own(stand: Stand) -> None:

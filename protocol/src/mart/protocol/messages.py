@@ -36,7 +36,11 @@ from mart.v1.room_pb2 import (
     BARRIER_PHASE_RUNNING,
     BARRIER_PHASE_STALLED,
     BARRIER_PHASE_STOPPED,
+    CUE_COME_CLOSER,
     CUE_GO,
+    CUE_LET_GO,
+    CUE_SLOWER,
+    CUE_THANKS,
     CUE_WAIT,
     ENDED_BY_ABSENCE,
     ENDED_BY_OPERATOR,
@@ -99,7 +103,11 @@ __all__ = [
     "BARRIER_PHASE_RUNNING",
     "BARRIER_PHASE_STALLED",
     "BARRIER_PHASE_STOPPED",
+    "CUE_COME_CLOSER",
     "CUE_GO",
+    "CUE_LET_GO",
+    "CUE_SLOWER",
+    "CUE_THANKS",
     "CUE_WAIT",
     "ENDED_BY_ABSENCE",
     "ENDED_BY_OPERATOR",
@@ -253,7 +261,7 @@ def job_state_word(state: JobState) -> str:
 
 
 def cue_word(cue: Cue) -> str:
-    """Return the word for a cue: have_it, go, wait, slower or thanks."""
+    """Return the word for a cue: have_it, go, wait, slower, thanks, let_go or come_closer."""
     return _word(Cue.Name(cue), "CUE_")
 
 
@@ -275,7 +283,7 @@ def outcome_from_word(word: str) -> Outcome:
 
 
 def cue_from_word(word: str) -> Cue:
-    """Return the wire's member. Raises InvalidInput for anything but have_it, go, wait, slower or thanks."""
+    """Return the wire's member. Raises InvalidInput for any word that `cue_word` does not return."""
     return cast("Cue", _value(Cue, "CUE_", "Cue", word))
 
 

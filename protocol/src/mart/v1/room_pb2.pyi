@@ -49,6 +49,8 @@ class Cue(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     CUE_WAIT: _ClassVar[Cue]
     CUE_SLOWER: _ClassVar[Cue]
     CUE_THANKS: _ClassVar[Cue]
+    CUE_LET_GO: _ClassVar[Cue]
+    CUE_COME_CLOSER: _ClassVar[Cue]
 BARRIER_PHASE_UNSPECIFIED: BarrierPhase
 BARRIER_PHASE_RUNNING: BarrierPhase
 BARRIER_PHASE_STALLED: BarrierPhase
@@ -75,6 +77,8 @@ CUE_GO: Cue
 CUE_WAIT: Cue
 CUE_SLOWER: Cue
 CUE_THANKS: Cue
+CUE_LET_GO: Cue
+CUE_COME_CLOSER: Cue
 
 class Seat(_message.Message):
     __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged", "policy", "relieved", "holder_tag", "kept_s")

@@ -8,11 +8,13 @@
 """
 
 from mart.operators.client import drive_seats
+from mart.operators.obedience import ObedientOperator
 from mart.operators.operator import Operator, SeatView, ToolTarget, target_from_action
 from mart.operators.room_client import RoomClient
 from mart.protocol.vocabulary import OperatorKind
 
 __all__ = [
+    "ObedientOperator",
     "Operator",
     "OperatorKind",
     "RoomClient",

@@ -19,6 +19,7 @@ from mart.protocol.messages import (
     ArmState,
     Command,
     CommandStamps,
+    Cue,
     PoseMessage,
     State,
     pose_from_message,
@@ -88,6 +89,14 @@ class SeatCommander:
         for arm in self.arms:  # whoever drove under this epoch before has counted so far
             self._sequences[arm] = max(self._sequences[arm], arms[arm].sequence)
         return True
+
+    def hear(self, cue: Cue, arm: str, tick: int) -> None:
+        """Let the operator hear a person's word, said by who drives `arm` when the newest state was that of `tick`.
+
+        A word from before the operator began, or from its own seat, is none to it. Raises as `observe` where it fails.
+        """
+        if self._begun and tick >= self._begun_tick and arm not in self._epochs:
+            _guarded(lambda: self._operator.on_cue(cue, arm))
 
     def _act(self, state: State, arms: Mapping[str, ArmState], *, begins: bool) -> None:
         view = self._view(state, arms)

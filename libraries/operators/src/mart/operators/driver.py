@@ -16,7 +16,7 @@ from mart.operators.room_client import RoomClient
 from mart.operators.room_watch import RoomWatch
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput, MartError, ServiceFault, Unavailable
-from mart.protocol.messages import OPERATOR_HOLD, Event, RoomStatus, State
+from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, Cue, Event, RoomStatus, State
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Bus, Publisher
 from mart.runtime.throttled_log import ThrottledLog
@@ -78,6 +78,10 @@ class _DrivenSeats:
         if any(news):
             self.repeat_s = 0.0  # say it now
 
+    def hear(self, cue: Cue, arm: str, tick: int) -> None:
+        for commander in self.commanders:
+            commander.hear(cue, arm, tick)
+
     def speak(self) -> None:
         for commander in self.commanders:
             for command in commander.commands(clock.wall_ns()):
@@ -98,6 +102,7 @@ class SeatDriver(Generic[K]):
         self._failed: dict[tuple[str, K], _FailedSeats] = {}
         self._heard_s: dict[str, float] = {}  # by room
         self._watch = RoomWatch(bus, room)
+        self._people: dict[str, Collection[str]] = {}  # the arms that people drive, by room
         self._throttled_log = ThrottledLog(_log)
         self.failure: MartError | None = None  # the newest
         self._looked_s = self.heard_s = clock.monotonic_s()  # when a room last said how it is
@@ -114,9 +119,15 @@ class SeatDriver(Generic[K]):
         now_s = clock.monotonic_s()
         self._note_heard(statuses, (*statuses, *states), now_s)
         for room, status in statuses.items():
+            self._people[room] = {seat.arm for seat in status.seats if seat.operator == OPERATOR_HUMAN}
             self._follow_seats(room, status)
         for room, state in states.items():
             self._show(room, state)
+        for (
+            room,
+            event,
+        ) in self._watch.cues():  # after the states: a reset forgets what was said before it alone
+            self._tell(room, event)
         self._forget_silent(now_s)
         self._speak(clock.monotonic_s())
         self._throttled_log.report(self._watch.unusable, clock.monotonic_s())
@@ -136,6 +147,7 @@ class SeatDriver(Generic[K]):
             del self._failed[place]
         for room in silent:
             del self._heard_s[room]
+            self._people.pop(room, None)
             self._watch.forget(room)
 
     def _patience_s(self, room: str) -> float:
@@ -180,6 +192,15 @@ class SeatDriver(Generic[K]):
         for place, driven in list(self._driven.items()):
             if place[0] == room:
                 self._guarded(place, driven.epochs, partial(driven.observe, state))
+
+    def _tell(self, room: str, event: Event) -> None:
+        """Tell those who drive in a room what a person there said to the partners."""
+        given = event.cue_given
+        if given.arm not in self._people.get(room, ()):
+            return
+        for place, driven in list(self._driven.items()):
+            if place[0] == room:
+                self._guarded(place, driven.epochs, partial(driven.hear, given.cue, given.arm, event.tick))
 
     def _speak(self, now_s: float) -> None:
         for place, driven in list(self._driven.items()):

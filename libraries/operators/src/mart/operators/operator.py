@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mart.protocol.messages import Cue
 from mart.protocol.pose import Pose, quaternion_exp, quaternion_multiply
 from mart.protocol.tasks import Limits, Task
 
@@ -60,6 +61,12 @@ class Operator(ABC):
 
     def begin(self, episode: int) -> None:  # noqa: B027 - most have nothing to forget
         """Forget what was: the world has been reset, or the seat was just taken. `episode` is the room's count."""
+
+    def on_cue(self, cue: Cue, arm: str) -> None:  # noqa: B027 - most have an `ObedientOperator` around them
+        """Hear a word from the person who drives `arm`, a partner's, before the next `act`.
+
+        Do as told, or not: an operator that says nothing of it ignores cues. See `ObedientOperator` for one that obeys.
+        """
 
     @abstractmethod
     def act(self, view: SeatView) -> Mapping[str, ToolTarget]:

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 import threading
-from collections import Counter
-from collections.abc import Mapping
+from collections import Counter, deque
+from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
 from mart.protocol import keys
 from mart.protocol.errors import InvalidInput
-from mart.protocol.messages import RoomStatus, State
+from mart.protocol.messages import Event, RoomStatus, State
 from mart.protocol.received import decode_received
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Bus, Sample
 
 _MAX_STATUS_BYTES = 64 * 1024
 _MAX_STATE_BYTES = 1024 * 1024
+_MAX_EVENT_BYTES = 64 * 1024
+_MAX_EVENTS = 64  # between two looks; older ones are dropped
 
-M = TypeVar("M", RoomStatus, State)
+M = TypeVar("M", RoomStatus, State, Event)
 
 
 class RoomWatch:
-    """The newest status and the newest state of every room, or of `room` alone. Whoever is late misses older ones.
+    """The newest status and state of every room, or of `room` alone, and its cues. Whoever is late misses older ones.
 
     `unusable` counts what could not be decoded.
     """
@@ -31,10 +33,12 @@ class RoomWatch:
         self._states: dict[str, bytes] = {}
         self._statuses: dict[str, bytes] = {}
         self._gone: set[str] = set()
+        self._events: deque[tuple[str, bytes]] = deque(maxlen=_MAX_EVENTS)
         self._arrived = threading.Condition()
         self._subscriptions = (
             bus.subscribe(keys.status(room).key if room else keys.EVERY_STATUS, self._on_status),
             bus.subscribe(keys.state(room).key if room else keys.EVERY_STATE, self._on_state),
+            bus.subscribe(keys.event(room).key if room else keys.EVERY_EVENT, self._on_event),
             bus.watch(keys.alive_of(ServiceKind.SIM), self._on_sim),
         )
 
@@ -49,6 +53,18 @@ class RoomWatch:
             self._decoded(RoomStatus, statuses, _MAX_STATUS_BYTES),
             self._decoded(State, states, _MAX_STATE_BYTES),
         )
+
+    def cues(self) -> Sequence[tuple[str, Event]]:
+        """Return, in the order in which they came, the rooms and events of the cues given since the last call."""
+        with self._arrived:
+            events = tuple(self._events)
+            self._events.clear()
+        decoded = (
+            (room, event)
+            for room, payload in events
+            for event in self._decoded(Event, {room: payload}, _MAX_EVENT_BYTES).values()
+        )
+        return [(room, event) for room, event in decoded if event.HasField("cue_given")]
 
     def is_gone(self, room: str) -> bool:
         """Whether the room's sim had a liveliness token and has none now."""
@@ -77,6 +93,10 @@ class RoomWatch:
         with self._arrived:
             self._states[keys.room_of(sample.key)] = sample.payload
             self._arrived.notify()
+
+    def _on_event(self, sample: Sample) -> None:
+        with self._arrived:  # nobody is woken: what obeys acts on the next state
+            self._events.append((keys.room_of(sample.key), sample.payload))
 
     def _decoded(self, kind: type[M], payloads: Mapping[str, bytes], limit_bytes: int) -> dict[str, M]:
         decoded: dict[str, M] = {}

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 
 from mart.operators.operator import Operator, SeatView, ToolTarget
 from mart.protocol.errors import Unavailable
+from mart.protocol.messages import Cue
 
 
 class TimeLimitedOperator(Operator):
@@ -30,6 +31,10 @@ class TimeLimitedOperator(Operator):
     def act(self, view: SeatView) -> Mapping[str, ToolTarget]:
         """Hand on; see `Operator.act`."""
         return self._ask(lambda: self._operator.act(view))  # type: ignore[return-value]  # checked by its caller
+
+    def on_cue(self, cue: Cue, arm: str) -> None:
+        """Hand on; see `Operator.on_cue`."""
+        self._ask(lambda: self._operator.on_cue(cue, arm))
 
     def _ask(self, deed: Callable[[], object]) -> object:
         answer: queue.SimpleQueue[object] = queue.SimpleQueue()

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.operators.obedience import held, is_closed
 from mart.operators.operator import ToolTarget
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Task
+from mart.sim.experts.detours import come_closer, let_go
 from mart.sim.experts.hand_motion import HandMotion
 from mart.sim.experts.human_error import HumanErrorModel
-from mart.sim.experts.plan import CLOSED, OPEN, ExpertPlan, OperatorObservation, Waypoint
+from mart.sim.experts.plan import CLOSED, OPEN, ExpertPlan, OperatorObservation, PlanStep, Waypoint
 from mart.sim.experts.plans import plan_of
 from mart.sim.experts.skill import Skill
 
 _SAME_WAYPOINT_M = 0.05  # a waypoint that jumps further than this is a new movement
 _SLIP_S = 0.4  # how long a hand that slipped stays open
+
+Detour = Callable[[OperatorObservation], PlanStep]
 
 
 class Expert:
@@ -27,7 +31,7 @@ class Expert:
     """
 
     def __init__(self, task: Task, arm: str, skill: Skill, random: np.random.Generator) -> None:
-        self._arm = task.arm(arm)
+        self._task, self._arm = task, task.arm(arm)
         self._plan_of = plan_of(task)
         self._human = HumanErrorModel(skill, random)
         self._hand = HandMotion(self._human)
@@ -37,6 +41,27 @@ class Expert:
         self._seen_s = 0.0
         self._rest_until_s = 0.0
         self._slip_until_s = 0.0
+        self._detour: Detour | None = None
+        self._told_to_go = False
+
+    def pause(self, pose_tool_in_base: Pose) -> ToolTarget:
+        """Return the target of an arm that holds still from here on; the next `act` moves it from where it is then."""
+        self._hand.rest(pose_tool_in_base)
+        return held(self._intent, pose_tool_in_base)
+
+    def go_on(self) -> None:
+        """Tell it, when it acts next, that it may go on: it waits for its partners no longer."""
+        self._told_to_go = True
+
+    def let_go(self) -> None:
+        """Open the gripper where it holds something, draw back, and begin the plan anew."""
+        if is_closed(self._intent):
+            self._detour = lambda obs: let_go(obs, self._human)
+
+    def come_closer(self, partner: str) -> None:
+        """Come to the tool of the arm `partner` where the hand is empty, and begin the plan anew, told to go on."""
+        if partner in self._task.arm_names and not is_closed(self._intent):
+            self._detour = lambda obs: self._come_closer(obs, partner)
 
     def act(self, observations: Mapping[str, NDArray[np.float64]], sim_time_s: float) -> ToolTarget:
         """Return what the operator wants; observations: what the task declares for this arm."""
@@ -65,8 +90,9 @@ class Expert:
         arrived = self._waypoint is not None and self._hand.has_reached(
             self._waypoint.pose_tool_in_base, tool
         )
+        told, self._told_to_go = self._told_to_go, False
         return OperatorObservation(
-            observations, sim_time_s, tool, float(observations[f"{name}/gripper"][0]), arrived
+            observations, sim_time_s, tool, float(observations[f"{name}/gripper"][0]), arrived, told
         )
 
     def _next_waypoint(self, obs: OperatorObservation) -> Waypoint:
@@ -74,12 +100,27 @@ class Expert:
             self._plan = self._plan_of(self._arm, self._human, obs)
             self._rest_until_s = obs.sim_time_s + self._human.reacts_s()
             return next(self._plan)
+        if self._detour is not None:
+            detour, self._detour = self._detour, None
+            self._plan = self._plan_after(detour, obs)
+            self._rest_until_s = obs.sim_time_s
+            return next(self._plan)
         if obs.sim_time_s < self._rest_until_s:
+            self._told_to_go = obs.told_to_go
             return self._waypoint
         waypoint = self._plan.send(obs)
         if _is_new(waypoint, self._waypoint):
             self._rest_until_s = obs.sim_time_s + self._human.pauses_s()
         return waypoint
+
+    def _plan_after(self, detour: Detour, obs: OperatorObservation) -> ExpertPlan:
+        obs = yield from detour(obs)
+        yield from self._plan_of(self._arm, self._human, obs)
+
+    def _come_closer(self, obs: OperatorObservation, partner: str) -> PlanStep:
+        obs = yield from come_closer(obs, self._arm, partner)
+        self.go_on()
+        return obs
 
     def _grip(self, waypoint: Waypoint, now_s: float, elapsed_s: float) -> float:
         """Say what the gripper is told: a hand that should stay closed opens now and then for a moment."""

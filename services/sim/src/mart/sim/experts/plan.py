@@ -41,13 +41,17 @@ class Waypoint:
 
 @dataclass(frozen=True)
 class OperatorObservation:
-    """Hold what one operator sees at one moment; `arrived`: the tool is at the waypoint yielded last."""
+    """Hold what one operator sees at one moment; `arrived`: the tool is at the waypoint yielded last.
+
+    told_to_go: a partner has just said that one may go on, whatever is to be seen.
+    """
 
     observations: Mapping[str, NDArray[np.float64]]
     sim_time_s: float
     pose_tool_in_base: Pose
     gripper: float
     arrived: bool
+    told_to_go: bool = False
 
 
 ExpertPlan = Generator[Waypoint, OperatorObservation, None]
@@ -90,8 +94,8 @@ def stay(obs: OperatorObservation, waypoint: Waypoint, duration_s: float) -> Pla
 
 
 def wait(obs: OperatorObservation, waypoint: Waypoint, human: HumanErrorModel, until: Until) -> PlanStep:
-    """Wait at `waypoint` until `until` holds; acted upon as late as this person notices things."""
-    while not until(obs):
+    """Wait at `waypoint` until `until` holds or a partner says go; acted upon as late as this person notices things."""
+    while not (until(obs) or obs.told_to_go):
         obs = yield waypoint
     return (yield from stay(obs, waypoint, human.notices_s()))
 

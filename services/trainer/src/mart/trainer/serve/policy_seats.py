@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from mart.operators.commander import SeatCommander
 from mart.operators.driver import SeatSelection
+from mart.operators.obedience import ObedientOperator
 from mart.protocol.control_rate import ticks_for_each
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
@@ -65,15 +66,20 @@ class PromotedPolicies(SeatSelection[str]):
 def policy_commanders(policy: Policy, status: RoomStatus) -> Sequence[SeatCommander]:
     """Return what a policy drives with in a room of this status: one commander for each of its independent parts.
 
-    It acts at its own rate also where the room's is a multiple of it. Raises InvalidInput where the policy was not made
-    for such a room, or the room's rate is no multiple.
+    It obeys its partners' cues, and acts at its own rate also where the room's is a multiple of it. Raises InvalidInput
+    where the policy was not made for such a room, or the room's rate is no multiple.
     """
     task = get_task(status.task, len(status.seats))
     require_fit(policy, task)
     each = ticks_for_each(policy.control_hz, status.control_hz)
     return [
         SeatCommander(
-            PolicyOperator(part), task, part.arms, OPERATOR_POLICY, part.needs, act_every_ticks=each
+            ObedientOperator(PolicyOperator(part)),
+            task,
+            part.arms,
+            OPERATOR_POLICY,
+            part.needs,
+            act_every_ticks=each,
         )
         for part in parts_of(policy)
     ]

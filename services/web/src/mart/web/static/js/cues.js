@@ -1,7 +1,15 @@
 // The words that partners can say by one press.
 
 /** @type {Record<Messages.Cue, string>} */
-const WORDS = { have_it: "I have it", go: "Go", wait: "Wait", slower: "Slower", thanks: "Thanks" };
+const WORDS = {
+  have_it: "I have it",
+  go: "Go",
+  wait: "Wait",
+  slower: "Slower",
+  thanks: "Thanks",
+  let_go: "Let go",
+  come_closer: "Come closer",
+};
 
 /** A cue as people say it; one that this page does not know, as it is. @type {(cue: string) => string} */
 export const cueText = (cue) => (isCue(cue) ? WORDS[cue] : cue);
@@ -11,3 +19,13 @@ export const cueText = (cue) => (isCue(cue) ? WORDS[cue] : cue);
  * @returns {cue is Messages.Cue}
  */
 const isCue = (cue) => cue in WORDS;
+
+/**
+ * Whether what obeys cues waits once `cue` has been said: as `mart.operators.obedience` has it.
+ * @param {boolean} waits before
+ * @param {string} cue
+ */
+export function waitsAfter(waits, cue) {
+  if (cue === "wait") return true;
+  return waits && !["go", "thanks", "come_closer"].includes(cue);
+}

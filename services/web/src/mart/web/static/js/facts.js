@@ -16,7 +16,7 @@ export const TASK_TITLES = /** @type {const} */ ({
 });
 
 /** What partners can say by one press, in the order of the keys. */
-export const CUES = /** @type {const} */ (["have_it", "go", "wait", "slower", "thanks"]);
+export const CUES = /** @type {const} */ (["have_it", "go", "wait", "slower", "thanks", "let_go", "come_closer"]);
 
 /** ModelSpec architectures: who can plan, who can act, who can correct. */
 export const MODEL_AXES = /** @type {const} */ ({

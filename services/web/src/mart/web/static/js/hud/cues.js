@@ -1,7 +1,7 @@
 // Words to one's partners: a button each, and what was said, for a few seconds.
 
 import { armName, holderName } from "../arms.js";
-import { cueText } from "../cues.js";
+import { cueText, waitsAfter } from "../cues.js";
 import { byId, element, setShown, setText } from "../dom.js";
 import { CUES } from "../facts.js";
 import { nowUs } from "../link/seat-link.js";
@@ -18,6 +18,9 @@ export class Cues {
   #buttons = new Map();
   /** By arm. @type {Map<string, { cue: Messages.Cue, timer: number }>} */
   #said = new Map();
+  /** Who had scripts and policies wait last; nobody where they go on. */
+  #waitsFor = "";
+  #episode = "";
 
   /**
    * @param {string} ownArm
@@ -52,7 +55,10 @@ export class Cues {
     const timer = setTimeout(() => this.#forget(arm), SHOWN_MS);
     this.#said.set(arm, { cue, timer });
     const seat = room?.seats.find((one) => one.arm === arm);
-    if (arm !== this.#ownArm) setText(byId("cue-heard"), `${seat ? holderName(seat) : armName(arm)}: ${cueText(cue)}`);
+    const name = seat ? holderName(seat) : armName(arm);
+    if (cue === "wait") this.#waitsFor = arm === this.#ownArm ? "you" : name;
+    else if (!waitsAfter(this.#waitsFor !== "", cue)) this.#waitsFor = "";
+    if (arm !== this.#ownArm) setText(byId("cue-heard"), `${name}: ${cueText(cue)}`);
   }
 
   /**
@@ -64,13 +70,21 @@ export class Cues {
     return said ? cueText(said.cue) : "";
   }
 
+  /** Whom scripts and policies were told to wait for; nothing where they go on. */
+  get waitsFor() {
+    return this.#waitsFor;
+  }
+
   /**
-   * There is something to say where one drives and somebody else does, too.
+   * There is something to say where one drives and somebody else does, too: scripts and policies obey.
    * @param {Api.Room | null} room
    * @param {boolean} drives
    */
   update(room, drives) {
-    const partners = room?.seats.some((seat) => seat.operator === "human" && !seat.mine) ?? false;
+    const partners = room?.seats.some((seat) => seat.operator !== "hold" && !seat.mine) ?? false;
+    const episode = room ? `${room.episode.phase} ${room.episode.number}` : this.#episode;
+    if (episode !== this.#episode) this.#waitsFor = ""; // no word outlives a reset of the world
+    this.#episode = episode;
     setShown(byId("cues"), drives && partners);
     const mine = this.#said.get(this.#ownArm)?.cue;
     for (const [cue, button] of this.#buttons) button.classList.toggle("said", cue === mine);

@@ -30,7 +30,7 @@ const KEYS = [
   ["B", "Hand the arm back to the policy or script"],
   ["P", "Stop everything; once it is stopped, twice: go on"],
   ["Q", "With space let go, twice: leave the seat"],
-  [CUES.map((_, index) => index + 1).join(" "), `To your partners: ${CUES.map(cueText).join(", ")}`],
+  [CUES.map((_, index) => index + 1).join(" "), `To your partners, scripts too: ${CUES.map(cueText).join(", ")}`],
   ["?", "These keys"],
   ["Gamepad", "Left stick and triggers: move. Right stick and LB RB: turn. A: gripper. Start: next. Back: stop"],
 ];

@@ -13,6 +13,7 @@ import { keptFor, seconds } from "../formatting.js";
  * @property {Api.Waiting | undefined} late
  * @property {Messages.EpisodePhase} phase
  * @property {string} said
+ * @property {string} waitsFor whom scripts and policies were told to wait for
  * @property {boolean} stopped
  * @property {boolean} told whether anything is known of now
  */
@@ -35,7 +36,8 @@ export function showPartners(room, ownArm, onScript, cues) {
   const stopped = room.barrier === "stopped";
   for (const seat of others) {
     const late = room.waiting_for.find((one) => one.arm === seat.arm);
-    rows.get(seat.arm)?.update({ seat, late, phase, said: cues.of(seat.arm), told: !room.stale, stopped });
+    const words = { said: cues.of(seat.arm), waitsFor: cues.waitsFor };
+    rows.get(seat.arm)?.update({ seat, late, phase, ...words, told: !room.stale, stopped });
   }
 }
 
@@ -54,9 +56,9 @@ function partnerRow(arm, onScript) {
   const node = element("li", { class: "partner glass", dataset: { arm } }, badge(arm), who, script);
 
   /** @param {Partner} partner */
-  function update({ seat, late, phase, said, told, stopped }) {
+  function update({ seat, late, phase, said, waitsFor, told, stopped }) {
     setText(name, holderName(seat));
-    const stands = stopped ? "Stopped" : stateText(seat, late, phase);
+    const stands = stopped ? "Stopped" : stateText(seat, late, phase, waitsFor);
     setText(state, told ? said || stands : "No news");
     node.classList.toggle("untold", !told);
     node.classList.toggle("says", said !== "");
@@ -71,11 +73,13 @@ function partnerRow(arm, onScript) {
  * @param {Api.Seat} seat
  * @param {Api.Waiting | undefined} late
  * @param {Messages.EpisodePhase} phase
+ * @param {string} waitsFor
  */
-function stateText(seat, late, phase) {
+function stateText(seat, late, phase, waitsFor) {
   if (seat.kept_s > 0) return `Away, ${keptFor(seat)}`;
   if (late) return `Late, ${seconds(late.since_s)}`;
   if (seat.operator === "hold") return "Holds still";
+  if (waitsFor && seat.operator !== "human" && !seat.engaged) return `Waits for ${waitsFor}`;
   if (seat.ready && phase === "practice") return "Ready";
   return seat.engaged ? "Moving" : "Still";
 }
