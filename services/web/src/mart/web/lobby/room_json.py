@@ -101,7 +101,7 @@ def _plan_json(status: RoomStatus) -> Json | None:
 
 def _stop_json(status: RoomStatus) -> Json | None:
     stop = status.stop
-    return {"arm": stop.arm, "name": stop.name} if status.HasField("stop") else None
+    return {"arm": stop.arm, "name": stop.name, "by_host": stop.by_host} if status.HasField("stop") else None
 
 
 def _task_json(status: RoomStatus) -> Json:

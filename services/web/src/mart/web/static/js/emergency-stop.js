@@ -49,6 +49,7 @@ export function emergencyStop({ label, id, key, onStop, onLetGo }) {
     node.classList.toggle("stopped", stop !== null);
     setText(who, stop ? stoppedText(stop) : "");
     setShown(who, stop !== null);
+    setShown(button, !stop?.by_host); // only a host lets go, on a page of their own
     const goOn = sure ? "Press again: go on" : "Go on";
     setText(words, stop ? goOn : "Stop");
     button.setAttribute("aria-label", stop ? `${words.textContent}: ${label}` : `Stop everything: ${label}`);
