@@ -74,6 +74,12 @@ async def browsing_user(user: Annotated[User, Depends(joined_user)], app: App) -
         yield user
 
 
+async def fetching_user(user: Annotated[User, Depends(watching_user)], app: App) -> AsyncIterator[User]:
+    """Yield who asks, who may be a spectator, for what may take long, as `browsing_user` does."""
+    async with app.browsing.turn(user.holder_id):
+        yield user
+
+
 async def writing_user(user: Annotated[User, Depends(browsing_user)], app: App) -> User:
     """Return who asks for something to be kept or changed; raises TooMany where they do so too often."""
     app.writes.spend(user.holder_id, clock.monotonic_s())
@@ -97,6 +103,7 @@ def require_join_code(app: AppState, given: str, address: str, expected: str = "
 WatchingUser = Annotated[User, Depends(watching_user)]
 JoinedUser = Annotated[User, Depends(joined_user)]
 HostingUser = Annotated[User, Depends(hosting_user)]
+FetchingUser = Annotated[User, Depends(fetching_user)]
 BrowsingUser = Annotated[User, Depends(browsing_user)]
 WritingUser = Annotated[User, Depends(writing_user)]
 Address = Annotated[str, Depends(address_of)]

@@ -21,9 +21,9 @@ let opensRooms = false;
 begin();
 
 async function begin() {
-  const person = await api.me().catch(() => null);
-  if (person?.hosts) host(person);
-  else ask(person);
+  const person = localStorage.getItem(NAME_KEY) && (await api.me().catch(() => null));
+  if (person && person.hosts) host(person);
+  else ask(person || null);
 }
 
 /** @param {Api.Person | null} person */
@@ -41,6 +41,7 @@ function ask(person) {
 /** @param {Api.Person} person */
 function host({ name }) {
   setShown(form, false);
+  localStorage.setItem(NAME_KEY, name);
   setText(byId("me"), `${name}, host`);
   api.tasks().then(
     ({ opens_rooms: opens }) => (opensRooms = opens),
