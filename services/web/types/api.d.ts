@@ -132,7 +132,7 @@ declare namespace Api {
     episodes_saved: number;
     episodes_good: number;
     plan: Plan | null;
-    stop: { arm: string; name: string; by_host: boolean } | null;
+    stop: { arm: string; name: string; by_host: boolean; also_name: string } | null;
     unrecorded: string;
     still: number;
     /** By arm, of those from whose side somebody looks. */

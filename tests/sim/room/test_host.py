@@ -88,9 +88,41 @@ def test_what_a_host_pauses_a_host_lets_go_on(world: World, harness: RoomHarness
     assert restarted.status().barrier == BARRIER_PHASE_STOPPED
     assert restarted.ask(go_on("Ana")) == "Forbidden"
     assert restarted.ask(go_on("Hanna", by_host=True)) == ""
+    assert (restarted.status().stop.name, restarted.status().stop.by_host) == ("Ana", False)
+    assert restarted.ask(go_on("Ana")) == ""
     assert not restarted.status().HasField("stop")
-    assert notices(restarted) == ["Hanna ended the pause: everything goes on."]
+    assert notices(restarted) == [
+        "Hanna ended the pause: Ana had stopped everything, which holds.",
+        "Ana let go of the emergency stop: everything goes on.",
+    ]
     assert notices(harness) == ["Ana stopped everything.", "Hanna paused the room."]
+
+
+@pytest.mark.parametrize("by_hand", [True, False])
+def test_a_stop_that_is_pressed_during_a_pause_outlives_it(harness: RoomHarness, *, by_hand: bool) -> None:
+    harness.take("arm0")
+    harness.command("arm0")
+    assert harness.ask(stop("Hanna", by_host=True)) == ""
+    for _ in range(2):  # a press is in every command for a second
+        if by_hand:
+            harness.command("arm0", stop=True)
+        else:
+            assert harness.ask(stop("Ana")) == ""
+    assert (harness.status().stop.name, harness.status().stop.also_name) == ("Hanna", "Ana")
+    assert harness.ask(go_on("Hanna", by_host=True)) == ""
+    harness.pass_time(0.2)
+    assert (harness.status().barrier, harness.status().stop.name) == (BARRIER_PHASE_STOPPED, "Ana")
+    assert harness.ask(go_on("Ben")) == ""
+    assert not harness.status().HasField("stop")
+    assert notices(harness)[:2] == ["Hanna paused the room.", "Ana stopped everything."]
+
+
+def test_a_pause_alone_is_ended_by_one_word(harness: RoomHarness) -> None:
+    assert harness.ask(stop("Hanna", by_host=True)) == ""
+    assert harness.ask(go_on("Hanna", by_host=True)) == ""
+    harness.pass_time(0.2)
+    assert harness.status().barrier != BARRIER_PHASE_STOPPED
+    assert notices(harness) == ["Hanna paused the room.", "Hanna ended the pause: everything goes on."]
 
 
 def test_a_host_lets_go_of_anybodys_stop(harness: RoomHarness) -> None:

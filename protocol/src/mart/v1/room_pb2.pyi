@@ -147,16 +147,18 @@ class Plan(_message.Message):
     def __init__(self, episodes: _Optional[int] = ..., good: _Optional[int] = ...) -> None: ...
 
 class EmergencyStop(_message.Message):
-    __slots__ = ("arm", "name", "wall_ns", "by_host")
+    __slots__ = ("arm", "name", "wall_ns", "by_host", "also_name")
     ARM_FIELD_NUMBER: _ClassVar[int]
     NAME_FIELD_NUMBER: _ClassVar[int]
     WALL_NS_FIELD_NUMBER: _ClassVar[int]
     BY_HOST_FIELD_NUMBER: _ClassVar[int]
+    ALSO_NAME_FIELD_NUMBER: _ClassVar[int]
     arm: str
     name: str
     wall_ns: int
     by_host: bool
-    def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ..., by_host: _Optional[bool] = ...) -> None: ...
+    also_name: str
+    def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ..., by_host: _Optional[bool] = ..., also_name: _Optional[str] = ...) -> None: ...
 
 class RoomStatus(_message.Message):
     __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded", "to_do")

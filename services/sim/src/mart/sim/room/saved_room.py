@@ -82,7 +82,10 @@ class SavedHostPlan(BaseModel):
 
 
 class SavedStop(BaseModel):
-    """Store a stop that is on: `name` pressed it, at `arm` where they held a seat; a host's pause where `by_host`."""
+    """Store a stop that is on: `name` pressed it, at `arm` where they held a seat; a host's pause where `by_host`.
+
+    under: the stop that a host's pause lies over.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -90,6 +93,7 @@ class SavedStop(BaseModel):
     name: str
     wall_ns: int = Field(ge=0)
     by_host: bool = False
+    under: SavedStop | None = None
 
 
 class CountedEpisode(BaseModel):

@@ -67,7 +67,7 @@ export function planText(plan) {
  */
 export function stoppedText(stop) {
   if (!stop) return "Stopped";
-  if (stop.by_host) return `Paused by ${stop.name}, the host`;
+  if (stop.by_host) return `Paused by ${stop.name}, the host${stop.also_name && `; stopped by ${stop.also_name}`}`;
   return `Stopped by ${stop.name}${stop.arm && `, ${armName(stop.arm).toLowerCase()}`}`;
 }
 

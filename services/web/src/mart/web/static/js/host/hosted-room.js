@@ -49,7 +49,7 @@ export function hostedRoom(name, attempt) {
     keepChildren(views, room.seats.map(({ arm }) => arm), seats, (arm) => seatView(name, arm, attempt));
     for (const seat of room.seats) seats.get(seat.arm)?.update(seat, room);
     const recording = room.episode.phase === "recording";
-    setShown(actions.pause, room.stop === null);
+    setShown(actions.pause, !room.stop?.by_host);
     setShown(actions.goOn, room.stop !== null);
     for (const action of [actions.success, actions.failure, actions.discard]) setShown(action, recording);
     setShown(actions.reset, room.episode.phase === "practice");
@@ -64,16 +64,12 @@ export function hostedRoom(name, attempt) {
  * @param {Attempt} attempt
  */
 function roomActions(room, attempt) {
-  /** @type {(text: string, action: () => unknown, kind?: string) => HTMLButtonElement} */
-  const once = (text, action, kind = "") => {
-    const on = { click: () => attempt(action) };
-    return element("button", { type: "button", class: kind, "aria-label": `${text}: ${room}`, on }, text);
-  };
+  const on = { click: () => attempt(() => hosting.pauseRoom(room)) };
   /** @type {(text: string, action: () => unknown, kind?: string) => HTMLButtonElement} */
   const twice = (text, action, kind = "") => pressedTwice({ text, about: room, kind, onSure: () => attempt(action) });
   return {
-    pause: once("Pause", () => hosting.pauseRoom(room)),
-    goOn: once("Go on", () => hosting.endPause(room), "primary"),
+    pause: element("button", { type: "button", "aria-label": `Pause: ${room}`, on }, "Pause"),
+    goOn: twice("Go on", () => hosting.endPause(room), "primary"),
     success: twice("End: success", () => hosting.endForAll(room, "success")),
     failure: twice("End: failed", () => hosting.endForAll(room, "failure")),
     discard: twice("End: discard", () => hosting.endForAll(room, "discard")),

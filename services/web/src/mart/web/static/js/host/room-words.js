@@ -17,10 +17,11 @@ export function roomNow(room) {
 }
 
 /** @param {NonNullable<Api.Room["stop"]>} stop */
-const stoppedNow = ({ name, by_host: byHost }) =>
-  byHost
-    ? `Paused by ${name}. Let it go on when all are ready.`
-    : `Stopped by ${name}. Ask what happened, then let it go on.`;
+function stoppedNow({ name, by_host: byHost, also_name: alsoName }) {
+  if (!byHost) return `Stopped by ${name}. Ask what happened, then let it go on.`;
+  const next = alsoName ? `${alsoName} also pressed Stop, which stays.` : "Let it go on when all are ready.";
+  return `Paused by ${name}. ${next}`;
+}
 
 /** @param {Api.Room} room */
 function practiceNow({ seats, plan }) {
