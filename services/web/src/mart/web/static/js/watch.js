@@ -157,7 +157,6 @@ function showPicture() {
 /** Whoever has a picture from the server alone sees what the seat's camera sees. @param {boolean} isDrawn */
 function showCamera(isDrawn) {
   setShown(byId("camera"), isDrawn);
-  byId("free").setAttribute("aria-pressed", String(camera.isOn));
   setText(byId("free"), camera.isOn ? "Back to the seat's view" : "Free camera");
   for (const part of ["nearer", "farther", "camera-hint"]) setShown(byId(part), camera.isOn);
   byId("watched").tabIndex = isDrawn && camera.isOn ? 0 : -1;

@@ -18,7 +18,7 @@ import { seatView } from "./seat-view.js";
  */
 export function hostedRoom(name, attempt) {
   const title = element("h2");
-  const now = element("p", { class: "next figures", role: "status" });
+  const now = element("p", { class: "next figures" });
   const counted = element("p", { class: "soft figures" });
   const views = element("ul", { class: "views", "aria-label": `Seats of ${name}` });
   const actions = roomActions(name, attempt);
