@@ -81,6 +81,20 @@ def test_a_host_is_told_how_a_seat_does(run: Run, changes: dict[str, Any], kind:
     assert run("host/room-words.js", script, told) == {"kind": kind, "text": text}
 
 
+@pytest.mark.parametrize(
+    ("told", "by", "next_step"),
+    [
+        (("Ana", False), "Stopped by Ana", "Stopped. Hold Go on to let everything go on."),
+        (("Hanna", True), "Paused by Hanna, the host", "Paused. The host lets everything go on."),
+        (("", False), "Everything is stopped", "Stopped. Hold Go on to let everything go on."),
+    ],
+)
+def test_a_phone_tells_a_pause_from_a_stop(run: Run, told: tuple[str, bool], by: str, next_step: str) -> None:
+    script = "(words, tick) => [words.stoppedByText(tick), words.stoppedHoldText(tick)]"
+    tick = {"stopped_by": told[0], "paused_by_host": told[1]}
+    assert run("phone/stop-words.js", script, tick) == [by, next_step]
+
+
 def test_what_ends_something_for_others_is_pressed_twice(run: Run) -> None:
     script = """({ pressedTwice }) => {
       let done = 0;
