@@ -23,6 +23,7 @@ from mart.web.lobby.lobby import Lobby
 from tests.web.room import Room
 
 JOIN_CODE = "ABCD-2345"
+HOST_CODE = "HHHH-2345-6789"
 ORIGIN = "https://localhost"
 
 Client = httpx.AsyncClient
@@ -59,6 +60,7 @@ async def app_state(bus: MemoryBus, tmp_path: Path) -> AsyncIterator[AppState]:
             lobby=lobby,
             user_sessions=user_sessions,
             join_code=JOIN_CODE,
+            host_code=HOST_CODE,
             secret=b"0123456789abcdef0123456789abcdef",
             site=site_called("localhost", "lab.example", lan_host="192.168.1.5"),
             data_dir=tmp_path,

@@ -61,6 +61,7 @@ class Room:
         self.course = EpisodeStateMachine(room_seed=1, horizon_ticks=task.horizon_ticks)
         self.tick = 1
         self.control_hz = 20.0
+        self.plan = 0
         self._barrier = Barrier(task.arm_names, 0.05, 0.0)
         self._stop = StopLatch(self._barrier, self.seats, None, self._on_stop_changed, 0.0)
         self._subtasks = task.subtasks
@@ -88,6 +89,8 @@ class Room:
             seats=[self._seat(seat) for seat in self.seats],
             wall_ns=clock.wall_ns(),
         )
+        if self.plan:
+            status.plan.episodes = self.plan
         course = self.course
         status.episode.number, status.episode.phase = course.number, course.phase
         status.episode.outcome, status.episode.reason = course.outcome, course.reason
@@ -134,6 +137,8 @@ class Room:
                     self._stop.press(asked.stop, clock.monotonic_s())
                 case "go_on":
                     self._stop.let_go(asked.go_on)
+                case "set_plan":
+                    self.plan = asked.set_plan.episodes
                 case _:
                     self.course.answer(asked, self.seats, clock.monotonic_s())
         except MartError as error:

@@ -35,7 +35,7 @@ from mart.web.lobby.bus_feed import LobbyFeed
 from mart.web.lobby.lobby import Lobby
 from tests.recorder.files import write_episode
 from tests.support.fuzzing import fuzzing
-from tests.web.conftest import JOIN_CODE, ORIGIN, site_called
+from tests.web.conftest import HOST_CODE, JOIN_CODE, ORIGIN, site_called
 from tests.web.room import Room
 from tests.web.trainer import Trainer
 
@@ -63,6 +63,7 @@ class Site:
             lobby=lobby,
             user_sessions=self._opened.enter_context(contextlib.closing(UserSessions(":memory:"))),
             join_code=JOIN_CODE,
+            host_code=HOST_CODE,
             secret=SECRET,
             site=site_called("localhost", lan_host="192.168.1.5"),
             data_dir=folder,

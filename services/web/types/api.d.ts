@@ -4,6 +4,7 @@ declare namespace Api {
   interface Person {
     holder_id: string;
     name: string;
+    hosts: boolean;
   }
 
   interface TaskOption {
@@ -131,9 +132,11 @@ declare namespace Api {
     episodes_saved: number;
     episodes_good: number;
     plan: Plan | null;
-    stop: { arm: string; name: string } | null;
+    stop: { arm: string; name: string; by_host: boolean; also_name: string } | null;
     unrecorded: string;
     still: number;
+    /** By arm, of those from whose side somebody looks. */
+    stills: Record<string, number>;
     last_episode: LastEpisode | null;
   }
 

@@ -26,6 +26,7 @@ declare namespace StatusChannel {
     phase: Messages.EpisodePhase | "unspecified";
     ready: boolean;
     stopped_by: string;
+    paused_by_host: boolean;
     waiting: { arm: string; since_s: number }[];
     input: Input;
     phone: { age_ms: number; tracking: boolean; started: boolean } | null;

@@ -31,7 +31,7 @@ def goes_on(request: pytest.FixtureRequest) -> Iterator[None]:
     yield
     if "platform" in request.fixturenames:
         platform: Platform = request.getfixturevalue("platform")
-        go_on = EpisodeRequest(go_on=EpisodeRequest.GoOn(name="The test"))
+        go_on = EpisodeRequest(go_on=EpisodeRequest.GoOn(name="The test", by_host=True))
         platform.bus.query(keys.episode(platform.options.room), codec.encode(go_on), _ANSWERED_WITHIN_S)
 
 

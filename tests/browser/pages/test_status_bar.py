@@ -74,6 +74,7 @@ def after(*, saved: dict[str, Any] | None = SAVED, **last: Any) -> dict[str, Any
         (None, "No such seat", ["lobby"]),
         (room(MINE) | {"stale": True}, "The simulation does not answer", []),
         (room(MINE) | {"barrier": "stopped"}, "Stopped", []),
+        (room(MINE) | {"barrier": "stopped", "stop": {"name": "Hanna", "by_host": True}}, "Paused", []),
     ],
 )
 def test_every_state_has_its_words_and_its_next_action(

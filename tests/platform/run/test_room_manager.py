@@ -76,8 +76,8 @@ def opened(rooms: RoomManager, task: str = DEFAULT_TASK, **asked: Any) -> str:
     return rooms.answer(RoomsRequest(open=Open(task=task, **asked))).status.room
 
 
-def close(rooms: RoomManager, name: str) -> None:
-    rooms.answer(RoomsRequest(close=Close(room=name)))
+def close(rooms: RoomManager, name: str, *, with_people: bool = False) -> None:
+    rooms.answer(RoomsRequest(close=Close(room=name, with_people=with_people)))
 
 
 def sim(supervisor: Supervisor, name: str) -> Process:
@@ -208,17 +208,23 @@ def test_a_room_with_people_or_a_recording_stays(rooms: RoomManager, statuses: H
     statuses.hear(status_of("Ana"), clock.monotonic_s())
     with pytest.raises(Conflict, match="Ana can still drive"):
         close(rooms, "room-1")
-    recording = status_of()
+    recording = status_of("Ana")
     recording.episode.phase = EPISODE_PHASE_RECORDING
     statuses.hear(recording, clock.monotonic_s())
     with pytest.raises(Conflict, match="being recorded"):
-        close(rooms, "room-1")
+        close(rooms, "room-1", with_people=True)
     with pytest.raises(NotFound, match="room-9"):
         close(rooms, "room-9")
     statuses.forget("room-1")  # a sim that never spoke
     close(rooms, "room-1")
     with pytest.raises(InvalidInput, match="An empty request"):
         rooms.answer(RoomsRequest())
+
+
+def test_a_host_closes_a_room_with_people(rooms: RoomManager, statuses: HeardStatuses) -> None:
+    statuses.hear(status_of("Ana"), clock.monotonic_s())
+    close(rooms, "room-1", with_people=True)
+    assert "room-1" not in rooms.names
 
 
 def test_a_room_whose_sim_is_gone_can_be_closed_though_people_sat_there(

@@ -68,6 +68,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "ready": True,
         "barrier": "stalled",
         "stopped_by": "",
+        "paused_by_host": False,
         "waiting": [{"arm": "arm1", "since_s": 0.8}],
         "input": "phone",
         "phone": {"age_ms": 16, "tracking": True, "started": True},

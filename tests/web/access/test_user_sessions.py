@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from mart.protocol.errors import InvalidInput, Unavailable
 from mart.web.access import user_sessions
-from mart.web.access.user_sessions import MAX_NAME_CHARACTERS, SESSION_S, UserSessions, clean_name
+from mart.web.access.user_sessions import MAX_NAME_CHARACTERS, SESSION_S, User, UserSessions, clean_name
 
 
 def test_a_restart_throws_nobody_out(tmp_path: Path) -> None:
@@ -121,3 +121,17 @@ def test_a_name_that_passes_is_one_printable_line(given_name: str) -> None:
 @pytest.mark.parametrize(("given_name", "name"), [("  Ana  María ", "Ana María"), ("李\n雷", "李 雷")])
 def test_names_are_tidied(given_name: str, name: str) -> None:
     assert clean_name(given_name) == name
+
+
+def test_who_hosts_does_so_until_the_host_code_is_another(tmp_path: Path) -> None:
+    path = tmp_path / "sessions.sqlite"
+    with contextlib.closing(UserSessions(path, b"join", b"host")) as sessions:
+        session_id, ana = sessions.join("Ana", 0.0)
+        assert sessions.host(ana).hosts
+        guest_id, _ = sessions.join("Ben", 0.0)
+        found = [sessions.find(one, 1.0) for one in (session_id, guest_id)]
+        assert [one and one.hosts for one in found] == [True, False]
+    with contextlib.closing(UserSessions(path, b"join", b"host")) as again:
+        assert again.find(session_id, 1.0) == User(ana.holder_id, "Ana", hosts=True)
+    with contextlib.closing(UserSessions(path, b"join", b"another")) as other:
+        assert other.find(session_id, 1.0) == User(ana.holder_id, "Ana")

@@ -14,8 +14,10 @@ from mart.protocol.messages import OpenSeat, OpenSeatReply, SceneReply, SceneReq
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.base import Request
 from mart.runtime.bus.memory import MemoryBus
+from mart.web.access.join_code import watch_code_of
+from mart.web.api.app_state import AppState
 from mart.web.clients.scene_store import MAX_SCENES, SceneStore
-from tests.web.conftest import Enter
+from tests.web.conftest import JOIN_CODE, Enter
 from tests.web.room import Room
 
 pytestmark = pytest.mark.anyio
@@ -72,6 +74,13 @@ async def test_who_has_not_joined_gets_no_scene(enter: Enter, seat: SeatWithScen
     nobody = await enter()
     assert (await nobody.get(OF_SEAT)).status_code == 401
     assert (await nobody.get(f"/api/scenes/{SHA256}")).status_code == 401
+
+
+async def test_a_spectator_may_draw_it_too(enter: Enter, seat: SeatWithScene, app_state: AppState) -> None:
+    eve = await enter()
+    await eve.post("/api/watch", json={"code": watch_code_of(JOIN_CODE, app_state.secret)})
+    sha256 = (await eve.get(OF_SEAT)).json()["sha256"]
+    assert (await eve.get(f"/api/scenes/{sha256}")).content == SCENE
 
 
 async def test_an_unknown_scene_is_not_found_and_not_remembered_as_that(

@@ -7,7 +7,7 @@ from fastapi.routing import APIRoute
 
 from mart.protocol.tokens import Role, verify
 from mart.web.access.join_code import watch_code_of
-from mart.web.api import auth, datasets, device_check, episodes, phones, rooms, signaling, training
+from mart.web.api import auth, datasets, device_check, episodes, hosting, phones, rooms, signaling, training
 from mart.web.api.app_state import AppState
 from tests.web.conftest import JOIN_CODE, Client, Enter
 from tests.web.room import Room
@@ -16,8 +16,16 @@ pytestmark = pytest.mark.anyio
 
 SEAT = "/api/rooms/room-1/seats/arm0"
 # What needs no session, or a phone's token, and what spectators may.
-_MODULES = (auth, datasets, device_check, episodes, phones, rooms, signaling, training)
-_OPEN = {"/api/join", "/api/watch", "/api/me", "/api/pair", "/api/check/servers", "/api/check/offer"}
+_MODULES = (auth, datasets, device_check, episodes, hosting, phones, rooms, signaling, training)
+_OPEN = {
+    "/api/join",
+    "/api/watch",
+    "/api/host",
+    "/api/me",
+    "/api/pair",
+    "/api/check/servers",
+    "/api/check/offer",
+}
 _BY_TOKEN = ("/seats/{arm}/stop", "/seats/{arm}/episode", "/seats/{arm}/offer")
 
 

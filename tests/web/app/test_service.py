@@ -111,11 +111,15 @@ def test_the_join_code_is_where_others_find_it(web: Web) -> None:
     assert f"https://127.0.0.1:{web.port}/" in web.process.log()
     assert web.join_code not in web.process.log()  # a log is no place for it
     assert str(web.data_dir / "join-code") in web.process.log()
+    host_code = (web.data_dir / "host-code").read_text().strip()
+    assert host_code not in web.process.log()
+    with web.joined("Hanna") as hanna:
+        assert hanna.post("/api/host", json={"code": host_code}).json()["hosts"]
 
 
 def test_what_it_keeps_is_its_owners_alone(web: Web) -> None:
     kept = list(web.data_dir.rglob("*"))
-    assert {"join-code", "sessions.sqlite", "site.pem"} <= {path.name for path in kept}
+    assert {"host-code", "join-code", "sessions.sqlite", "site.pem"} <= {path.name for path in kept}
     assert [path for path in kept if path.stat().st_mode & 0o077 and path != web.process.log_path] == []
 
 

@@ -100,9 +100,15 @@ def test_a_seat_that_cannot_be_drawn_is_a_finding() -> None:
 
 
 def test_a_stopped_room_says_who_stopped_it() -> None:
-    (finding,) = rooms([a_room(barrier="stopped", stop={"arm": "", "name": "Ben"})])
+    (finding,) = rooms([a_room(barrier="stopped", stop={"arm": "", "name": "Ben", "by_host": False})])
     assert finding.found == "stopped by Ben"
     assert "Go on" in finding.mend
+
+
+def test_a_paused_room_says_that_a_host_lets_it_go_on() -> None:
+    (finding,) = rooms([a_room(barrier="stopped", stop={"arm": "", "name": "Hanna", "by_host": True})])
+    assert finding.found == "paused by Hanna, the host"
+    assert "A host lets it go on" in finding.mend
 
 
 def test_long_delays_full_disks_and_old_certificates() -> None:

@@ -101,10 +101,16 @@ def run(
             "url": platform.url,
             "urls": others,
             "join_code": platform.join_code,
+            "host_code_file": str(platform.host_code_path),
             "room": room,
             "task": task,
         }
-        text = in_words(platform.url, platform.join_code, others, with_picture=sys.stdout.isatty())
+        on_terminal = sys.stdout.isatty()  # anything else may be a log
+        kept = platform.host_code_path
+        host_code = kept.read_text().strip() if on_terminal else f"in {kept}"
+        text = in_words(
+            platform.url, platform.join_code, others, host_code=host_code, with_picture=on_terminal
+        )
         print_result(result, text, as_json)
         stop.wait()
         with contextlib.suppress(OSError):  # a terminal that was closed

@@ -151,14 +151,18 @@ class Plan(_message.Message):
     def __init__(self, episodes: _Optional[int] = ..., good: _Optional[int] = ...) -> None: ...
 
 class EmergencyStop(_message.Message):
-    __slots__ = ("arm", "name", "wall_ns")
+    __slots__ = ("arm", "name", "wall_ns", "by_host", "also_name")
     ARM_FIELD_NUMBER: _ClassVar[int]
     NAME_FIELD_NUMBER: _ClassVar[int]
     WALL_NS_FIELD_NUMBER: _ClassVar[int]
+    BY_HOST_FIELD_NUMBER: _ClassVar[int]
+    ALSO_NAME_FIELD_NUMBER: _ClassVar[int]
     arm: str
     name: str
     wall_ns: int
-    def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ...) -> None: ...
+    by_host: bool
+    also_name: str
+    def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ..., by_host: _Optional[bool] = ..., also_name: _Optional[str] = ...) -> None: ...
 
 class RoomStatus(_message.Message):
     __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded", "to_do")
@@ -212,7 +216,7 @@ class RoomStatus(_message.Message):
     def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ..., to_do: _Optional[_Mapping[str, str]] = ...) -> None: ...
 
 class SeatRequest(_message.Message):
-    __slots__ = ("claim", "release", "assign", "hand_back")
+    __slots__ = ("claim", "release", "assign", "hand_back", "free")
     class Claim(_message.Message):
         __slots__ = ("arm", "holder_id", "name", "operator")
         ARM_FIELD_NUMBER: _ClassVar[int]
@@ -247,18 +251,27 @@ class SeatRequest(_message.Message):
         arm: str
         holder_id: str
         def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ...) -> None: ...
+    class Free(_message.Message):
+        __slots__ = ("arm", "name")
+        ARM_FIELD_NUMBER: _ClassVar[int]
+        NAME_FIELD_NUMBER: _ClassVar[int]
+        arm: str
+        name: str
+        def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ...) -> None: ...
     CLAIM_FIELD_NUMBER: _ClassVar[int]
     RELEASE_FIELD_NUMBER: _ClassVar[int]
     ASSIGN_FIELD_NUMBER: _ClassVar[int]
     HAND_BACK_FIELD_NUMBER: _ClassVar[int]
+    FREE_FIELD_NUMBER: _ClassVar[int]
     claim: SeatRequest.Claim
     release: SeatRequest.Release
     assign: SeatRequest.Assign
     hand_back: SeatRequest.HandBack
-    def __init__(self, claim: _Optional[_Union[SeatRequest.Claim, _Mapping]] = ..., release: _Optional[_Union[SeatRequest.Release, _Mapping]] = ..., assign: _Optional[_Union[SeatRequest.Assign, _Mapping]] = ..., hand_back: _Optional[_Union[SeatRequest.HandBack, _Mapping]] = ...) -> None: ...
+    free: SeatRequest.Free
+    def __init__(self, claim: _Optional[_Union[SeatRequest.Claim, _Mapping]] = ..., release: _Optional[_Union[SeatRequest.Release, _Mapping]] = ..., assign: _Optional[_Union[SeatRequest.Assign, _Mapping]] = ..., hand_back: _Optional[_Union[SeatRequest.HandBack, _Mapping]] = ..., free: _Optional[_Union[SeatRequest.Free, _Mapping]] = ...) -> None: ...
 
 class EpisodeRequest(_message.Message):
-    __slots__ = ("ready", "finish", "reset", "stop", "go_on")
+    __slots__ = ("ready", "finish", "reset", "set_plan", "stop", "go_on")
     class Ready(_message.Message):
         __slots__ = ("arm", "holder_id", "ready", "number")
         ARM_FIELD_NUMBER: _ClassVar[int]
@@ -271,40 +284,57 @@ class EpisodeRequest(_message.Message):
         number: int
         def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ..., ready: _Optional[bool] = ..., number: _Optional[int] = ...) -> None: ...
     class Finish(_message.Message):
-        __slots__ = ("holder_id", "outcome")
+        __slots__ = ("holder_id", "outcome", "host")
         HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
         OUTCOME_FIELD_NUMBER: _ClassVar[int]
+        HOST_FIELD_NUMBER: _ClassVar[int]
         holder_id: str
         outcome: Outcome
-        def __init__(self, holder_id: _Optional[str] = ..., outcome: _Optional[_Union[Outcome, str]] = ...) -> None: ...
+        host: str
+        def __init__(self, holder_id: _Optional[str] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., host: _Optional[str] = ...) -> None: ...
     class Reset(_message.Message):
-        __slots__ = ("holder_id",)
+        __slots__ = ("holder_id", "host")
         HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
+        HOST_FIELD_NUMBER: _ClassVar[int]
         holder_id: str
-        def __init__(self, holder_id: _Optional[str] = ...) -> None: ...
+        host: str
+        def __init__(self, holder_id: _Optional[str] = ..., host: _Optional[str] = ...) -> None: ...
     class Stop(_message.Message):
-        __slots__ = ("holder_id", "name")
+        __slots__ = ("holder_id", "name", "by_host")
         HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
         NAME_FIELD_NUMBER: _ClassVar[int]
+        BY_HOST_FIELD_NUMBER: _ClassVar[int]
         holder_id: str
         name: str
-        def __init__(self, holder_id: _Optional[str] = ..., name: _Optional[str] = ...) -> None: ...
+        by_host: bool
+        def __init__(self, holder_id: _Optional[str] = ..., name: _Optional[str] = ..., by_host: _Optional[bool] = ...) -> None: ...
     class GoOn(_message.Message):
-        __slots__ = ("name",)
+        __slots__ = ("name", "by_host")
         NAME_FIELD_NUMBER: _ClassVar[int]
+        BY_HOST_FIELD_NUMBER: _ClassVar[int]
         name: str
-        def __init__(self, name: _Optional[str] = ...) -> None: ...
+        by_host: bool
+        def __init__(self, name: _Optional[str] = ..., by_host: _Optional[bool] = ...) -> None: ...
+    class SetPlan(_message.Message):
+        __slots__ = ("episodes", "name")
+        EPISODES_FIELD_NUMBER: _ClassVar[int]
+        NAME_FIELD_NUMBER: _ClassVar[int]
+        episodes: int
+        name: str
+        def __init__(self, episodes: _Optional[int] = ..., name: _Optional[str] = ...) -> None: ...
     READY_FIELD_NUMBER: _ClassVar[int]
     FINISH_FIELD_NUMBER: _ClassVar[int]
     RESET_FIELD_NUMBER: _ClassVar[int]
+    SET_PLAN_FIELD_NUMBER: _ClassVar[int]
     STOP_FIELD_NUMBER: _ClassVar[int]
     GO_ON_FIELD_NUMBER: _ClassVar[int]
     ready: EpisodeRequest.Ready
     finish: EpisodeRequest.Finish
     reset: EpisodeRequest.Reset
+    set_plan: EpisodeRequest.SetPlan
     stop: EpisodeRequest.Stop
     go_on: EpisodeRequest.GoOn
-    def __init__(self, ready: _Optional[_Union[EpisodeRequest.Ready, _Mapping]] = ..., finish: _Optional[_Union[EpisodeRequest.Finish, _Mapping]] = ..., reset: _Optional[_Union[EpisodeRequest.Reset, _Mapping]] = ..., stop: _Optional[_Union[EpisodeRequest.Stop, _Mapping]] = ..., go_on: _Optional[_Union[EpisodeRequest.GoOn, _Mapping]] = ...) -> None: ...
+    def __init__(self, ready: _Optional[_Union[EpisodeRequest.Ready, _Mapping]] = ..., finish: _Optional[_Union[EpisodeRequest.Finish, _Mapping]] = ..., reset: _Optional[_Union[EpisodeRequest.Reset, _Mapping]] = ..., set_plan: _Optional[_Union[EpisodeRequest.SetPlan, _Mapping]] = ..., stop: _Optional[_Union[EpisodeRequest.Stop, _Mapping]] = ..., go_on: _Optional[_Union[EpisodeRequest.GoOn, _Mapping]] = ...) -> None: ...
 
 class RoomsRequest(_message.Message):
     __slots__ = ("open", "close")
@@ -322,10 +352,12 @@ class RoomsRequest(_message.Message):
         arms: int
         def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., episodes: _Optional[int] = ..., arms: _Optional[int] = ...) -> None: ...
     class Close(_message.Message):
-        __slots__ = ("room",)
+        __slots__ = ("room", "with_people")
         ROOM_FIELD_NUMBER: _ClassVar[int]
+        WITH_PEOPLE_FIELD_NUMBER: _ClassVar[int]
         room: str
-        def __init__(self, room: _Optional[str] = ...) -> None: ...
+        with_people: bool
+        def __init__(self, room: _Optional[str] = ..., with_people: _Optional[bool] = ...) -> None: ...
     OPEN_FIELD_NUMBER: _ClassVar[int]
     CLOSE_FIELD_NUMBER: _ClassVar[int]
     open: RoomsRequest.Open

@@ -26,12 +26,18 @@ def urls_for_others(options: PlatformOptions) -> list[str]:
         return []
 
 
-def in_words(url: str, join_code: str, others: list[str], *, with_picture: bool) -> str:
-    """Return the text for people. `url`: of this machine; `others`: for other devices, of which the first is drawn."""
+def in_words(url: str, join_code: str, others: list[str], *, host_code: str, with_picture: bool) -> str:
+    """Return the text for people. `url`: of this machine; `others`: for other devices, of which the first is drawn.
+
+    host_code: as it is to be shown, or where it is kept.
+    """
     lines = [f"  Lobby      {(others or [url])[0]}", *(f"         or  {other}" for other in others[1:])]
     if others and url not in others:
         lines.append(f"  Here       {url}")
-    lines.append(f"  Join code  {join_code}")
+    lines += [
+        f"  Join code  {join_code}",
+        f"  Host code  {host_code}, for the page /host: keep it to yourself",
+    ]
     picture = qr_code(f"{others[0]}#code={quote(join_code)}") if others and with_picture else ""
     return "\n".join(["", *lines, "", *([picture, ""] if picture else []), "Ctrl-C stops everything."])
 

@@ -81,7 +81,7 @@ class RoomManager:
             case "open":
                 return RoomReply(status=RoomStatus(room=self._open(request.open)))
             case "close":
-                self._close(request.close.room)
+                self._close(request.close.room, with_people=request.close.with_people)
                 return RoomReply(status=RoomStatus(room=request.close.room))
         raise InvalidInput("An empty request was given; ask to open or to close a room.")
 
@@ -141,12 +141,12 @@ class RoomManager:
         used = {path.stem for path in (self._options.data_dir / "rooms").glob("*.json")}
         return next(free for n in count(1) if (free := f"room-{n}") not in used.union(self.names))
 
-    def _close(self, name: str) -> None:
+    def _close(self, name: str, *, with_people: bool) -> None:
         if name not in self.names:
             raise NotFound.named("room", name, self.names)
         status = self._statuses.newest(name, clock.monotonic_s())
         people = [seat.name for seat in status.seats if seat.operator == OPERATOR_HUMAN]
-        if people:
+        if people and not with_people:
             raise Conflict(
                 f"{name} was to be closed, but {' and '.join(people)} can still drive there; leave first."
             )

@@ -68,6 +68,10 @@ class Platform:
         return (self.options.data_dir / "join-code").read_text().strip()
 
     @property
+    def host_code_path(self) -> Path:
+        return self.options.data_dir / "host-code"
+
+    @property
     def certificate(self) -> Path:
         return self.options.data_dir / "certificates" / "site.crt"
 

@@ -20,7 +20,7 @@ def web(as_json: bool, **options: Any) -> None:
     """Serve the lobby and the operators' and phones' pages over HTTPS."""
     from mart.runtime.privacy import keep_private
     from mart.runtime.service import run_async
-    from mart.web.access.join_code import load_or_make_join_code
+    from mart.web.access.join_code import load_or_make_host_code, load_or_make_join_code
     from mart.web.access.site_names import in_url
     from mart.web.app.server import listen, serve
     from mart.web.app.settings import WebSettings
@@ -28,6 +28,7 @@ def web(as_json: bool, **options: Any) -> None:
     settings = WebSettings(**{name: value for name, value in options.items() if value is not None})
     keep_private(settings.data_dir)
     join_code = load_or_make_join_code(settings.join_code_path, settings.join_code)
+    host_code = load_or_make_host_code(settings.host_code_path)
     with listen(settings.web_host, settings.web_port) as listener:
         port = listener.getsockname()[1]
         name = next(iter(settings.public_names), settings.web_host)
@@ -36,5 +37,8 @@ def web(as_json: bool, **options: Any) -> None:
         shown = join_code if sys.stdout.isatty() else f"in {settings.join_code_path}"
         print_result({"url": url, "join_code": join_code}, f"Lobby {url}  join code {shown}", as_json)
         run_async(
-            settings, ServiceKind.WEB, "web", lambda service: serve(settings, service, listener, join_code)
+            settings,
+            ServiceKind.WEB,
+            "web",
+            lambda service: serve(settings, service, listener, join_code, host_code),
         )

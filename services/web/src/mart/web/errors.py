@@ -23,6 +23,15 @@ class OnlyWatches(Forbidden):
         )
 
 
+class NotHost(Forbidden):
+    """Somebody asked for what hosts alone do."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "Only a host does this; whoever runs the platform has the host code, which the page /host takes."
+        )
+
+
 class WrongOrigin(Forbidden):
     """The request was not sent by a page of this site."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from mart.protocol import clock
-from mart.protocol.errors import Conflict
+from mart.protocol.errors import Conflict, Forbidden
 from mart.protocol.messages import EmergencyStop, EpisodeRequest, Event
 from mart.sim.room import room_messages
 from mart.sim.room.barrier import Barrier
@@ -40,35 +40,63 @@ class StopLatch:
     def message(self) -> EmergencyStop | None:
         """Return who pressed, as the room's status tells it; None while no stop is on."""
         pressed = self._pressed
-        return EmergencyStop(**pressed.model_dump()) if pressed else None
+        if pressed is None:
+            return None
+        also_name = pressed.under.name if pressed.under else ""
+        return EmergencyStop(**pressed.model_dump(exclude={"under"}), also_name=also_name)
 
     def heard(self, arm: str) -> None:
         """Take that a command for `arm` may have pressed it."""
-        if self._barrier.stopped and self._pressed is None:
-            self._latch(arm, self._seats[arm].driver.called)
+        if self._barrier.stopped:
+            self._press(self._stop(arm, self._seats[arm].driver.called))
 
     def press(self, request: EpisodeRequest.Stop, now_s: float) -> None:
-        """Stop everything, once; raises InvalidInput where the name cannot be shown, Conflict in lockstep."""
+        """Stop everything, once. A host's pause lies over a stop, and neither ends the other.
+
+        Raises InvalidInput where the name cannot be shown, Conflict in lockstep.
+        """
         require_name(request.name)
         if not self._paced:
             raise Conflict("A stop was asked of a room that runs in lockstep; end its `mart sim` instead.")
         seat = next(iter(self._seats.of_holder(request.holder_id)), None)
         self._barrier.stop(seat.arm if seat else "", now_s)
-        if self._pressed is None:
-            self._latch(seat.arm if seat else "", request.name)
+        self._press(self._stop(seat.arm if seat else "", request.name, by_host=request.by_host))
 
     def let_go(self, request: EpisodeRequest.GoOn) -> None:
-        """Let everything go on; raises Conflict where nothing is stopped, InvalidInput as `press` does."""
-        require_name(request.name)
-        if self._pressed is None:
-            raise Conflict("An emergency stop was to be let go, but none is on.")
-        self._pressed = None
-        self._barrier.let_go()
-        self._changed(
-            None,
-            room_messages.notice("info", f"{request.name} let go of the emergency stop: everything goes on."),
-        )
+        """Let everything go on; of a stop under a host's pause, the stop stays.
 
-    def _latch(self, arm: str, name: str) -> None:
-        self._pressed = SavedStop(arm=arm, name=name, wall_ns=clock.wall_ns())
-        self._changed(self._pressed, room_messages.notice("warning", f"{name} stopped everything."))
+        Raises Conflict where nothing is stopped, Forbidden where a host paused and no host lets go, InvalidInput as
+        `press` does.
+        """
+        require_name(request.name)
+        pressed = self._pressed
+        if pressed is None:
+            raise Conflict("An emergency stop was to be let go, but none is on.")
+        if pressed.by_host and not request.by_host:
+            raise Forbidden(f"{pressed.name}, the host, paused this room; only a host lets it go on.")
+        self._pressed = pressed.under
+        did = "ended the pause" if pressed.by_host else "let go of the emergency stop"
+        if pressed.under is None:
+            self._barrier.let_go()
+            follows = "everything goes on"
+        else:
+            follows = f"{pressed.under.name} had stopped everything, which holds"
+        self._changed(self._pressed, room_messages.notice("info", f"{request.name} {did}: {follows}."))
+
+    def _stop(self, arm: str, name: str, *, by_host: bool = False) -> SavedStop:
+        return SavedStop(arm=arm, name=name, wall_ns=clock.wall_ns(), by_host=by_host)
+
+    def _press(self, new: SavedStop) -> None:
+        """Latch `new`; the first of a kind is named."""
+        on = self._pressed
+        if on is None:
+            self._latch(new, new)
+        elif new.by_host and not on.by_host:
+            self._latch(new.model_copy(update={"under": on}), new)
+        elif on.by_host and not new.by_host and on.under is None:
+            self._latch(on.model_copy(update={"under": new}), new)
+
+    def _latch(self, pressed: SavedStop, new: SavedStop) -> None:
+        self._pressed = pressed
+        did = "paused the room" if new.by_host else "stopped everything"
+        self._changed(pressed, room_messages.notice("warning", f"{new.name} {did}."))

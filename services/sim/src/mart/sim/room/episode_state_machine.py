@@ -18,6 +18,7 @@ from mart.protocol.errors import Conflict, Forbidden, InvalidInput
 from mart.protocol.messages import (
     ENDED_BY_ABSENCE,
     ENDED_BY_OPERATOR,
+    ENDED_BY_ROOM,
     ENDED_BY_TASK,
     ENDED_BY_TIME,
     ENDED_BY_UNSPECIFIED,
@@ -38,7 +39,7 @@ from mart.protocol.messages import (
     phase_word,
 )
 from mart.protocol.received import MAX_NUMBER
-from mart.sim.room.seats import SeatHolder, SeatTable
+from mart.sim.room.seats import SeatHolder, SeatTable, require_name
 
 COUNTDOWN_S = 3.0
 ENDED_S = 2.0
@@ -202,6 +203,10 @@ class EpisodeStateMachine:
             self.number -= 1  # this episode never began; its number is free again
         return self._practice()
 
+    def diverged(self, now_s: float) -> Sequence[Effect]:
+        """Begin anew where the physics left their bounds."""
+        return self.abandon(OUTCOME_FAILURE, "the physics diverged", EpisodeEnder(ENDED_BY_ROOM), now_s)
+
     def _answer_ready(self, ready: EpisodeRequest.Ready, seats: SeatTable, now_s: float) -> Sequence[Effect]:
         seat = seats[ready.arm]
         _require_say(seats, (seat,), ready.holder_id)
@@ -233,20 +238,18 @@ class EpisodeStateMachine:
     def _answer_finish(
         self, finish: EpisodeRequest.Finish, seats: SeatTable, now_s: float
     ) -> Sequence[Effect]:
-        _require_say(seats, tuple(seats), finish.holder_id)
+        ender = _ender(seats, finish)
         if not self.recording:
             raise Conflict(f"An outcome was given during {phase_word(self.phase)}; only a recording has one.")
         if finish.outcome not in (OUTCOME_SUCCESS, OUTCOME_FAILURE, OUTCOME_DISCARDED):
             raise InvalidInput(
                 "An outcome that does not exist was given; it must be success, failure or discarded."
             )
-        ender = _operator(seats, finish.holder_id)
-        return self.end(finish.outcome, f"said by {ender.name or 'an operator'}", ender, now_s)
+        return self.end(finish.outcome, f"said by {_called(ender)}", ender, now_s)
 
     def _answer_reset(self, reset: EpisodeRequest.Reset, seats: SeatTable, now_s: float) -> Sequence[Effect]:
-        _require_say(seats, tuple(seats), reset.holder_id)
-        ender = _operator(seats, reset.holder_id)
-        return self.abandon(OUTCOME_DISCARDED, f"reset by {ender.name or 'an operator'}", ender, now_s)
+        ender = _ender(seats, reset)
+        return self.abandon(OUTCOME_DISCARDED, f"reset by {_called(ender)}", ender, now_s)
 
     def _count_down(self, number: int, now_s: float) -> Sequence[Effect]:
         self.number = number or self.number + 1
@@ -277,11 +280,21 @@ def _require_say(seats: SeatTable, about: tuple[SeatHolder, ...], holder_id: str
         raise Forbidden("This is decided by those who drive; take a seat to have a say.")
 
 
-def _operator(seats: SeatTable, holder_id: str) -> EpisodeEnder:
-    """Return who says something: the holder of a seat, or somebody without a name where no human sits."""
-    held = seats.of_holder(holder_id)
-    return (
-        EpisodeEnder(ENDED_BY_OPERATOR, held[0].name, held[0].arm)
-        if held
-        else EpisodeEnder(ENDED_BY_OPERATOR)
-    )
+def _ender(seats: SeatTable, said: EpisodeRequest.Finish | EpisodeRequest.Reset) -> EpisodeEnder:
+    """Return who says it: a host, the holder of a seat, or somebody without a name where no human sits.
+
+    Raises Forbidden where they have no say, InvalidInput where a host's name cannot be shown.
+    """
+    if said.host:
+        require_name(said.host)
+        return EpisodeEnder(ENDED_BY_OPERATOR, said.host)
+    _require_say(seats, tuple(seats), said.holder_id)
+    held = next(iter(seats.of_holder(said.holder_id)), None)
+    return EpisodeEnder(ENDED_BY_OPERATOR, held.name, held.arm) if held else EpisodeEnder(ENDED_BY_OPERATOR)
+
+
+def _called(ender: EpisodeEnder) -> str:
+    """Return who ended something, in words; whoever has a name and no arm is a host."""
+    if not ender.name:
+        return "an operator"
+    return ender.name if ender.arm else f"{ender.name}, the host"

@@ -11,10 +11,8 @@ from mart.protocol.messages import (
     BARRIER_PHASE_PAUSED,
     BARRIER_PHASE_RUNNING,
     BARRIER_PHASE_STOPPED,
-    ENDED_BY_ROOM,
     EPISODE_PHASE_PRACTICE,
     OPERATOR_HOLD,
-    OUTCOME_FAILURE,
     OUTCOME_SUCCESS,
     EpisodeRequest,
     Event,
@@ -26,7 +24,7 @@ from mart.protocol.messages import (
     error_message,
 )
 from mart.sim.room import room_messages
-from mart.sim.room.barrier import FREED_AFTER_S, Barrier, Decision, TickInputs
+from mart.sim.room.barrier import Barrier, Decision, TickInputs
 from mart.sim.room.command_age import CommandAge
 from mart.sim.room.command_validation import CommandRejected, CommandRejection, validate_command
 from mart.sim.room.emergency_stop import StopLatch
@@ -34,7 +32,6 @@ from mart.sim.room.episode_state_machine import (
     BeginEpisode,
     Effect,
     EndEpisode,
-    EpisodeEnder,
     EpisodeStateMachine,
     ResetWorld,
     Terms,
@@ -130,6 +127,8 @@ class Room:
             seat = self._seats.answer(request)
             if seat not in before:
                 self._seat_changed(seat, now_s)
+                if request.HasField("free"):
+                    self.tell(room_messages.freed(request.free))
         except MartError as error:
             return RoomReply(error=error_message(error), status=self.status(now_s))
         return RoomReply(status=self.status(now_s), seat=self._seat_message(seat, now_s))
@@ -142,6 +141,9 @@ class Room:
                     self._stop.press(request.stop, now_s)
                 case "go_on":
                     self._stop.let_go(request.go_on)
+                case "set_plan":
+                    self.tell(room_messages.planned(request.set_plan))
+                    self._remember(self._record.with_host_plan(request.set_plan.episodes))
                 case _:
                     self._do(self._episode.answer(request, self._seats, now_s), now_s)
         except MartError as error:
@@ -202,8 +204,7 @@ class Room:
             state = self._ticker.advance(inputs, self._seats, self._episode, now_s)
         except Diverged as error:
             self.tell(room_messages.notice("warning", self._explain(error)))
-            ender = EpisodeEnder(ENDED_BY_ROOM)
-            self._do(self._episode.abandon(OUTCOME_FAILURE, "the physics diverged", ender, now_s), now_s)
+            self._do(self._episode.diverged(now_s), now_s)
             return
         self._tell_state(state, now_s)
         done, failed = state.progress.success, state.progress.failed or None
@@ -221,7 +222,9 @@ class Room:
                 case BeginEpisode():
                     self._start(effect, now_s)
                 case EndEpisode():
-                    self._end(effect)
+                    ended = room_messages.episode_ended(effect, self._ticker.tick, self._ticker.progress)
+                    self._last_ended = ended
+                    self.tell(Event(episode_ended=ended))
             self._status_due_s = now_s
 
     def _start(self, effect: BeginEpisode, now_s: float) -> None:
@@ -232,15 +235,10 @@ class Room:
         self._tell_state(self._ticker.standing(self._seats, self._episode, now_s), now_s)
         self._barrier.restart(now_s)
 
-    def _end(self, effect: EndEpisode) -> None:
-        self._last_ended = room_messages.episode_ended(effect, self._ticker.tick, self._ticker.progress)
-        self.tell(Event(episode_ended=self._last_ended))
-
     def _give_up(self, arm: str, now_s: float) -> None:
-        name = self._seats[arm].driver.called
+        news = room_messages.gave_up(self._seats[arm])
         self._seat_changed(self._seats.free(arm), now_s)
-        text = f"{name} gave no command for {FREED_AFTER_S:g} s: {arm} is free."
-        self.tell(room_messages.notice("warning", text))
+        self.tell(news)
 
     def _seat_changed(self, seat: SeatHolder, now_s: float) -> None:
         self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s)

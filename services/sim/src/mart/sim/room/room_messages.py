@@ -8,20 +8,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.protocol.errors import InvalidInput
 from mart.protocol.holders import holder_tag
 from mart.protocol.messages import (
     BarrierPhase,
     Episode,
+    EpisodeRequest,
     Event,
     Plan,
     Seat,
+    SeatRequest,
     Waiting,
 )
+from mart.sim.room.barrier import FREED_AFTER_S
 from mart.sim.room.command_validation import ReceivedCommand
 from mart.sim.room.episode_state_machine import BeginEpisode, EndEpisode, EpisodeStateMachine, Terms
 from mart.sim.room.saved_room import SavedRoom
-from mart.sim.room.seats import SeatHolder
+from mart.sim.room.seats import SeatHolder, require_name
 from mart.sim.world import TaskProgress, World
+
+MAX_PLANNED = 10_000  # good episodes
 
 # What any operator sees, by name: see mart.protocol.tasks.
 Seen = Mapping[str, NDArray[np.float64]]
@@ -158,6 +164,31 @@ def notice(level: str, text: str) -> Event:
     event.notice.level, event.notice.text = level, text
     setattr(event.notice, "from", "sim")  # a keyword in Python
     return event
+
+
+def gave_up(seat: SeatHolder) -> Event:
+    """Return the notice that somebody who went silent loses a seat."""
+    text = f"{seat.driver.called} gave no command for {FREED_AFTER_S:g} s: {seat.arm} is free."
+    return notice("warning", text)
+
+
+def freed(free: SeatRequest.Free) -> Event:
+    """Return the notice that a host freed a seat."""
+    return notice("warning", f"{free.name}, the host, freed {free.arm}.")
+
+
+def planned(wanted: EpisodeRequest.SetPlan) -> Event:
+    """Return the notice that a host wants so many episodes.
+
+    Raises InvalidInput where they are too many, or the name cannot be shown.
+    """
+    require_name(wanted.name)
+    if wanted.episodes > MAX_PLANNED:
+        raise InvalidInput(f"{wanted.episodes} episodes were given; plan at most {MAX_PLANNED}, or none (0).")
+    plan = f"{wanted.episodes} good episodes are" if wanted.episodes != 1 else "one good episode is"
+    return notice(
+        "info", f"{wanted.name}, the host, set the plan: {plan if wanted.episodes else 'none is'} wanted."
+    )
 
 
 def episode_started(

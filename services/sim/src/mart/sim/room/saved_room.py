@@ -71,14 +71,29 @@ class SavedPlan(BaseModel):
     good_before: int = Field(ge=0, le=MAX_NUMBER)
 
 
+class SavedHostPlan(BaseModel):
+    """Store that a host wants `episodes` good ones of `task` (0: no plan) in place of those that were `asked` for."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    task: str
+    asked: int | None = Field(ge=1, le=MAX_NUMBER)
+    episodes: int = Field(ge=0, le=MAX_NUMBER)
+
+
 class SavedStop(BaseModel):
-    """Store an emergency stop that is on: `name` pressed it, at `arm` where they held a seat."""
+    """Store a stop that is on: `name` pressed it, at `arm` where they held a seat; a host's pause where `by_host`.
+
+    under: the stop that a host's pause lies over.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     arm: str
     name: str
     wall_ns: int = Field(ge=0)
+    by_host: bool = False
+    under: SavedStop | None = None
 
 
 class CountedEpisode(BaseModel):
@@ -94,7 +109,8 @@ class SavedRoom(BaseModel):
     """Store one room: `episodes` is the newest number; `saved` and `good` count what the recorder reported.
 
     counted: the newest of them, so that what is told again counts once. task: that the seats are for, empty in records
-    of 0.2 and older. picture_s: what a seat's picture took here; 0: nobody has said, or nobody asked.
+    of 0.2 and older. picture_s: what a seat's picture took here; 0: nobody has said, or nobody asked. asked: how many
+    good ones whoever started the room wanted; host_plan: what a host said instead, until the room is asked for others.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -107,6 +123,8 @@ class SavedRoom(BaseModel):
     counted: tuple[CountedEpisode, ...] = ()
     seats: tuple[SavedSeat, ...] = ()
     plan: SavedPlan | None = None
+    asked: int | None = Field(None, ge=1, le=MAX_NUMBER)
+    host_plan: SavedHostPlan | None = None
     stop: SavedStop | None = None
     picture_s: float = Field(0.0, ge=0.0, le=10.0)
 
@@ -116,12 +134,19 @@ class SavedRoom(BaseModel):
         return self.with_changes(task=task, seats=seats)
 
     def planned(self, task: str, episodes: int | None) -> SavedRoom:
-        """Return it with so many good episodes of this task wanted: the same plan goes on, another begins anew."""
-        if episodes is None:
-            return self.with_changes(plan=None)
-        if self.plan is not None and (self.plan.task, self.plan.episodes) == (task, episodes):
-            return self
-        return self.with_changes(plan=SavedPlan(task=task, episodes=episodes, good_before=self.good))
+        """Return it as it begins to run where so many good episodes of this task are asked for; None: no plan.
+
+        A restart asks for the same again: what a host said meanwhile holds.
+        """
+        said = self.host_plan
+        if said is not None and (said.task, said.asked) == (task, episodes):
+            return _wanting(self, task, said.episodes or None)
+        return _wanting(self.with_changes(asked=episodes, host_plan=None), task, episodes)
+
+    def with_host_plan(self, episodes: int) -> SavedRoom:
+        """Return it with what a host wants: so many good episodes of its task from now on; 0: no plan."""
+        said = SavedHostPlan(task=self.task, asked=self.asked, episodes=episodes)
+        return _wanting(self.with_changes(host_plan=said), self.task, episodes or None)
 
     def with_saved(self, number: int, good: bool) -> SavedRoom:
         """Return it with this episode counted; itself where that changes nothing.
@@ -157,6 +182,15 @@ class SavedRoom(BaseModel):
     def with_changes(self, **changes: Any) -> SavedRoom:
         """Return it with some fields changed."""
         return self.model_copy(update=changes)
+
+
+def _wanting(record: SavedRoom, task: str, episodes: int | None) -> SavedRoom:
+    """Return it with this plan: the same goes on, another begins anew."""
+    if episodes is None:
+        return record.with_changes(plan=None)
+    if record.plan is not None and (record.plan.task, record.plan.episodes) == (task, episodes):
+        return record
+    return record.with_changes(plan=SavedPlan(task=task, episodes=episodes, good_before=record.good))
 
 
 def _seat_record(seat: SeatHolder) -> SavedSeat:

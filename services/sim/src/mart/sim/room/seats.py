@@ -124,8 +124,12 @@ class SeatTable:
                 return self.assign(request.assign.arm, request.assign.operator, request.assign.policy)
             case "hand_back":
                 return self.hand_back(request.hand_back.arm, request.hand_back.holder_id)
+            case "free":
+                require_name(request.free.name)
+                seat = self[request.free.arm]
+                return self.free(seat.arm) if seat.operator != OPERATOR_HOLD else seat
         raise InvalidInput(
-            "An empty seat request was given; ask to claim, release, assign or hand back a seat."
+            "An empty seat request was given; ask to claim, release, assign, hand back or free a seat."
         )
 
     def claim(self, arm: str, holder_id: str, name: str, operator: Operator) -> SeatHolder:
@@ -186,7 +190,7 @@ class SeatTable:
         return seat if seat.driver == driver else self._change(seat, driver)
 
     def free(self, arm: str) -> SeatHolder:
-        """Take a seat from a holder who went silent."""
+        """Take a seat from a holder who went silent, or for a host."""
         return self._change(self[arm], NOBODY)
 
     def restore(self, seats: Iterable[SeatHolder]) -> None:

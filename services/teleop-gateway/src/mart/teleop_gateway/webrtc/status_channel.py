@@ -150,6 +150,7 @@ def tick(
             "ready": any(seat.ready for seat in room.seats if seat.arm == driving.arm),
             "barrier": barrier_word(room.barrier),
             "stopped_by": room.stop.name[:_NAME_CHARACTERS],
+            "paused_by_host": room.stop.by_host,
             "waiting": [{"arm": w.arm, "since_s": round(w.since_s, 2)} for w in room.waiting_for],
             "input": driving.active.value,
             "phone": phone and _phone(phone),

@@ -8,7 +8,7 @@ import logging
 import secrets
 import sqlite3
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mart.protocol.errors import InvalidInput, Unavailable
@@ -27,16 +27,24 @@ CREATE TABLE IF NOT EXISTS joined (
     expires_s REAL NOT NULL,
     code_digest BLOB NOT NULL
 ) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS hosting (
+    holder_id TEXT PRIMARY KEY,
+    code_digest BLOB NOT NULL
+) WITHOUT ROWID;
 DROP TABLE IF EXISTS session; -- of 0.2.0 and before, which did not say for which join code it was
 """
 
 
 @dataclass(frozen=True)
 class User:
-    """Somebody who has joined: `holder_id` is what the sim knows a seat's holder by, and others never see it."""
+    """Somebody who has joined: `holder_id` is what the sim knows a seat's holder by, and others never see it.
+
+    hosts: whether they gave the host code.
+    """
 
     holder_id: str
     name: str
+    hosts: bool = False
 
     @property
     def only_watches(self) -> bool:
@@ -47,12 +55,13 @@ class User:
 class UserSessions:
     """The sessions of all users; times are Unix seconds. The file holds only hashes of their ids: it lets nobody in.
 
-    A session is good as long as the join code that it came with is the site's: another code ends them all.
+    A session is good as long as the join code that it came with is the site's: another code ends them all. So it is
+    with who hosts, and the host code.
     """
 
-    def __init__(self, path: Path | str, code_digest: bytes = b"") -> None:
-        """Open the sessions at `path`; a file that is none is put aside. `code_digest`: of the site's join code."""
-        self._code_digest = code_digest
+    def __init__(self, path: Path | str, code_digest: bytes = b"", host_digest: bytes = b"") -> None:
+        """Open the sessions at `path`; a file that is none is put aside. The digests: of the site's two codes."""
+        self._code_digest, self._host_digest = code_digest, host_digest
         try:
             self._database = _opened(path)
         except sqlite3.DatabaseError:
@@ -63,6 +72,8 @@ class UserSessions:
             _log.warning("%s was damaged and is kept as %s; everybody joins anew.", path, aside.name)
             self._database = _opened(path)
         self._database.execute("DELETE FROM joined WHERE code_digest <> ?", (code_digest,))
+        self._database.execute("DELETE FROM hosting WHERE code_digest <> ?", (host_digest,))
+        self._forget_hosts()
 
     def join(
         self, name: str, now_s: float, known: User | None = None, *, only_watches: bool = False
@@ -74,7 +85,8 @@ class UserSessions:
         """
         keeps = known is not None and known.only_watches == only_watches
         new_id = f"{_SPECTATOR if only_watches else ''}{secrets.token_hex(16)}"
-        user = User(known.holder_id if known and keeps else new_id, clean_name(name))
+        hosts = known is not None and keeps and known.hosts
+        user = User(known.holder_id if known and keeps else new_id, clean_name(name), hosts)
         session_id = secrets.token_urlsafe(32)
         with _told():
             self._database.execute("DELETE FROM joined WHERE expires_s < ?", (now_s,))
@@ -97,15 +109,30 @@ class UserSessions:
         """
         with _told():
             row = self._database.execute(
-                "SELECT holder_id, name FROM joined WHERE id_sha256 = ? AND expires_s >= ?",
+                "SELECT holder_id, name, holder_id IN (SELECT holder_id FROM hosting) FROM joined "
+                "WHERE id_sha256 = ? AND expires_s >= ?",
                 (_hash(session_id), now_s),
             ).fetchone()
-        return User(*row) if row else None
+        return User(row[0], row[1], bool(row[2])) if row else None
+
+    def host(self, user: User) -> User:
+        """Let a user who joined host from now on, until they leave; return them so. Raises Unavailable as `join`."""
+        with _told():
+            self._forget_hosts()
+            self._database.execute(
+                "INSERT OR REPLACE INTO hosting VALUES (?, ?)", (user.holder_id, self._host_digest)
+            )
+        return replace(user, hosts=True)
 
     def leave(self, user: User) -> None:
         """End the session of a user."""
         with _told():
             self._database.execute("DELETE FROM joined WHERE holder_id = ?", (user.holder_id,))
+            self._forget_hosts()
+
+    def _forget_hosts(self) -> None:
+        """Whoever has no session any more hosts no more."""
+        self._database.execute("DELETE FROM hosting WHERE holder_id NOT IN (SELECT holder_id FROM joined)")
 
     def close(self) -> None:
         """Close the database."""

@@ -65,12 +65,14 @@ class AppState:
     lobby: Lobby
     user_sessions: UserSessions
     join_code: str
+    host_code: str
     secret: bytes
     site: SiteNames
     data_dir: Path
     certificate: Path
     pairing_codes: PairingCodes = field(default_factory=PairingCodes)
     wrong_codes: FailureDelay = field(default_factory=_wrong_codes)
+    wrong_host_codes: FailureDelay = field(default_factory=_wrong_codes)
     joins: RequestLimit = field(default_factory=_joins)
     offers: RequestLimit = field(default_factory=_offers)
     offers_from_address: RequestLimit = field(default_factory=_offers_from_address)

@@ -51,7 +51,7 @@ async def join(body: JoinRequest, response: Response, app: App, known: MaybeUser
     if known is None:
         app.joins.spend(address, clock.monotonic_s())
     session_id, user = app.user_sessions.join(body.name, now_unix_s(), known)
-    _set_cookie(response, session_id)
+    set_cookie(response, session_id)
     return user
 
 
@@ -64,7 +64,7 @@ async def watch(body: WatchRequest, response: Response, app: App, known: MaybeUs
     require_join_code(app, body.code, address, watch_code_of(app.join_code, app.secret))
     app.joins.spend(address, clock.monotonic_s())
     session_id, user = app.user_sessions.join("Spectator", now_unix_s(), only_watches=True)
-    _set_cookie(response, session_id)
+    set_cookie(response, session_id)
     return user
 
 
@@ -85,7 +85,8 @@ async def leave(response: Response, app: App, user: WatchingUser) -> User:
     return user
 
 
-def _set_cookie(response: Response, session_id: str) -> None:
+def set_cookie(response: Response, session_id: str) -> None:
+    """Have the browser keep a session, where no script reads it."""
     response.set_cookie(
         COOKIE, session_id, max_age=int(SESSION_S), path="/", secure=True, httponly=True, samesite="strict"
     )

@@ -13,7 +13,7 @@ from mart.protocol.errors import Forbidden
 from mart.web.access.join_code import check_join_code
 from mart.web.access.user_sessions import User
 from mart.web.api.app_state import AppState
-from mart.web.errors import NotJoined, OnlyWatches
+from mart.web.errors import NotHost, NotJoined, OnlyWatches
 
 COOKIE = "__Host-mart-session"
 
@@ -61,8 +61,21 @@ async def joined_user(user: Annotated[User, Depends(watching_user)]) -> User:
     return user
 
 
+async def hosting_user(user: Annotated[User, Depends(joined_user)]) -> User:
+    """Return who asks, who gave the host code; raises NotJoined, OnlyWatches, and NotHost for a guest."""
+    if not user.hosts:
+        raise NotHost
+    return user
+
+
 async def browsing_user(user: Annotated[User, Depends(joined_user)], app: App) -> AsyncIterator[User]:
     """Yield who asks for what may take long; a few such requests of one person go on at a time, others wait."""
+    async with app.browsing.turn(user.holder_id):
+        yield user
+
+
+async def fetching_user(user: Annotated[User, Depends(watching_user)], app: App) -> AsyncIterator[User]:
+    """Yield who asks, who may be a spectator, for what may take long, as `browsing_user` does."""
     async with app.browsing.turn(user.holder_id):
         yield user
 
@@ -89,6 +102,8 @@ def require_join_code(app: AppState, given: str, address: str, expected: str = "
 
 WatchingUser = Annotated[User, Depends(watching_user)]
 JoinedUser = Annotated[User, Depends(joined_user)]
+HostingUser = Annotated[User, Depends(hosting_user)]
+FetchingUser = Annotated[User, Depends(fetching_user)]
 BrowsingUser = Annotated[User, Depends(browsing_user)]
 WritingUser = Annotated[User, Depends(writing_user)]
 Address = Annotated[str, Depends(address_of)]

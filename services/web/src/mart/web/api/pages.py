@@ -66,6 +66,12 @@ async def watch(request: Request) -> Response:
     return page("watch", request)
 
 
+@router.get("/host", include_in_schema=False)
+async def host(request: Request) -> Response:
+    """Send the page of hosts, which asks for their code."""
+    return page("host", request)
+
+
 @router.get("/phone", include_in_schema=False)
 async def phone(request: Request) -> Response:
     """Send the phone's page."""

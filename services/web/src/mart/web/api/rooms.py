@@ -78,8 +78,13 @@ async def still(room: str, app: App, _user: WatchingUser) -> Response:
 
     Whoever asks for another one gives another query: this one may be kept.
     """
-    jpeg = app.lobby.thumbnails.jpeg(room, clock.monotonic_s())
-    return Response(jpeg, media_type="image/jpeg", headers={"Cache-Control": "private, max-age=60"})
+    return _still(app.lobby.thumbnails.jpeg(room, clock.monotonic_s()))
+
+
+@router.get("/rooms/{room}/seats/{arm}/still")
+async def seat_still(room: str, arm: str, app: App, _user: WatchingUser) -> Response:
+    """Send the newest small picture of a seat, as `still` does."""
+    return _still(app.lobby.thumbnails.jpeg_of(room, arm, clock.monotonic_s()))
 
 
 @router.delete("/rooms/{room}")
@@ -139,6 +144,10 @@ async def let_go_of_stop(room: str, app: App, user: JoinedUser) -> Json:
     """Let everything go on, whoever stopped it, and send the room."""
     await app.rooms.let_go_of_stop(room, user.name)
     return {"room": app.lobby.room_json(room, user.holder_id, clock.monotonic_s())}
+
+
+def _still(jpeg: bytes) -> Response:
+    return Response(jpeg, media_type="image/jpeg", headers={"Cache-Control": "private, max-age=60"})
 
 
 def _task_json(name: str) -> Json:

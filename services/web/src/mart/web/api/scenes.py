@@ -8,7 +8,7 @@ from fastapi import APIRouter, Path
 from starlette.responses import Response
 
 from mart.protocol import clock
-from mart.web.api.dependencies import App, BrowsingUser
+from mart.web.api.dependencies import App, FetchingUser
 from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api")
@@ -17,7 +17,7 @@ Digest = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]
 
 
 @router.get("/rooms/{room}/seats/{arm}/scene")
-async def scene(room: str, arm: str, app: App, _user: BrowsingUser) -> Json:
+async def scene(room: str, arm: str, app: App, _user: FetchingUser) -> Json:
     """Send the digest of the scene that a seat's picture shows; from then on it can be had."""
     app.lobby.rooms.seat(room, arm, clock.monotonic_s())
     reply = await app.gateways.scene(room, arm, app.scenes.known())
@@ -27,7 +27,7 @@ async def scene(room: str, arm: str, app: App, _user: BrowsingUser) -> Json:
 
 
 @router.get("/scenes/{sha256}")
-async def scene_file(sha256: Digest, app: App, _user: BrowsingUser) -> Response:
+async def scene_file(sha256: Digest, app: App, _user: FetchingUser) -> Response:
     """Send a scene. Its name is its digest, so nobody has to ask for it twice."""
     return Response(
         app.scenes.get(sha256), media_type="application/octet-stream", headers={"Content-Encoding": "gzip"}

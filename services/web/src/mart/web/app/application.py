@@ -16,6 +16,7 @@ from mart.web.api import (
     device_check,
     episodes,
     health,
+    hosting,
     invitation,
     live,
     pages,
@@ -40,6 +41,7 @@ def create_app(state: AppState) -> FastAPI:
     for module in (
         auth,
         rooms,
+        hosting,
         phones,
         signaling,
         scenes,

@@ -61,13 +61,14 @@ def listen(host: str, port: int) -> socket.socket:
 
 
 async def serve(
-    settings: WebSettings, service: AsyncService, listener: socket.socket, join_code: str
+    settings: WebSettings, service: AsyncService, listener: socket.socket, join_code: str, host_code: str
 ) -> None:
     """Serve the pages and the API at `listener` until cancelled, or stopped by a signal."""
     lobby, listener_port = Lobby(), listener.getsockname()[1]
     with contextlib.ExitStack() as stack:
         secret = load_or_create_secret(settings.secret_path)
-        sessions = UserSessions(settings.sessions_path, digest_of(join_code, secret))
+        digests = (digest_of(join_code, secret), digest_of(host_code, secret))
+        sessions = UserSessions(settings.sessions_path, *digests)
         user_sessions = stack.enter_context(contextlib.closing(sessions))
         feed = stack.enter_context(contextlib.closing(LobbyFeed(service.bus, lobby)))
         state = AppState(
@@ -75,6 +76,7 @@ async def serve(
             lobby=lobby,
             user_sessions=user_sessions,
             join_code=join_code,
+            host_code=host_code,
             secret=secret,
             site=SiteNames(settings.public_names, settings.web_host),
             data_dir=settings.data_dir,

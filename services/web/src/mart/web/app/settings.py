@@ -69,6 +69,11 @@ class WebSettings(IceSettings):
         return self.data_dir / "web" / "sessions.sqlite"
 
     @property
+    def host_code_path(self) -> Path:
+        """The file of the host code."""
+        return self.data_dir / "host-code"
+
+    @property
     def join_code_path(self) -> Path:
         """The file of the join code."""
         return self.data_dir / "join-code"

@@ -21,9 +21,9 @@ class PlatformClient(ServiceClient):
         """Open a room and return its name; its sim comes up within seconds."""
         return await self._ask(RoomsRequest(open=wanted))
 
-    async def close_room(self, room: str) -> str:
-        """Close a room in which no human sits and return its name."""
-        return await self._ask(RoomsRequest(close=RoomsRequest.Close(room=room)))
+    async def close_room(self, room: str, *, with_people: bool = False) -> str:
+        """Close a room and return its name; one in which humans sit only `with_people`."""
+        return await self._ask(RoomsRequest(close=RoomsRequest.Close(room=room, with_people=with_people)))
 
     async def _ask(self, request: RoomsRequest) -> str:
         topic = keys.rooms(self._running_id())

@@ -79,6 +79,35 @@ class RoomRequester:
         """Let everything go on in the room, as `name`."""
         await self._ask_episode(room, EpisodeRequest(go_on=EpisodeRequest.GoOn(name=name)))
 
+    async def free_seat(self, room: str, arm: str, host: User) -> Seat:
+        """Free the seat of `arm`, whoever sits there, for a host; return it."""
+        return await self._ask_seat(room, arm, SeatRequest(free=SeatRequest.Free(arm=arm, name=host.name)))
+
+    async def finish_for_all(self, room: str, host: User, outcome: Outcome) -> None:
+        """End the running recording with `outcome`, for a host."""
+        await self._ask_episode(
+            room, EpisodeRequest(finish=EpisodeRequest.Finish(outcome=outcome, host=host.name))
+        )
+
+    async def reset_for_all(self, room: str, host: User) -> None:
+        """Go back to practice with a fresh world, for a host."""
+        await self._ask_episode(room, EpisodeRequest(reset=EpisodeRequest.Reset(host=host.name)))
+
+    async def pause(self, room: str, host: User) -> None:
+        """Pause the room until a host lets it go on."""
+        stop = EpisodeRequest.Stop(holder_id=host.holder_id, name=host.name, by_host=True)
+        await self._ask_episode(room, EpisodeRequest(stop=stop))
+
+    async def end_pause(self, room: str, host: User) -> None:
+        """Let the room go on, whoever stopped or paused it."""
+        go_on = EpisodeRequest.GoOn(name=host.name, by_host=True)
+        await self._ask_episode(room, EpisodeRequest(go_on=go_on))
+
+    async def set_plan(self, room: str, host: User, episodes: int) -> None:
+        """Plan so many good episodes from now on; 0: no plan."""
+        plan = EpisodeRequest.SetPlan(episodes=episodes, name=host.name)
+        await self._ask_episode(room, EpisodeRequest(set_plan=plan))
+
     def _speaker(self, room: str, user: User) -> str:
         """Whoever holds no seat speaks as anybody: the sim hears them where no human drives."""
         seats = self._lobby.rooms.status(room, clock.monotonic_s()).seats

@@ -78,6 +78,9 @@ def rooms(seen: Iterable[Json]) -> Iterator[HealthFinding]:
         if room["stale"]:
             found = "does not answer"
             mend = "It comes back by itself when its simulation runs again; its log says what happened."
+        elif room["stop"] and room["stop"]["by_host"]:
+            found = f"paused by {room['stop']['name']}, the host"
+            mend = "A host lets it go on, at /host: press Go on twice."
         elif room["stop"]:
             found = f"stopped by {room['stop']['name']}"
             mend = "Anybody lets it go on: press Go on twice, in the lobby or in the room."

@@ -99,6 +99,7 @@ class Lobby:
             "stale": self.rooms.is_stale(room, now_s),
             "slow": self.rooms.is_slow(room, now_s),
             "still": self.thumbnails.number(room, now_s),
+            "stills": self.thumbnails.numbers(room, now_s),
             "last_episode": self.last_episodes.json(room, now_s),
         }
 

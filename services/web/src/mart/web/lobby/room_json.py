@@ -101,7 +101,9 @@ def _plan_json(status: RoomStatus) -> Json | None:
 
 def _stop_json(status: RoomStatus) -> Json | None:
     stop = status.stop
-    return {"arm": stop.arm, "name": stop.name} if status.HasField("stop") else None
+    if not status.HasField("stop"):
+        return None
+    return {"arm": stop.arm, "name": stop.name, "by_host": stop.by_host, "also_name": stop.also_name}
 
 
 def _task_json(status: RoomStatus) -> Json:

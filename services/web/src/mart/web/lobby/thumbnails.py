@@ -41,6 +41,17 @@ class Thumbnails:
         still = self._shown(room, now_s)
         return still.number if still else 0
 
+    def numbers(self, room: str, now_s: float) -> dict[str, int]:
+        """Return another number for each picture of each seat of a room that has one, by its camera."""
+        return {camera: still.number for camera, still in sorted(self._fresh(room, now_s).items())}
+
+    def jpeg_of(self, room: str, camera: str, now_s: float) -> bytes:
+        """Return the picture of one seat; raises NotFound where nobody has looked from there in the last seconds."""
+        still = self._fresh(room, now_s).get(camera)
+        if still is None:
+            raise NotFound(f"Nobody looks from {camera} in {room} now, so there is no picture.")
+        return still.jpeg
+
     def jpeg(self, room: str, now_s: float) -> bytes:
         """Return the picture of a room; raises NotFound where nobody has looked at it in the last seconds."""
         still = self._shown(room, now_s)
@@ -50,9 +61,12 @@ class Thumbnails:
 
     def _shown(self, room: str, now_s: float) -> _Thumbnail | None:
         """The first seat's, so that the picture does not change sides."""
-        fresh = {
+        fresh = self._fresh(room, now_s)
+        return fresh[min(fresh)] if fresh else None
+
+    def _fresh(self, room: str, now_s: float) -> dict[str, _Thumbnail]:
+        return {
             camera: still
             for (where, camera), still in self._by_seat.items()
             if where == room and now_s - still.seen_s <= FRESH_S
         }
-        return fresh[min(fresh)] if fresh else None

@@ -23,6 +23,7 @@ export const messageOf = (error) => inPlainWords(error instanceof Error ? error.
 export const statusOf = (error) => (error instanceof ApiError ? error.status : 0);
 
 /**
+ * Asks the site. Fails with an ApiError.
  * @template T what docs/protocol.md says that the answer's JSON is
  * @param {string} method
  * @param {string} path below /api
@@ -30,7 +31,7 @@ export const statusOf = (error) => (error instanceof ApiError ? error.status : 0
  * @param {Record<string, string>} [headers]
  * @returns {Promise<T>}
  */
-async function request(method, path, body, headers = {}) {
+export async function request(method, path, body, headers = {}) {
   /** @type {RequestInit} */
   const options = { method, headers };
   if (body !== undefined) {

@@ -40,24 +40,29 @@ export function emergencyStop({ label, id, key, onStop, onLetGo }) {
   }
 
   function press() {
-    if (!stop) onStop();
+    if (mayStop()) onStop();
+    else if (stop?.by_host) return; // only a host lets go, on a page of their own
     else if (sure) onLetGo();
-    setSure(Boolean(stop) && !sure);
+    setSure(!mayStop() && !sure);
   }
 
+  /** Also during a host's pause: the stop is there when that ends. */
+  const mayStop = () => !stop || (stop.by_host && !stop.also_name);
+
   function show() {
-    node.classList.toggle("stopped", stop !== null);
+    node.classList.toggle("stopped", !mayStop());
     setText(who, stop ? stoppedText(stop) : "");
     setShown(who, stop !== null);
+    setShown(button, mayStop() || !stop?.by_host);
     const goOn = sure ? "Press again: go on" : "Go on";
-    setText(words, stop ? goOn : "Stop");
-    button.setAttribute("aria-label", stop ? `${words.textContent}: ${label}` : `Stop everything: ${label}`);
+    setText(words, mayStop() ? "Stop" : goOn);
+    button.setAttribute("aria-label", mayStop() ? `Stop everything: ${label}` : `${words.textContent}: ${label}`);
   }
 
   /** @param {Stop} latest */
   function update(latest) {
     stop = latest;
-    if (!stop && sure) setSure(false);
+    if (mayStop() && sure) setSure(false);
     show();
   }
 

@@ -62,11 +62,12 @@ export function planText(plan) {
 }
 
 /**
- * "Stopped by Ana, blue arm": who pressed the emergency stop of a room.
+ * "Stopped by Ana, blue arm" or "Paused by Ana, the host": who pressed the emergency stop of a room.
  * @param {Api.Room["stop"]} stop
  */
 export function stoppedText(stop) {
   if (!stop) return "Stopped";
+  if (stop.by_host) return `Paused by ${stop.name}, the host${stop.also_name && `; stopped by ${stop.also_name}`}`;
   return `Stopped by ${stop.name}${stop.arm && `, ${armName(stop.arm).toLowerCase()}`}`;
 }
 

@@ -93,6 +93,7 @@ function enter(person) {
   setShown(byId("go"), true);
   setShown(byId("rooms-section"), true);
   setShown(byId("pages"), true);
+  setShown(byId("host"), person.hosts);
   setText(byId("me"), person.name);
   setShown(byId("me"), true);
   setShown(byId("leave"), true);

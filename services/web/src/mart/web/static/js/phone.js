@@ -11,6 +11,7 @@ import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { ClutchPad, GripperBar, StopButton } from "./phone/controls.js";
 import { EpisodeButton, episodeText } from "./phone/episode-button.js";
 import { keepScreenOn, vibrate, vibrationsFor } from "./phone/feedback.js";
+import { stoppedByText, stoppedHoldText } from "./phone/stop-words.js";
 import { TouchTracker } from "./phone/touch-tracker.js";
 import { Tutorial } from "./phone/tutorial.js";
 import { canTrack, XrTracker } from "./phone/xr.js";
@@ -263,7 +264,7 @@ function showLink(link) {
  */
 function holdText(live) {
   if (!live || !status) return "No connection. The arm holds still.";
-  if (status.barrier === "stopped") return "Stopped. Hold Go on to let everything go on.";
+  if (status.barrier === "stopped") return stoppedHoldText(status);
   if (tracker && !tracking) return "Tracking lost. Let the camera see more of the room.";
   return (clutch.held && letGoText(status.let_go)) || tutorial?.tip || movingText(status);
 }
@@ -280,7 +281,7 @@ function linkText(link) {
 
 /** @param {StatusChannel.Tick} tick */
 function statusText(tick) {
-  if (tick.barrier === "stopped") return tick.stopped_by ? `Stopped by ${tick.stopped_by}` : "Everything is stopped";
+  if (tick.barrier === "stopped") return stoppedByText(tick);
   if (tick.input !== "phone") return "The keyboard drives";
   const other = tick.waiting.find((one) => one.arm !== arm);
   if (other) return `Waiting for ${theArm(other.arm)}`;

@@ -6,8 +6,14 @@ import { cueText } from "./cues.js";
 import { byId, element, setShown, setText } from "./dom.js";
 import { seconds } from "./formatting.js";
 import { approachAsPage } from "./link/page-approach.js";
-import { SeatLink } from "./link/seat-link.js";
+import { LinkState, SeatLink } from "./link/seat-link.js";
 import { followRooms } from "./live.js";
+import { DrawnPicture } from "./scene/drawn-picture.js";
+import { FreeCamera } from "./scene/free-camera.js";
+import { pictureChoice } from "./scene/picture-choice.js";
+import { ToolLabels } from "./scene/tool-labels.js";
+
+/** @import { SceneView } from "./scene/scene-view.js" */
 
 const CUE_MS = 4000;
 const rooms = byId("room", HTMLSelectElement);
@@ -19,14 +25,19 @@ let known = [];
 /** What each arm of the room said last. @type {Map<string, { cue: Messages.Cue, untilMs: number }>} */
 const said = new Map();
 let watched = "";
+/** The picture of the view that is watched. @type {DrawnPicture | null} */
+let drawn = null;
 
 const link = new SeatLink({
   approach: () => approachAsPage(rooms.value, views.value),
   wantsVideo: true,
-  onState: () => showPicture(),
-  onStatus: () => {},
+  onState: onLinkState,
+  onStatus: ({ tick }) => drawn?.onTick(tick),
   onTrack: (stream) => (video.srcObject = stream),
+  onPoses: (message) => drawn?.onPoses(message),
 });
+const camera = new FreeCamera(byId("watched"), () => drawn?.look());
+const labels = new ToolLabels(byId("labels"));
 
 begin();
 
@@ -39,9 +50,19 @@ async function begin() {
     setShown(byId("choice"), false);
     return;
   }
-  rooms.addEventListener("change", () => show(known));
+  rooms.addEventListener("change", () => {
+    camera.isOn = false; // another room has another middle
+    show(known);
+  });
   views.addEventListener("change", () => show(known));
   video.addEventListener("resize", () => showPicture());
+  byId("free").addEventListener("click", () => {
+    camera.isOn = !camera.isOn;
+    showPicture();
+    if (camera.isOn) byId("watched").focus();
+  });
+  byId("nearer").addEventListener("click", () => camera.step(true));
+  byId("farther").addEventListener("click", () => camera.step(false));
   followRooms({ onRooms: show, onEvent, onEnded: () => location.reload() });
 }
 
@@ -81,33 +102,77 @@ function offer(select, options) {
   if (options.some(([name]) => name === value)) select.value = value;
 }
 
+function onLinkState() {
+  if (link.state === LinkState.LIVE) drawn?.onLive();
+  showPicture();
+}
+
+/** The view that is watched, drawn here where this device can. @param {Api.Seat} seat */
+const drawnOf = ({ arm }) =>
+  new DrawnPicture({
+    host: byId("watched"),
+    room: rooms.value,
+    arm,
+    choice: pictureChoice(),
+    send: (message) => link.send(message),
+    onShown: () => {},
+    onChange: () => showPicture(),
+    onDraw: (view) => onDraw(view, arm),
+  });
+
+/**
+ * @param {SceneView} view
+ * @param {string} arm
+ */
+function onDraw(view, arm) {
+  camera.place(view, arm);
+  labels.place(view.toolPlaces());
+}
+
 /** Every holder of a seat is a connection of its own. @param {Api.Seat | undefined} seat */
 function follow(seat) {
   const wanted = seat && hasPicture(seat) ? `${rooms.value} ${seat.arm} ${seat.epoch}` : "";
   if (wanted === watched) return;
   watched = wanted;
   video.srcObject = null;
+  drawn?.dispose();
+  drawn = seat && wanted ? drawnOf(seat) : null;
   if (wanted) link.connect();
   else link.close();
 }
 
 function showPicture() {
   const seat = chosen()?.seats.find(({ arm }) => arm === views.value);
-  const seen = watched !== "" && video.videoWidth > 0;
-  setShown(video, seen);
+  const isDrawn = drawn?.isShown ?? false;
+  const seen = watched !== "" && (isDrawn || video.videoWidth > 0);
+  setShown(video, seen && !isDrawn);
+  setShown(byId("labels"), isDrawn);
+  showCamera(isDrawn);
   setShown(byId("no-picture"), !seen);
   const waiting = link.problem || "Connecting to the scene…";
   const nobody = seat ? "Nobody looks from this side; choose another view." : "No room is open.";
   setText(byId("no-picture"), watched ? waiting : nobody);
 }
 
+/** Whoever has a picture from the server alone sees what the seat's camera sees. @param {boolean} isDrawn */
+function showCamera(isDrawn) {
+  setShown(byId("camera"), isDrawn);
+  setText(byId("free"), camera.isOn ? "Back to the seat's view" : "Free camera");
+  for (const part of ["nearer", "farther", "camera-hint"]) setShown(byId(part), camera.isOn);
+  byId("watched").tabIndex = isDrawn && camera.isOn ? 0 : -1;
+}
+
 /** @param {Api.Seat[]} seats */
 function showSeats(seats) {
-  const rows = seats.map((seat) => {
+  const arms = seats.map((seat) => {
     const words = said.get(seat.arm);
     const now = words && performance.now() < words.untilMs ? `“${cueText(words.cue)}”` : "";
-    return element("li", {}, badge(seat.arm), holderName(seat), element("span", { class: "says" }, now));
+    return { arm: seat.arm, name: holderName(seat), words: now };
   });
+  labels.tell(arms);
+  const rows = arms.map(({ arm, name, words }) =>
+    element("li", {}, badge(arm), name, element("span", { class: "says" }, words)),
+  );
   byId("seats").replaceChildren(...rows);
 }
 

@@ -108,9 +108,15 @@ function whatHappens(known) {
     return view("Driven elsewhere", "Another window of yours drives this arm.", [ACTIONS.here]);
   }
   if (link.state !== LinkState.LIVE) return offline(link);
-  if (room.barrier === "stopped") return view("Stopped", "Anybody may let everything go on: press Go on twice.");
+  if (room.barrier === "stopped") return stopped(room.stop);
   const shown = PHASES[room.episode.phase](room, seat, known);
   return seat.relieved ? { ...shown, actions: [...shown.actions, ACTIONS.back] } : shown;
+}
+
+/** @param {Api.Room["stop"]} stop */
+function stopped(stop) {
+  if (stop?.by_host) return view("Paused", `${stop.name}, the host, lets everything go on.`);
+  return view("Stopped", "Anybody may let everything go on: press Go on twice.");
 }
 
 const RECORDING = [ACTIONS.success, ACTIONS.failure, ACTIONS.discard];

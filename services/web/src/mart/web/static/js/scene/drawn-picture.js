@@ -3,9 +3,10 @@
 import { fetchScene, messageOf, statusOf } from "../api.js";
 import { setShown } from "../dom.js";
 import { DrawTimes, drawn, timeDraws } from "./draw-times.js";
+import { rememberSlow, wasSlow } from "./picture-choice.js";
 import { parsePoses } from "./pose-message.js";
 import { parseScene } from "./scene-file.js";
-import { isSoftware, webglRenderer } from "./webgl.js";
+import { isSoftware, WebGLMissing, webglRenderer } from "./webgl.js";
 
 /** @import { SceneView } from "./scene-view.js" */
 
@@ -19,21 +20,18 @@ const RETRY_MS = 3000;
 const MOST_LOST = 3;
 const LARGEST_RATIO = 1.5; // pixels for each of the page's; more costs phones more than it shows
 const BAD_REQUEST = 400; // this room cannot be drawn in a page
-const SLOW_KEY = "mart.drawsSlowly";
-const SLOW_FOR_MS = 24 * 60 * 60 * 1000;
-
-/** @typedef {"auto" | "drawn" | "video"} Choice */
 
 /**
  * @typedef {object} DrawnPictureOptions
  * @property {HTMLElement} host the picture's place
  * @property {string} room
  * @property {string} arm
- * @property {Choice} choice drawn: however slowly; video: never
+ * @property {"auto" | "drawn" | "video"} choice drawn: however slowly; video: never
  * @property {(message: StatusChannel.ToGateway) => void} send
  * @property {(tick: number, nowMs: number) => void} onShown a tick is on the canvas; five times a second at most
  * @property {() => void} onChange
- * @property {() => readonly [number, number, number] | null} commanded how far the tool was told to go meanwhile
+ * @property {() => readonly [number, number, number] | null} [commanded] how far the tool was told to go meanwhile
+ * @property {(view: SceneView) => void} [onDraw] before every draw: who looks may stand elsewhere
  */
 
 /** Draws a seat's view from poses. `why`: why there is video, in words; empty while it draws or nothing is known. */
@@ -59,14 +57,17 @@ export class DrawnPicture {
   #drawsThen = 0;
   #busy = false;
   #ended = false; // no trial any more
+  #telling;
+  #sizes;
 
   /** @param {DrawnPictureOptions} options */
   constructor(options) {
     this.#options = options;
     if (options.choice === "video") this.#end("This page was asked for video.");
     else if (options.choice === "auto" && wasSlow()) this.#end("This device draws too slowly.");
-    setInterval(() => this.#tell(), REPORT_EVERY_MS);
-    new ResizeObserver(() => this.#resize()).observe(options.host);
+    this.#telling = setInterval(() => this.#tell(), REPORT_EVERY_MS);
+    this.#sizes = new ResizeObserver(() => this.#resize());
+    this.#sizes.observe(options.host);
   }
 
   /** Whether the picture that is seen is drawn here. */
@@ -123,6 +124,22 @@ export class DrawnPicture {
     if (this.#wanted) this.#leave();
   }
 
+  /** Somebody looked elsewhere or from elsewhere. */
+  look() {
+    if (this.#poses) this.#drawSoon();
+  }
+
+  /** Nobody wants this picture any more; what this holds of the graphics card is given back. */
+  dispose() {
+    this.rest();
+    this.#ended = true;
+    clearInterval(this.#telling);
+    this.#sizes.disconnect();
+    this.#canvas?.remove();
+    this.#view?.dispose();
+    this.#canvas = this.#view = null;
+  }
+
   /** The gateway is heard, perhaps on a new connection: it is told again. */
   onLive() {
     this.#heardMs = performance.now();
@@ -136,7 +153,8 @@ export class DrawnPicture {
     try {
       const ms = await this.#prepare();
       this.#times.add(ms);
-      if (this.#options.choice === "auto" && ms > FAST_MS) this.#endSlow(ms);
+      if (this.#ended) this.dispose();
+      else if (this.#options.choice === "auto" && ms > FAST_MS) this.#endSlow(ms);
       else this.#want(true);
     } catch (error) {
       this.why = `It cannot be drawn here: ${messageOf(error)}`;
@@ -206,7 +224,8 @@ export class DrawnPicture {
     if (!view || !poses || !this.isShown) return;
     const startMs = performance.now();
     view.setPoses(poses);
-    view.showCommanded(this.#options.arm, this.#options.commanded());
+    view.showCommanded(this.#options.arm, this.#options.commanded?.() ?? null);
+    this.#options.onDraw?.(view);
     view.draw();
     this.#draws += 1;
     if (startMs - this.#measuredMs >= MEASURE_EVERY_MS) this.#measure(view, poses.tick, startMs);
@@ -254,7 +273,7 @@ export class DrawnPicture {
 
   /** @param {number} ms */
   #endSlow(ms) {
-    localStorage.setItem(SLOW_KEY, String(Date.now()));
+    rememberSlow();
     this.#end(`This device draws too slowly: ${ms.toFixed(0)} ms a picture.`);
   }
 
@@ -276,20 +295,6 @@ export class DrawnPicture {
     const ratio = Math.min(devicePixelRatio, LARGEST_RATIO);
     if (!this.#view || !width || !height) return;
     this.#view.resize(Math.round(width * ratio), Math.round(height * ratio));
-    if (this.#poses) this.#drawSoon();
+    this.look();
   }
-}
-
-/** There is no WebGL here: trying again would not help. */
-class WebGLMissing extends Error {}
-
-/** Whether this device was found too slow within a day. */
-function wasSlow() {
-  return Date.now() - Number(localStorage.getItem(SLOW_KEY) ?? 0) < SLOW_FOR_MS;
-}
-
-/** Which way is taken: `?picture=drawn` or `?picture=video` in the page's address, else what the device is good for. */
-export function pictureChoice() {
-  const asked = new URLSearchParams(location.search).get("picture");
-  return asked === "drawn" || asked === "video" ? asked : "auto";
 }

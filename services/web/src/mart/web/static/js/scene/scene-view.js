@@ -9,14 +9,21 @@ import {
   Mesh,
   PerspectiveCamera,
   Scene,
+  Vector3,
   WebGLRenderer,
 } from "../../vendor/three.mjs";
 import { CommandedTool, inWorld } from "./commanded-tool.js";
 import { ghostOf } from "./ghost.js";
 import { Materials } from "./materials.js";
+import { placedOn } from "./on-body.js";
 import { PlumbLines } from "./plumb-lines.js";
 import { QUATERNION_STEP } from "./pose-message.js";
 import { meshArrays } from "./scene-file.js";
+
+/** @import { Point } from "./orbit.js" */
+
+/** A place in the picture, of its width and height from its upper left; not seen: behind, or beside it.
+ * @typedef {{ x: number, y: number, isSeen: boolean }} ToolPlace */
 
 const ASPECT = 4 / 3;
 const FIRST_DRAWN = 0; // planes, then whatever else is transparent
@@ -35,6 +42,8 @@ export class SceneView {
   /** @type {Group[]} */
   #bodies;
   #cameras;
+  #names;
+  #plumbed;
   #plumbLines;
   #commanded;
   /** @type {Map<SceneFile.Ghost, Group>} */
@@ -53,6 +62,8 @@ export class SceneView {
     this.#renderer.outputColorSpace = LinearSRGBColorSpace;
     this.#renderer.setClearColor(0, 1);
     this.#cameras = description.cameras;
+    this.#names = description.bodies;
+    this.#plumbed = description.plumb_lines;
     this.camera = new PerspectiveCamera(45, ASPECT, description.near_m, description.far_m);
     this.#materials = new Materials(scene);
     this.#geometries = description.meshes.map((mesh) => madeGeometry(scene, mesh));
@@ -82,6 +93,42 @@ export class SceneView {
     place(this.camera, found);
     this.camera.fov = found.fov_y_deg;
     this.camera.updateProjectionMatrix();
+  }
+
+  /** Where the camera stands, metres. @returns {Point} */
+  standsAt() {
+    return this.camera.position.toArray();
+  }
+
+  /**
+   * Looks from a point to another, z up; metres.
+   * @param {Point} position
+   * @param {Point} target
+   */
+  lookFrom(position, target) {
+    this.camera.position.set(...position);
+    this.camera.up.set(0, 0, 1);
+    this.camera.lookAt(...target);
+  }
+
+  /** The middle of all tools as the newest poses have put them, metres. @returns {Point} */
+  middleOfTools() {
+    const sum = new Vector3();
+    for (const { at } of this.#tools()) sum.add(at);
+    return sum.divideScalar(Math.max(1, this.#plumbed.length)).toArray();
+  }
+
+  /** Where each arm's tool is in the picture as the camera stands now, by arm. @returns {Map<string, ToolPlace>} */
+  toolPlaces() {
+    this.camera.updateMatrixWorld();
+    return new Map(this.#tools().map(({ arm, at }) => [arm, placeOf(at.project(this.camera))]));
+  }
+
+  #tools() {
+    return this.#plumbed.map(({ body, position_m: onBody }) => ({
+      arm: (this.#names[body] ?? "").split("/")[0] ?? "",
+      at: placedOn(new Vector3(), this.#bodies[body], onBody),
+    }));
   }
 
   /**
@@ -161,6 +208,13 @@ export class SceneView {
     return mesh;
   }
 }
+
+/** What a projected point is in the picture. @type {(projected: Vector3) => ToolPlace} */
+const placeOf = ({ x, y, z }) => ({
+  x: (1 + x) / 2,
+  y: (1 - y) / 2,
+  isSeen: Math.abs(x) <= 1 && Math.abs(y) <= 1 && Math.abs(z) <= 1,
+});
 
 /**
  * MuJoCo's quaternions are wxyz, three's xyzw.

@@ -19,3 +19,6 @@ export function webglRenderer() {
   gl.getExtension("WEBGL_lose_context")?.loseContext(); // a page has sixteen
   return name;
 }
+
+/** There is no WebGL here: trying again would not help. */
+export class WebGLMissing extends Error {}

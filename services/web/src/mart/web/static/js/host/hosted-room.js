@@ -1,0 +1,85 @@
+// A room on the page of hosts: every view small, what happens now, and what a host does about it.
+
+import { element, keepChildren, setShown, setText } from "../dom.js";
+import { planText, plural } from "../formatting.js";
+import { pressedTwice } from "../pressed-twice.js";
+import * as hosting from "./host-api.js";
+import { planForm } from "./plan-form.js";
+import { roomNow } from "./room-words.js";
+import { seatView } from "./seat-view.js";
+
+/** @import { Attempt } from "../api.js" */
+/** @import { Part } from "../dom.js" */
+
+/**
+ * @param {string} name
+ * @param {Attempt} attempt
+ * @returns {Part<[Api.Room, boolean]>}
+ */
+export function hostedRoom(name, attempt) {
+  const title = element("h2");
+  const now = element("p", { class: "next figures" });
+  const counted = element("p", { class: "soft figures" });
+  const views = element("ul", { class: "views", "aria-label": `Seats of ${name}` });
+  const actions = roomActions(name, attempt);
+  const plan = planForm(name, attempt);
+  const node = element(
+    "article",
+    { class: "hosted-room card" },
+    element("header", {}, title, element("span", { class: "soft" }, name)),
+    now,
+    views,
+    element("div", { class: "host-actions" }, ...Object.values(actions)),
+    counted,
+    plan.node,
+  );
+  /** @type {Map<string, Part<[Api.Seat, Api.Room]>>} */
+  const seats = new Map();
+
+  /**
+   * @param {Api.Room} room
+   * @param {boolean} opensRooms
+   */
+  function update(room, opensRooms) {
+    setText(title, room.title);
+    setText(now, roomNow(room));
+    node.classList.toggle("paused", room.stop !== null);
+    setText(counted, countedText(room));
+    plan.update(room);
+    keepChildren(views, room.seats.map(({ arm }) => arm), seats, (arm) => seatView(name, arm, attempt));
+    for (const seat of room.seats) seats.get(seat.arm)?.update(seat, room);
+    const recording = room.episode.phase === "recording";
+    setShown(actions.pause, !room.stop?.by_host);
+    setShown(actions.goOn, room.stop !== null);
+    for (const action of [actions.success, actions.failure, actions.discard]) setShown(action, recording);
+    setShown(actions.reset, room.episode.phase === "practice");
+    setShown(actions.close, opensRooms && !recording && room.episode.phase !== "countdown");
+  }
+
+  return { node, update };
+}
+
+/**
+ * @param {string} room
+ * @param {Attempt} attempt
+ */
+function roomActions(room, attempt) {
+  const on = { click: () => attempt(() => hosting.pauseRoom(room)) };
+  /** @type {(text: string, action: () => unknown, kind?: string) => HTMLButtonElement} */
+  const twice = (text, action, kind = "") => pressedTwice({ text, about: room, kind, onSure: () => attempt(action) });
+  return {
+    pause: element("button", { type: "button", "aria-label": `Pause: ${room}`, on }, "Pause"),
+    goOn: twice("Go on", () => hosting.endPause(room), "primary"),
+    success: twice("End: success", () => hosting.endForAll(room, "success")),
+    failure: twice("End: failed", () => hosting.endForAll(room, "failure")),
+    discard: twice("End: discard", () => hosting.endForAll(room, "discard")),
+    reset: twice("Put everything back", () => hosting.endForAll(room, "reset")),
+    close: twice("Close room", () => hosting.closeWithPeople(room), "quiet"),
+  };
+}
+
+/** @param {Api.Room} room */
+function countedText({ plan, episodes_saved: saved, episodes_good: good }) {
+  const counted = saved === 0 ? "No episode yet" : `${plural(saved, "episode")} saved, ${good} good`;
+  return plan ? `${planText(plan)}. ${counted}.` : `${counted}.`;
+}
