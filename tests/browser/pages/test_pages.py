@@ -6,7 +6,8 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mart.platform.run.running import Platform
-from tests.browser.pages.visits import INSPECT, LOOKS, SIZES, driving, visit
+from tests.browser.pages.legibility import faults
+from tests.browser.pages.visits import LOOKS, SIZES, driving, visit
 
 FOCUSED = """() => {
   const at = document.activeElement;
@@ -260,5 +261,5 @@ def test_a_page_that_does_not_exist_leads_home(browser: Browser, platform: Platf
         assert answer is not None
         assert answer.status == 404
         expect(ana.page.get_by_role("link", name="Go to the lobby")).to_be_visible()
-        assert ana.page.evaluate(INSPECT) == []
+        assert faults(ana.page) == []
         assert ana.page.evaluate("() => getComputedStyle(document.querySelector('main')).display") == "grid"
