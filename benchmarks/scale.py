@@ -15,12 +15,13 @@ from pathlib import Path
 
 import numpy as np
 from report import Bar, report
-from support.processor_time import cores_taken
+from support.service_processes import cores_taken
 from support.watchers import watching
 
 from mart.platform.collect.emulated_users import EmulatedUsers
 from mart.platform.collect.web_client import WebClient
 from mart.platform.run.plan import PlatformOptions
+from mart.platform.run.room_manager import opening_rooms
 from mart.platform.run.running import Platform, running_platform
 from mart.runtime.ports import free_port
 from mart.sim.world.world import World
@@ -47,7 +48,7 @@ def platform_of_one_room() -> Iterator[Platform]:
             task=TASK,
             seed=0,
         )
-        with running_platform(options) as platform:
+        with running_platform(options) as platform, opening_rooms(platform):
             yield platform
 
 
