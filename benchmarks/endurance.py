@@ -1,9 +1,9 @@
 """Thirty minutes of three operators who come back again and again, and two spectators: nothing grows.
 
 Each operator is an emulated phone and a page in Chromium; every minute another page is loaded anew. Two more peers
-watch, one by video and one by poses. Once a minute memory, threads and open files (sockets among them) of every service are
-looked at, and what people's pages say of the delay. What counts is the last third of the time beside the second: in the
-first, services fill what they keep.
+watch, one by video and one by poses. Once a minute memory, threads and open files (sockets among them) of every service
+are looked at, and what people's pages say of the delay. What counts is the last third of the time beside the second: in
+the first, services fill what they keep.
 
     python benchmarks/endurance.py [MINUTES]
 """
