@@ -9,6 +9,7 @@ export {
   LinearFilter,
   LinearMipmapNearestFilter,
   LinearSRGBColorSpace,
+  Matrix4,
   Mesh,
   NoColorSpace,
   PerspectiveCamera,
