@@ -1,8 +1,10 @@
 // What the pages use of three.js: tools/page-libraries bundles it, with what it needs, into static/vendor/three.mjs.
 
 export {
+  BoxGeometry,
   BufferAttribute,
   BufferGeometry,
+  CanvasTexture,
   ColorManagement,
   DataTexture,
   Group,
@@ -11,8 +13,10 @@ export {
   LinearSRGBColorSpace,
   Matrix4,
   Mesh,
+  MeshBasicMaterial,
   NoColorSpace,
   PerspectiveCamera,
+  PlaneGeometry,
   RepeatWrapping,
   Scene,
   ShaderMaterial,

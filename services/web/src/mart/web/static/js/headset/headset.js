@@ -1,12 +1,14 @@
 // A VR headset at the operator's page: the scene around the person, and the controllers as the hand that drives.
 
 import { setShown } from "../dom.js";
+import { boardLines } from "./board-text.js";
 import { ControllerHand } from "./controller-hand.js";
 import { pulse, readControllers } from "./xr-controllers.js";
 
 /** @import { Command } from "../drive/keys.js" */
 /** @import { KeyboardMouseInput } from "../drive/keyboard-mouse-input.js" */
 /** @import { DrawnPicture } from "../scene/drawn-picture.js" */
+/** @import { ImmersiveView } from "./immersive-view.js" */
 
 const LET_GO_MS = 500; // so long an open clutch is told after the headset is taken off: frames may be lost
 
@@ -36,6 +38,8 @@ export class Headset {
   #isThere = false;
   /** @type {XRSession | null} */
   #session = null;
+  /** @type {ImmersiveView | null} */
+  #view = null;
 
   /** @param {HeadsetOptions} options */
   constructor(options) {
@@ -73,7 +77,8 @@ export class Headset {
       if (!navigator.xr) throw new Error("This browser has no WebXR.");
       session = await navigator.xr.requestSession("immersive-vr", { optionalFeatures: ["local-floor"] });
       this.#begin(session);
-      await picture.immerse(session, {
+      this.#view = await picture.immerse(session, {
+        colour: getComputedStyle(document.body).getPropertyValue("--arm"),
         onFrame: (frame, space) => this.#onFrame(frame, space),
         onReset: () => this.#hand.letGo(),
       });
@@ -93,7 +98,7 @@ export class Headset {
 
   #end() {
     const { input } = this.#options;
-    this.#session = null;
+    this.#session = this.#view = null;
     this.#hand.lose();
     setTimeout(() => {
       if (!this.#session) input.headset = null;
@@ -107,6 +112,8 @@ export class Headset {
   #onFrame(frame, space) {
     if (frame.session.visibilityState !== "visible") return; // the system's menu has the controllers
     const { input, onCommand } = this.#options;
-    this.#hand.see(readControllers(frame, space), input.gripper, performance.now()).forEach(onCommand);
+    const controllers = readControllers(frame, space);
+    this.#hand.see(controllers, input.gripper, performance.now()).forEach(onCommand);
+    this.#view?.show(controllers, this.#hand.side, boardLines(this.#hand.wheel));
   }
 }

@@ -1,25 +1,32 @@
 // Draws a scene into a headset: the person stands where the seat's camera hangs, on the scene's floor.
 
 import { Group, Matrix4, PerspectiveCamera, Vector3 } from "../../vendor/three.mjs";
+import { Board } from "./board.js";
+import { HandMarks } from "./hand-marks.js";
 import { levelAxes, standOf } from "./stand.js";
 
 /** @import { SceneView } from "../scene/scene-view.js" */
+/** @import { Controller, Side } from "./controller-hand.js" */
 
 const NEAR_M = 0.05; // an arm's own gripper may be that near to the eyes
 const FAR_M = 30;
+const BEYOND = 0x2b3038; // where the floor ends
 
 /**
  * @typedef {object} ImmersiveOptions
+ * @property {string} colour of the arm
  * @property {(frame: XRFrame, space: XRReferenceSpace) => void} onFrame with every picture of the headset; the space is
  * level: x right, y up, z towards the person who stands at its origin and looks to the scene
  * @property {() => void} onDraw draws into what is given to draw to
  * @property {() => void} onReset the headset has put its spaces elsewhere: poses from before mean nothing
  */
 
-/** One session of a headset. `camera`: what to draw through; `rig`: whatever hangs there goes along with the person. */
+/** One session of a headset. `camera`: what to draw through. */
 export class ImmersiveView {
   camera = new PerspectiveCamera(90, 1, NEAR_M, FAR_M);
-  rig = new Group();
+  #rig = new Group(); // what hangs there is seen from the person: x right, y up, z towards them
+  #board = new Board(this.#rig);
+  #marks;
   #view;
   #renderer;
   #options;
@@ -59,11 +66,24 @@ export class ImmersiveView {
     this.#base = base;
     this.#floors = floors;
     this.#eyesM = view.camera.position.z - floorM;
-    this.rig.add(this.camera);
+    this.#marks = new HandMarks(this.#rig, options.colour);
+    this.#rig.add(this.camera);
     this.#placeRig(floorM);
-    scene.add(this.rig);
+    renderer.setClearColor(BEYOND, 1);
+    scene.add(this.#rig);
     base.addEventListener("reset", () => this.#reset());
     renderer.setAnimationLoop((_, frame) => frame && this.#draw(frame));
+  }
+
+  /**
+   * Shows the person their hands, and what goes on.
+   * @param {Controller[]} controllers
+   * @param {Side} leads
+   * @param {string[]} lines
+   */
+  show(controllers, leads, lines) {
+    this.#marks.show(controllers, leads);
+    this.#board.show(lines);
   }
 
   /** Leaves the headset, if that was not done yet. */
@@ -75,7 +95,10 @@ export class ImmersiveView {
   stop() {
     this.#renderer.setAnimationLoop(null);
     this.#renderer.xr.enabled = false;
-    this.rig.removeFromParent();
+    this.#renderer.setClearColor(0, 1);
+    this.#rig.removeFromParent();
+    this.#board.dispose();
+    this.#marks.dispose();
   }
 
   /** @param {number} floorM */
@@ -84,8 +107,8 @@ export class ImmersiveView {
     camera.updateMatrixWorld();
     const { right, up, towards } = levelAxes(new Vector3().setFromMatrixColumn(camera.matrixWorld, 0).toArray());
     const axes = new Matrix4().makeBasis(new Vector3(...right), new Vector3(...up), new Vector3(...towards));
-    this.rig.quaternion.setFromRotationMatrix(axes);
-    this.rig.position.set(camera.position.x, camera.position.y, floorM);
+    this.#rig.quaternion.setFromRotationMatrix(axes);
+    this.#rig.position.set(camera.position.x, camera.position.y, floorM);
   }
 
   #reset() {
