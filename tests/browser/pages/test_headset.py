@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -24,6 +23,7 @@ IWER = Path("node_modules/iwer/build/iwer.min.js")
 SMALL = {"width": 320, "height": 240}  # this is drawn without a graphics card, twice
 RIGHT = "headset.controllers.right"
 HAND_M = np.array((-0.08, 0.08, -0.06))  # right, up, towards the person: along the table's edge, and up
+SLOW_PICTURE = "GPU stall due to ReadPixels"  # of a screenshot
 STEPS = 8
 TRIES = 20
 
@@ -61,7 +61,7 @@ def wearing(browser: Browser, platform: Platform) -> Iterator[Page]:
             page.evaluate("document.querySelector('#headset').click()")
             expect(page.locator("#input")).to_have_text("Keyboard and mouse, headset")
             yield page
-        assert at.noise == []
+        assert [text for text in at.noise if SLOW_PICTURE not in text] == []
 
 
 def put(page: Page, position_m: NDArray[np.float64]) -> None:
@@ -99,38 +99,33 @@ def test_the_arm_goes_where_the_controller_goes(browser: Browser, platform: Plat
         np.testing.assert_allclose(level_axes(world) @ moved_m, HAND_M, atol=0.015)
         press(page, "trigger", 1)
         expect(page.locator("#gripper")).to_have_text("Open gripper")
-        both_eyes(page)
+        the_system_takes_the_controllers(page)
+        both_eyes_see_the_scene(page)
         page.evaluate("headset.activeSession.end()")
         expect(page.locator("#input")).to_have_text("Keyboard and mouse")
         expect(page.locator("#headset")).to_be_visible()
-        expect(page.locator("#clutch")).not_to_have_text("Moving")
 
 
-def both_eyes(page: Page) -> None:
-    """Each eye sees the scene, from its own place; left to be looked at."""
+def the_system_takes_the_controllers(page: Page) -> None:
+    """Its menu is over the scene: the arm stops, also when the menu is gone and the squeeze still held."""
+    page.evaluate("headset.updateVisibilityState('visible-blurred')")
+    expect(page.locator("#clutch")).not_to_have_text("Moving")
+    page.evaluate("headset.updateVisibilityState('visible')")
+    page.wait_for_timeout(500)
+    assert page.locator("#clutch").text_content() != "Moving"
+
+
+def both_eyes_see_the_scene(page: Page) -> None:
+    """Each from its own place; left to be looked at."""
+    page.evaluate("headset.draws = true")
+    page.wait_for_timeout(500)
     SCREENSHOTS.mkdir(parents=True, exist_ok=True)
     taken = SCREENSHOTS / "headset.png"
     page.screenshot(path=taken)
+    page.evaluate("headset.draws = false")
     seen = cv2.imread(str(taken))
     assert seen is not None
-    left, right = np.split(seen[:, : seen.shape[1] // 2 * 2].astype(int), 2, axis=1)
+    left, right = np.split(seen.astype(int), 2, axis=1)
     assert left.std() > 20
     assert right.std() > 20
     assert 0.5 < np.abs(left - right).mean() < 40
-
-
-def test_what_the_system_shows_over_the_scene_takes_the_hand_away(
-    browser: Browser, platform: Platform
-) -> None:
-    with wearing(browser, platform) as page:
-        deadline_s = time.monotonic() + 60
-        while time.monotonic() < deadline_s and page.locator("#clutch").text_content() != "Moving":
-            press(page, "squeeze", 0)
-            page.wait_for_timeout(300)
-            press(page, "squeeze", 1)
-            page.wait_for_timeout(700)
-        page.evaluate("headset.updateVisibilityState('visible-blurred')")
-        expect(page.locator("#clutch")).not_to_have_text("Moving")
-        page.evaluate("headset.updateVisibilityState('visible')")
-        page.wait_for_timeout(500)
-        assert page.locator("#clutch").text_content() != "Moving"  # the squeeze is held all the time

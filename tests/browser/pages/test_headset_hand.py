@@ -23,7 +23,7 @@ HAND = """({ ControllerHand }, steps) => {
     return { commands, side: hand.side, ...hand.reading(nowMs) };
   });
 }"""
-IDLE = {"seen": [{}]}
+IDLE: dict[str, Any] = {"seen": [{}]}
 HELD = {"seen": [{"squeeze": 1}]}
 
 
@@ -40,7 +40,7 @@ def test_a_squeeze_leads_from_when_it_is_pressed_until_it_is_let_go(run: Run) ->
 
 
 def test_a_squeeze_that_was_held_before_the_controller_came_leads_nothing(run: Run) -> None:
-    gone = {"seen": []}
+    gone: dict[str, Any] = {"seen": []}
     told = led(run, HELD, HELD, IDLE, HELD, gone, HELD, {"call": "lose"}, HELD, IDLE, HELD)
     assert [one["engaged"] for one in told] == [
         False, False, False, True, False, False, False, False, False, True
