@@ -1,5 +1,6 @@
 // A VR headset at the operator's page: the scene around the person, and the controllers as the hand that drives.
 
+import { messageOf } from "../api.js";
 import { setShown } from "../dom.js";
 import { boardLines } from "./board-text.js";
 import { ControllerHand } from "./controller-hand.js";
@@ -84,7 +85,7 @@ export class Headset {
       });
       input.headset = this.#hand;
     } catch (error) {
-      onFailure(error);
+      onFailure(new Error(`The headset cannot show the scene: ${messageOf(error)}`));
       await session?.end().catch(() => {}); // it may have ended by itself
     }
   }
