@@ -71,7 +71,7 @@ const drawn = new DrawnPicture({
   onChange: () => render(),
   commanded: () => input.commandedSince(status),
 });
-const headset = new Headset({ button: byId("headset"), picture: drawn, input, onCommand: onKey, onFailure: fail });
+const headset = new Headset({ room: roomName, arm: armId, picture: drawn, input, onCommand: onKey, onFailure: fail });
 const stop = emergencyStop({
   label: roomName,
   id: "stop",
@@ -199,7 +199,7 @@ function render() {
   if (room) showRoom({ ...room, stale: !told });
   showPicture(seat, status, isLive(), drawn.isShown);
   showHolder(mine, status, link.state, confirm.pending);
-  headset.update(mine && drives());
+  headset.update(mine && drives(), room);
 }
 
 /** @param {Api.Room} shown */

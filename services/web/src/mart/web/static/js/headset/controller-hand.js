@@ -36,6 +36,7 @@ const OPENED = 0.3;
 const STOP_HOLD_MS = 500;
 const STALE_MS = 150; // a headset draws 72 to 120 times a second
 const NEARLY = 0.1;
+const SWITCHED_MS = 50; // frames of the other controller's place go ahead of its press, or it would look like a jump
 
 /** One hand: of either controller, the one whose squeeze was pressed while no other was held. */
 export class ControllerHand {
@@ -43,6 +44,8 @@ export class ControllerHand {
   /** @type {Side} */
   side = "right";
   #engaged = false;
+  /** From when on the controller that is held leads. */
+  #leadsMs = -Infinity;
   /** Whether each squeeze is held; of one that has just come it is not known how long. @type {Map<Side, boolean>} */
   #squeezed = new Map();
   #position = /** @type {Vector} */ ([0, 0, 0]);
@@ -62,7 +65,7 @@ export class ControllerHand {
    * @returns {Command[]}
    */
   see(controllers, gripper, nowMs) {
-    this.#squeeze(controllers);
+    this.#squeeze(controllers, nowMs);
     const mine = controllers.find(({ side }) => side === this.side);
     if (mine?.pose) {
       this.#position = mine.pose.position;
@@ -84,7 +87,8 @@ export class ControllerHand {
   reading(nowMs) {
     const tracking = nowMs - this.#seenMs < STALE_MS;
     const [position, quaternionWxyz] = [this.#position, this.#quaternionWxyz];
-    return { position, quaternionWxyz, tracking, engaged: this.#engaged, gripper: this.#gripper };
+    const engaged = this.#engaged && nowMs >= this.#leadsMs;
+    return { position, quaternionWxyz, tracking, engaged, gripper: this.#gripper };
   }
 
   /** Opens the clutch, until a squeeze is pressed anew. */
@@ -102,8 +106,11 @@ export class ControllerHand {
     this.wheel.close();
   }
 
-  /** @param {Controller[]} controllers */
-  #squeeze(controllers) {
+  /**
+   * @param {Controller[]} controllers
+   * @param {number} nowMs
+   */
+  #squeeze(controllers, nowMs) {
     const before = this.#squeezed;
     this.#squeezed = new Map(
       controllers.map(({ side, squeeze }) => [side, squeeze > (before.get(side) ? OPENED : SQUEEZED)]),
@@ -111,6 +118,7 @@ export class ControllerHand {
     if (!this.#squeezed.get(this.side)) this.letGo();
     for (const [side, held] of this.#squeezed) {
       if (this.#engaged || !held || before.get(side) !== false) continue;
+      this.#leadsMs = side === this.side ? nowMs : nowMs + SWITCHED_MS;
       this.side = side;
       this.#engaged = true;
       this.#follows = false;

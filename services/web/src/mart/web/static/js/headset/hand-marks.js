@@ -8,19 +8,14 @@ import { BoxGeometry, Mesh, MeshBasicMaterial } from "../../vendor/three.mjs";
 const SIZE_M = /** @type {const} */ ([0.03, 0.03, 0.12]);
 const IDLE = "#9a9a9a";
 
-/** Marks the controllers, in the space that `rig` is: the one that leads in the arm's colour. */
+/** Marks the controllers, in the space that `rig` is: each that leads in its arm's colour. */
 export class HandMarks {
   #geometry = new BoxGeometry(...SIZE_M);
-  #colour;
   /** @type {Map<Side, Mesh<BoxGeometry, MeshBasicMaterial>>} */
   #marks;
 
-  /**
-   * @param {Group} rig
-   * @param {string} colour
-   */
-  constructor(rig, colour) {
-    this.#colour = colour;
+  /** @param {Group} rig */
+  constructor(rig) {
     const made = () => new Mesh(this.#geometry, new MeshBasicMaterial({ color: IDLE }));
     this.#marks = new Map([
       ["left", made()],
@@ -31,9 +26,9 @@ export class HandMarks {
 
   /**
    * @param {Controller[]} controllers
-   * @param {Side} leads
+   * @param {Map<Side, string>} leading colours
    */
-  show(controllers, leads) {
+  show(controllers, leading) {
     for (const [side, mark] of this.#marks) {
       const pose = controllers.find((one) => one.side === side)?.pose;
       mark.visible = Boolean(pose);
@@ -41,7 +36,7 @@ export class HandMarks {
       const [w, x, y, z] = pose.quaternionWxyz;
       mark.position.set(...pose.position);
       mark.quaternion.set(x, y, z, w);
-      mark.material.color.set(side === leads ? this.#colour : IDLE);
+      mark.material.color.set(leading.get(side) ?? IDLE);
     }
   }
 

@@ -14,7 +14,6 @@ const BEYOND = 0x2b3038; // where the floor ends
 
 /**
  * @typedef {object} ImmersiveOptions
- * @property {string} colour of the arm
  * @property {(frame: XRFrame, space: XRReferenceSpace) => void} onFrame with every picture of the headset; the space is
  * level: x right, y up, z towards the person who stands at its origin and looks to the scene
  * @property {() => void} onDraw draws into what is given to draw to
@@ -26,7 +25,7 @@ export class ImmersiveView {
   camera = new PerspectiveCamera(90, 1, NEAR_M, FAR_M);
   #rig = new Group(); // what hangs there is seen from the person: x right, y up, z towards them
   #board = new Board(this.#rig);
-  #marks;
+  #marks = new HandMarks(this.#rig);
   #view;
   #renderer;
   #options;
@@ -66,7 +65,6 @@ export class ImmersiveView {
     this.#base = base;
     this.#floors = floors;
     this.#eyesM = view.camera.position.z - floorM;
-    this.#marks = new HandMarks(this.#rig, options.colour);
     this.#rig.add(this.camera);
     this.#placeRig(floorM);
     renderer.setClearColor(BEYOND, 1);
@@ -78,12 +76,17 @@ export class ImmersiveView {
   /**
    * Shows the person their hands, and what goes on.
    * @param {Controller[]} controllers
-   * @param {Side} leads
+   * @param {Map<Side, string>} leading the colour of the arm that each leads
    * @param {string[]} lines
    */
-  show(controllers, leads, lines) {
-    this.#marks.show(controllers, leads);
+  show(controllers, leading, lines) {
+    this.#marks.show(controllers, leading);
     this.#board.show(lines);
+  }
+
+  /** Where the camera of an arm's operator hangs, in the world. @param {string} arm */
+  cameraOf(arm) {
+    return this.#view.cameraPlace(arm);
   }
 
   /** Leaves the headset, if that was not done yet. */

@@ -1,5 +1,7 @@
 // Where the person who wears a headset stands in the scene. Pure.
 
+import { multiply, rotate } from "../drive/quaternion.js";
+
 /** @import { Quaternion, Vector } from "../drive/quaternion.js" */
 
 /** @typedef {{ position: Vector, quaternionWxyz: Quaternion }} Place */
@@ -37,3 +39,44 @@ export function levelAxes([x, y]) {
   const [rightX, rightY] = [x / length, y / length];
   return { right: [rightX, rightY, 0], up: [0, 0, 1], towards: [rightY, -rightX, 0] };
 }
+
+/**
+ * The rotation from the level axes of one camera to those of another, both wxyz in the world.
+ * @param {Quaternion} from
+ * @param {Quaternion} to
+ * @returns {Quaternion}
+ */
+export function turnBetween(from, to) {
+  const { right } = levelAxes(rightOf(from));
+  const other = levelAxes(rightOf(to));
+  const angle = Math.atan2(-dot(right, other.towards), dot(right, other.right));
+  return [Math.cos(angle / 2), 0, Math.sin(angle / 2), 0];
+}
+
+/**
+ * A place, seen from axes that are turned.
+ * @template {Place} T
+ * @param {T} place
+ * @param {Quaternion} turn
+ * @returns {T}
+ */
+export const turned = (place, turn) => ({
+  ...place,
+  position: rotate(turn, place.position),
+  quaternionWxyz: multiply(turn, place.quaternionWxyz),
+});
+
+/**
+ * Whether a place is to the right of whoever stands at a camera.
+ * @param {Place} camera
+ * @param {Vector} place
+ */
+export function isRight({ position: [x, y], quaternionWxyz }, [otherX, otherY]) {
+  return dot(levelAxes(rightOf(quaternionWxyz)).right, [otherX - x, otherY - y, 0]) > 0;
+}
+
+/** A camera's x axis in the world. @type {(camera: Quaternion) => Vector} */
+const rightOf = (camera) => rotate(camera, [1, 0, 0]);
+
+/** @type {(a: Vector, b: Vector) => number} */
+const dot = ([ax, ay, az], [bx, by, bz]) => ax * bx + ay * by + az * bz;

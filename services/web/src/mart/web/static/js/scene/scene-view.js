@@ -20,6 +20,7 @@ import { PlumbLines } from "./plumb-lines.js";
 import { QUATERNION_STEP } from "./pose-message.js";
 import { meshArrays } from "./scene-file.js";
 
+/** @import { Place } from "../headset/stand.js" */
 /** @import { Point } from "./orbit.js" */
 
 /** A place in the picture, of its width and height from its upper left; not seen: behind, or beside it.
@@ -100,6 +101,19 @@ export class SceneView {
     place(this.camera, found);
     this.camera.fov = found.fov_y_deg;
     this.camera.updateProjectionMatrix();
+  }
+
+  /**
+   * Where a camera of the scene hangs, metres and wxyz; null where there is none of that name.
+   * @param {string} name
+   * @returns {Place | null}
+   */
+  cameraPlace(name) {
+    const found = this.#cameras.find((one) => one.name === name);
+    if (!found) return null;
+    const [x = 0, y = 0, z = 0] = found.position_m;
+    const [qw = 1, qx = 0, qy = 0, qz = 0] = found.quaternion;
+    return { position: [x, y, z], quaternionWxyz: [qw, qx, qy, qz] };
   }
 
   /** Where the camera stands, metres. @returns {Point} */
