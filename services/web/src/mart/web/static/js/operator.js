@@ -10,8 +10,10 @@ import { isCue, isOffered } from "./hud/command-kinds.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
 import { DisplayedTicks } from "./hud/displayed-ticks.js";
-import { InputPanel } from "./hud/input-panel.js";
+import { Headset } from "./headset/headset.js";
 import { showHealth } from "./hud/health-figure.js";
+import { showHolder } from "./hud/holder.js";
+import { InputPanel } from "./hud/input-panel.js";
 import { showNotice } from "./hud/notice.js";
 import { showPartners } from "./hud/partners.js";
 import { showPicture } from "./hud/picture.js";
@@ -47,7 +49,7 @@ let beganMs = -Infinity; // when the gateway first told of this holder's seat
 const displayed = new DisplayedTicks();
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
-const panel = new InputPanel(roomName, armId, (error) => showNotice(api.messageOf(error)));
+const panel = new InputPanel(roomName, armId, fail);
 const input = new KeyboardMouseInput(byId("picture"), (command, hasMoved) => {
   if (!hasMoved || room?.episode.phase !== "recording") onKey(command); // a key that has just moved is still meant to
 }, () => confirm.withdraw());
@@ -69,6 +71,7 @@ const drawn = new DrawnPicture({
   onChange: () => render(),
   commanded: () => input.commandedSince(status),
 });
+const headset = new Headset({ room: roomName, arm: armId, picture: drawn, input, onCommand: onKey, onFailure: fail });
 const stop = emergencyStop({
   label: roomName,
   id: "stop",
@@ -168,6 +171,7 @@ function onShown(tick, nowMs) {
 function onStatus(tick) {
   drawn.onTick(tick.tick);
   input.adoptGripper(tick, status);
+  headset.onStatus(tick, status);
   if (status === null) beganMs = performance.now();
   status = tick;
   if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
@@ -194,16 +198,8 @@ function render() {
   cues.update(room, mine && drives());
   if (room) showRoom({ ...room, stale: !told });
   showPicture(seat, status, isLive(), drawn.isShown);
-  showHolder(mine);
-}
-
-/** @param {boolean} mine */
-function showHolder(mine) {
-  document.body.classList.toggle("engaged", status?.engaged ?? false);
-  document.body.classList.toggle("can-drive", mine);
-  setShown(byId("hand"), mine && link.state !== LinkState.REPLACED);
-  const leave = mine ? "Leave" : "Lobby";
-  setText(byId("leave"), confirm.pending === "leave" ? "Press Q again" : leave);
+  showHolder(mine, status, link.state, confirm.pending);
+  headset.update(mine && drives(), room);
 }
 
 /** @param {Api.Room} shown */
@@ -289,11 +285,16 @@ function perform(command) {
  */
 const isPageCommand = (command) => command in ACTIONS;
 
+/** @param {unknown} error */
+function fail(error) {
+  showNotice(api.messageOf(error));
+}
+
 /** @param {() => unknown} action */
 async function attempt(action) {
   try {
     await action();
   } catch (error) {
-    showNotice(api.messageOf(error));
+    fail(error);
   }
 }
