@@ -9,6 +9,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from mart.platform.collect.browser import ARGUMENTS, chromium_path
 from mart.platform.run.running import Platform
+from tests.browser.pages.conftest import Run
 from tests.browser.pages.visits import Visit, driving, visit
 
 # What each connection of the page hears and sends; and whether a microphone was ever asked for.
@@ -92,3 +93,76 @@ def test_who_holds_v_is_heard_by_a_spectator_who_has_no_such_key(
             page.wait_for_timeout(300)
             assert stat(page, SENT) == sent
             assert page.evaluate("() => window.asked") == 1
+
+
+@pytest.mark.parametrize(("size", "scheme"), [("narrow", "dark"), ("wide", "light")])
+def test_a_host_talks_with_who_drives(
+    talking_browser: Browser, platform: Platform, size: str, scheme: str
+) -> None:
+    with visit(talking_browser, platform) as ana, visit(talking_browser, platform, size, scheme) as hanna:
+        for one in (ana, hanna):
+            one.page.add_init_script(WATCH)
+        with driving(ana) as page:
+            become_host(hanna)
+            assert (
+                hanna.page.evaluate("() => window.connections.length") == 0
+            )  # before the host wants to hear
+            hanna.page.get_by_role("button", name="Talk and listen").click()
+            talk = hanna.page.get_by_role("button", name="Hold to talk")
+            expect(talk).to_be_visible()
+            talk.hover()
+            hanna.page.mouse.down()
+            expect(page.get_by_text("Hanna, host, speaks")).to_be_visible()
+            expect(hanna.page.get_by_text("You speak")).to_be_visible()
+            wait_heard(page, 0.0001)
+            hanna.is_fine(f"voices-host-{size}-{scheme}")
+            hanna.page.mouse.up()
+            expect(page.get_by_text("Hanna, host, speaks")).to_be_hidden()
+            page.keyboard.down("v")
+            expect(hanna.page.get_by_text("Ana speaks")).to_be_visible()
+            wait_heard(hanna.page, 0.0001)
+            page.evaluate(
+                "() => dispatchEvent(new Event('blur'))"
+            )  # whoever leaves the page does not talk on
+            expect(hanna.page.get_by_text("Ana speaks")).to_be_hidden()
+            hanna.page.get_by_role("button", name="Mute voices").click()
+            expect(hanna.page.get_by_role("button", name="Mute voices")).to_have_attribute(
+                "aria-pressed", "true"
+            )
+            hanna.page.get_by_role("button", name="Stop listening").click()
+            expect(talk).to_be_hidden()
+
+
+def become_host(hanna: Visit) -> None:
+    hanna.page.goto(f"{hanna.platform.url}host")
+    hanna.page.get_by_label("Host code").fill(hanna.platform.host_code_path.read_text().strip())
+    hanna.page.get_by_label("Your name").fill("Hanna")
+    hanna.page.get_by_role("button", name="Host", exact=True).click()
+    expect(hanna.page.locator(".view").first).to_contain_text("Ana")
+
+
+def test_without_a_microphone_one_is_told_what_to_do(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform, "narrow", "light") as ana, driving(ana) as page:
+        talk = page.get_by_role("button", name="Hold to talk")
+        talk.scroll_into_view_if_needed()
+        talk.focus()
+        page.keyboard.down("Enter")
+        expect(page.get_by_text("then press again.")).to_be_visible()
+        expect(talk).to_have_attribute("aria-pressed", "false")
+        page.keyboard.up("Enter")
+        ana.is_fine("voices-without-a-microphone")
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("NotAllowedError", "Allow it beside the address"),
+        ("NotFoundError", "No microphone was found."),
+        ("NotReadableError", "another program may have it"),
+        ("SecurityError", "https"),
+        ("AbortError", "The microphone cannot be used: why"),
+    ],
+)
+def test_every_failure_of_a_microphone_has_its_mend(run: Run, name: str, said: str) -> None:
+    script = "({ microphoneProblem }, name) => microphoneProblem(new DOMException('why', name))"
+    assert said in run("voice/microphone.js", script, name)

@@ -46,8 +46,8 @@ class Visit:
     def is_fine(self, what: str) -> None:
         SCREENSHOTS.mkdir(parents=True, exist_ok=True)
         self.page.screenshot(path=SCREENSHOTS / f"{what}.png", full_page=True)
-        assert self.page.evaluate(INSPECT) == []
-        assert self.noise == []
+        faults = self.page.evaluate(INSPECT) + self.noise
+        assert faults == [], faults
 
 
 @contextlib.contextmanager

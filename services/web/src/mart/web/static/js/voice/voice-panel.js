@@ -33,7 +33,7 @@ export class VoicePanel {
   #isHeard = true;
   #silence = 0;
   #talk = element("button", { type: "button", class: "talk", "aria-pressed": "false" });
-  #mute = element("button", { type: "button", class: "quiet", on: { click: () => this.#toggleMute() } });
+  #mute = element("button", { type: "button", "aria-label": "Mute voices" }, "Mute");
   #list = element("ul", { class: "speakers", "aria-label": "Who speaks" });
   #message = element("p", { class: "detail", role: "status" });
 
@@ -49,6 +49,7 @@ export class VoicePanel {
     const buttons = element("div", { class: "buttons" }, this.#talk, this.#mute);
     const parts = [this.#list, buttons, this.#message];
     this.node = element("section", { class: "voice glass", "aria-label": "Voices" }, ...parts);
+    this.#mute.addEventListener("click", () => this.#toggleMute());
     holdToTalk(this.#talk, (held) => this.#hold(held));
     this.update();
   }
@@ -74,9 +75,7 @@ export class VoicePanel {
   update() {
     setShown(this.#talk, this.#link.maySpeak);
     this.#talk.setAttribute("aria-pressed", String(this.#doing === "talking"));
-    const { muted } = this.#loudspeaker;
-    setText(this.#mute, muted ? "Hear voices" : "Mute voices");
-    this.#mute.setAttribute("aria-pressed", String(muted));
+    this.#mute.setAttribute("aria-pressed", String(this.#loudspeaker.muted));
     setText(this.#message, this.#text());
     setShown(this.#message, this.#message.textContent !== "");
     this.#showSpeakers();
