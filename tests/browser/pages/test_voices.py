@@ -95,7 +95,7 @@ def test_who_holds_v_is_heard_by_a_spectator_who_has_no_such_key(
             assert page.evaluate("() => window.asked") == 1
 
 
-@pytest.mark.parametrize(("size", "scheme"), [("narrow", "dark"), ("wide", "light")])
+@pytest.mark.parametrize(("size", "scheme"), [("narrow", "dark")])
 def test_a_host_talks_with_who_drives(
     talking_browser: Browser, platform: Platform, size: str, scheme: str
 ) -> None:
