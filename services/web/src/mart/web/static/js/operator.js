@@ -1,7 +1,7 @@
 // The operator's page: the picture, the hand that drives, and what is going on.
 
 import * as api from "./api.js";
-import { armName, badge, hasPicture } from "./arms.js";
+import { hasPicture } from "./arms.js";
 import { byId, letGoOfButton, letGoOnEscape, setShown, setText } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
@@ -13,7 +13,9 @@ import { DisplayedTicks } from "./hud/displayed-ticks.js";
 import { Headset } from "./headset/headset.js";
 import { showHealth } from "./hud/health-figure.js";
 import { showHolder } from "./hud/holder.js";
+import { showIdentity } from "./hud/identity.js";
 import { InputPanel } from "./hud/input-panel.js";
+import { keepAsFailed } from "./hud/keep-as-failed.js";
 import { showNotice } from "./hud/notice.js";
 import { showPartners } from "./hud/partners.js";
 import { showPicture } from "./hud/picture.js";
@@ -26,6 +28,7 @@ import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
 import { toLobby } from "./member.js";
 import { inPlainWords } from "./plain-words.js";
+import { VoicePanel } from "./voice/voice-panel.js";
 
 /** @import { Command } from "./drive/keys.js" */
 /** @import { ActionCommand } from "./hud/status-bar-view.js" */
@@ -60,7 +63,9 @@ const link = new SeatLink({
   onStatus,
   onTrack: (stream) => (video.srcObject = stream),
   onPoses: (message) => drawn.onPoses(message),
+  voice: { onTrack: (track) => voice.onTrack(track), onVoices: (told) => voice.onVoices(told) },
 });
+const voice = new VoicePanel(link, ({ arm }) => arm === armId && link.role === "browser");
 const drawn = new DrawnPicture({
   host: byId("picture"),
   room: roomName,
@@ -84,12 +89,8 @@ const cues = new Cues(armId, (message) => link.send(message), () => render());
 begin();
 
 function begin() {
-  document.title = `${armName(armId)} · ${roomName} · MART`;
-  document.body.dataset.arm = armId;
-  byId("badge").replaceWith(badge(armId));
-  setText(byId("page-title"), `${armName(armId)} in ${roomName}`);
-  setText(byId("arm"), armName(armId));
-  setText(byId("room"), roomName);
+  showIdentity(roomName, armId);
+  byId("edge").prepend(voice.node);
   for (const command of /** @type {const} */ (["gripper", "leave"])) {
     byId(command).addEventListener("click", () => run(command));
   }
@@ -196,6 +197,7 @@ function render() {
   stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
+  voice.update();
   if (room) showRoom({ ...room, stale: !told });
   showPicture(seat, status, isLive(), drawn.isShown);
   showHolder(mine, status, link.state, confirm.pending);
@@ -241,7 +243,7 @@ const ACTIONS = {
   help: () => panel.toggleHelp(),
   lobby: toLobby,
   here: () => link.connect(),
-  keep: keepDiscarded,
+  keep: () => keepAsFailed(room),
   take: () => api.takeSeat(roomName, armId),
   back: () => api.handBack(roomName, armId),
   leave: async () => {
@@ -258,12 +260,6 @@ async function pressStop() {
   } catch (error) {
     if (status?.barrier !== "stopped") throw error;
   }
-}
-
-/** The last episode was discarded, and is to be there all the same. */
-async function keepDiscarded() {
-  const saved = room?.last_episode?.saved;
-  if (saved) await api.labelEpisode(saved.path.replace(/^episodes\//, ""), { outcome: "failure" });
 }
 
 /** @param {Exclude<Command, "next"> | ActionCommand | "goOn"} command */

@@ -31,6 +31,7 @@ const KEYS = [
   ["P", "Stop everything; once it is stopped, twice: go on"],
   ["Q", "With space let go, twice: leave the seat"],
   [CUES.map((_, index) => index + 1).join(" "), `To your partners, scripts too: ${CUES.map(cueText).join(", ")}`],
+  ["V", "Hold to talk to everybody in the room"],
   ["?", "These keys"],
   ["Gamepad", "Left stick and triggers: move. Right stick and LB RB: turn. A: gripper. Start: next. Back: stop"],
 ];
