@@ -26,6 +26,7 @@ from mart.sim.room.episode_state_machine import BeginEpisode, EndEpisode, Episod
 from mart.sim.room.saved_room import SavedRoom
 from mart.sim.room.seats import SeatHolder, require_name
 from mart.sim.world import TaskProgress, World
+from mart.sim.world.progress import Score
 
 MAX_PLANNED = 10_000  # good episodes
 
@@ -74,12 +75,19 @@ def observations(seen: Seen) -> list[Fields]:
 def progress(progress: TaskProgress) -> Fields:
     """Return the fields of a Progress message."""
     return {
-        "subtasks": [{"name": name, "done": done} for name, done in progress.subtasks.items()],
+        "subtasks": [
+            {"name": name, "done": done, **_score(progress.scores.get(name))}
+            for name, done in progress.subtasks.items()
+        ],
         "success_now": progress.success_now,
         "success_ticks": progress.success_ticks,
         "success": progress.success,
         "failed": progress.failed or "",
     }
+
+
+def _score(score: Score | None) -> Fields:
+    return {} if score is None else {"seconds": score.seconds, "tries": score.tries}
 
 
 def to_do(world: World, progress: TaskProgress) -> dict[str, str]:
