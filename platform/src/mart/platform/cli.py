@@ -46,6 +46,8 @@ _CONTROL_HZ_OPTION = click.option(
     type=click.IntRange(1, 10_000),
     help="How many good episodes are wanted; the pages count them.  [default: no plan]",
 )
+@click.option("--practice", is_flag=True, help="Nothing is recorded in this room.")
+@click.option("--course-required", is_flag=True, help="Only who has passed the practice course records.")
 @click.option(
     "--host", default="127.0.0.1", show_default=True, help="0.0.0.0 lets phones and other laptops in."
 )
@@ -63,6 +65,8 @@ def run(
     room: str,
     control_hz: float | str | None,
     episodes: int | None,
+    practice: bool,
+    course_required: bool,
     host: str,
     port: int,
     public_host: str,
@@ -79,15 +83,27 @@ def run(
     from mart.platform.run.room_manager import opening_rooms
     from mart.platform.run.running import running_platform
     from mart.platform.run.turn_server import relay_beside, with_relay
+    from mart.protocol.practice import require_practice_alone
     from mart.protocol.tasks import get_task
     from mart.runtime.service import stop_requested
     from mart.runtime.settings import Settings
 
     get_task(task)
+    require_practice_alone(practice=practice, course_required=course_required, episodes=episodes or 0)
     settings = Settings()
     given_hz = control_hz if isinstance(control_hz, float) else None
     options = PlatformOptions(
-        settings.data_dir, settings.router, host, port, public_host, room, task, given_hz, episodes=episodes
+        settings.data_dir,
+        settings.router,
+        host,
+        port,
+        public_host,
+        room,
+        task,
+        given_hz,
+        episodes=episodes,
+        practice=practice,
+        course_required=course_required,
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)
