@@ -95,11 +95,16 @@ def test_the_course_is_found_where_it_is_practised(
 
 
 def test_a_host_is_told_how_far_people_are(run: Run) -> None:
+    told_of = {"seats": [seat(passed_course=False)], "stop": None, "waiting_for": []}
     words = "({ roomNow }, room) => roomNow(room)"
-    told = course(REACHED, OPEN) | {"stop": None, "waiting_for": []}
-    assert run("host/room-words.js", words, told) == "Ana is at station 2 of 2."
-    through = course(REACHED, TURNED) | {"stop": None, "waiting_for": []}
-    assert run("host/room-words.js", words, through) == "Ana has passed the course."
+    told = course(REACHED, OPEN) | told_of
+    assert run("host/room-words.js", words, told) == "Ana: at station 2 of 2."
+    through = course(REACHED, TURNED) | told_of
+    assert run("host/room-words.js", words, through) == "Ana: through the course."
+    barred = room() | {"practice": False, "course_required": True} | told_of
+    assert (
+        run("host/room-words.js", words, barred) == "Practice. Waiting for Ana to pass the practice course."
+    )
 
 
 @pytest.mark.parametrize(("size", "scheme"), [("wide", "light"), ("narrow", "dark")])
@@ -109,11 +114,11 @@ def test_the_course_is_opened_from_the_lobby_and_guides(
     with visit(browser, platform, size, scheme) as lobby:
         lobby.join("Ana", "Join and choose a seat")
         lobby.page.get_by_text("New room", exact=True).click()
-        lobby.page.get_by_label("Task", exact=True).select_option("practice_course")
-        expect(lobby.page.get_by_label("Recording", exact=True)).to_have_value("practice")
-        expect(lobby.page.get_by_label("Good episodes wanted")).to_be_disabled()
-        lobby.page.get_by_label("Name", exact=True).fill(f"course-{size}")
-        lobby.page.get_by_label("Arms", exact=True).select_option("1")
+        lobby.page.locator("#new-task").select_option("practice_course")
+        expect(lobby.page.locator("#new-rules")).to_have_value("practice")
+        expect(lobby.page.locator("#new-episodes")).to_be_disabled()
+        lobby.page.locator("#new-name").fill(f"course-{size}")
+        lobby.page.locator("#new-arms").select_option("1")
         lobby.page.get_by_role("button", name="Open room").click()
         card = lobby.page.locator(".room", has_text=f"course-{size}")
         expect(card).to_contain_text("Practice room: nothing is recorded")

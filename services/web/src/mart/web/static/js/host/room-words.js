@@ -30,7 +30,9 @@ function practiceNow(room) {
   if (plan && plan.good >= plan.episodes) return `${planText(plan)}. Set another plan, or close the room.`;
   const people = seats.filter(({ operator }) => operator === "human");
   if (people.length === 0) return "Practice. Nobody sits here yet.";
-  if (room.practice) return `${people.map(practisingText(room)).join(" ")}`;
+  if (room.practice) return people.map(practisingText(room)).join(" ");
+  const barred = people.filter((seat) => practisesOnly(room, seat)).map(holderName);
+  if (barred.length > 0) return `Practice. Waiting for ${barred.join(" and ")} to pass the practice course.`;
   const unready = people.filter(({ ready }) => !ready).map(holderName);
   return `Practice. Waiting for ${unready.join(" and ") || "the episode"} to ${unready.length ? "be ready" : "begin"}.`;
 }
@@ -39,10 +41,9 @@ function practiceNow(room) {
 const practisingText = (room) => (seat) => {
   const stations = stationsOf(room, seat.arm);
   const done = stations.filter((station) => station.done).length;
-  if (stations.length === 0) return `${holderName(seat)} practises.`;
-  return done < stations.length
-    ? `${holderName(seat)} is at station ${done + 1} of ${stations.length}.`
-    : `${holderName(seat)} has passed the course.`;
+  if (stations.length === 0) return `${holderName(seat)}: practising.`;
+  const where = done < stations.length ? `at station ${done + 1} of ${stations.length}` : "through the course";
+  return `${holderName(seat)}: ${where}.`;
 };
 
 /**
