@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from report import Bar, report
 from support.moving_scene import PERIOD_S, moving_scene
-from support.networked_video import Displayed, show
+from support.networked_video import show
+from support.watching_page import Displayed
 
 from mart.protocol.errors import Unavailable
 

@@ -1,4 +1,4 @@
-"""Show a real Chromium, behind tools/netrelay, a seat's pictures, and measure when it shows them.
+"""Show a real Chromium, behind tools/netrelay or not, a seat's pictures, and measure when it shows them.
 
 The gateway's own peers, encoders and rate control send; a scene in which both arms move is drawn beforehand, so that
 this machine's cores are free for both ends of the link.
@@ -12,18 +12,17 @@ import resource
 import subprocess
 import sys
 import tempfile
-from collections.abc import AsyncIterator, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from unittest import mock
 
-import numpy as np
 from aiortc import rtcrtpsender
-from playwright.async_api import Page, async_playwright
+from support.watching_page import SETTLE_S, Displayed, accept, offer_of, shown, watching_page
 
-from mart.platform.collect.browser import ARGUMENTS, chromium_path
+from mart.platform.collect.browser import chromium_path
 from mart.protocol import clock
 from mart.protocol.errors import Unavailable
 from mart.protocol.tokens import Role
@@ -39,23 +38,6 @@ from mart.teleop_gateway.webrtc.rate_control import RateControl
 
 _NAMESPACE = "bench-video"
 _NUMBER = 93
-_SETTLE_S = 5.0  # left out: the connection comes about, and the first packets are lost
-_WATCH = (Path(__file__).parent / "watch_video.js").read_text()
-
-
-@dataclass(frozen=True)
-class Displayed:
-    """Hold when pictures were displayed, Unix time in ms, and how long after they were drawn."""
-
-    at_ms: np.ndarray[Any, np.dtype[np.float64]]
-    delay_ms: np.ndarray[Any, np.dtype[np.float64]]
-    kbit_s: float
-    memory_mb: tuple[float, float]  # of the sender at most, until the begin and until the end
-
-    def freezes(self, longer_ms: float = 200.0) -> int:
-        """Count the gaps that are so much longer than the usual one."""
-        gaps_ms = np.diff(self.at_ms)
-        return int(np.sum(gaps_ms > np.median(gaps_ms) + longer_ms))
 
 
 @dataclass
@@ -86,14 +68,18 @@ def show(
 ) -> Displayed:
     """Show a browser these pictures again and again over a network, options of `netrelay run`, for so long.
 
-    Where it does not follow, the receiver's reports change nothing. Raises Unavailable where there is no TUN device.
+    Without options nothing is between. Where it does not follow, the receiver's reports change nothing. Raises
+    Unavailable where there is no TUN device.
     """
     with contextlib.ExitStack() as stack:
         if not follows:
             for deaf in ("on_report", "on_estimate"):
                 stack.enter_context(mock.patch.object(RateControl, deaf))
-        stack.enter_context(_network(network))
-        return asyncio.run(_show(pictures, frames_per_s, seconds))
+        inside = None
+        if network:
+            stack.enter_context(_network(network))
+            inside = stack.enter_context(_chromium_inside())
+        return asyncio.run(_show(pictures, frames_per_s, seconds, inside))
 
 
 @contextlib.contextmanager
@@ -110,36 +96,32 @@ def _network(options: Sequence[str]) -> Iterator[None]:
             relay.terminate()
 
 
-@contextlib.asynccontextmanager
-async def _page() -> AsyncIterator[Page]:
-    """A page of a Chromium in the namespace."""
+@contextlib.contextmanager
+def _chromium_inside() -> Iterator[Path]:
+    """What starts a Chromium in the namespace."""
     with tempfile.TemporaryDirectory() as folder:
         inside = Path(folder) / "chromium"
         inside.write_text(f'#!/bin/sh\nexec ip netns exec {_NAMESPACE} {chromium_path()} "$@"\n')
         inside.chmod(0o755)
-        async with async_playwright() as playwright:
-            arguments = [*ARGUMENTS, "--disable-features=WebRtcHideLocalIpsWithMdns"]
-            browser = await playwright.chromium.launch(executable_path=inside, args=arguments)
-            yield await browser.new_page()
-            await browser.close()
+        yield inside
 
 
-async def _show(pictures: Sequence[Image], frames_per_s: float, seconds: float) -> Displayed:
+async def _show(
+    pictures: Sequence[Image], frames_per_s: float, seconds: float, executable: Path | None
+) -> Displayed:
     peers, orders = Peers(AsyncBus(MemoryNetwork().connect(), asyncio.get_running_loop()), list), _Orders()
     peers.attach(orders)
-    async with _page() as page:
-        answer = await peers.answer(Role.BROWSER, await page.evaluate(f"({_WATCH})()"), "ana")
+    async with watching_page(executable) as page:
+        answer = await peers.answer(Role.BROWSER, await offer_of(page), "ana")
         # Then a picture's time stamp is the same at both ends.
         with mock.patch.object(rtcrtpsender, "random32", return_value=0):
-            await page.evaluate("sdp => window.peer.setRemoteDescription({type: 'answer', sdp})", answer)
-            drawn_ms, sent = await _send(pictures, frames_per_s, _SETTLE_S + seconds, peers, orders)
-        shown = [row for row in await page.evaluate("() => window.shown") if row[1] in drawn_ms]
+            await accept(page, answer)
+            drawn_ms, (kbit_s, memory_mb) = await _send(
+                pictures, frames_per_s, SETTLE_S + seconds, peers, orders
+            )
+        at_ms, delay_ms = await shown(page, drawn_ms)
         await peers.close()
-    at_ms = np.array([at_ms for at_ms, _ in shown])
-    delay_ms = np.array([at_ms - drawn_ms[pts] for at_ms, pts in shown])
-    settled = at_ms > at_ms[0] + 1e3 * _SETTLE_S
-    kbit_s, memory_mb = sent
-    return Displayed(at_ms[settled], delay_ms[settled], kbit_s, memory_mb)
+    return Displayed(at_ms, delay_ms, kbit_s, memory_mb)
 
 
 async def _send(
@@ -159,7 +141,7 @@ async def _send(
             drawn_ms[encoded.pts & 0xFFFFFFFF] = now_ms
             peers.put(encoded)
             size_bytes += len(encoded.data) if encoded.stream == peer.stream else 0
-        if not memory_mb and now_s - begun_s > _SETTLE_S:
+        if not memory_mb and now_s - begun_s > SETTLE_S:
             memory_mb = _peak_memory_mb()
         await asyncio.sleep(max(0.0, begun_s + (number + 1) / frames_per_s - clock.monotonic_s()))
     kbit_s = 8e-3 * size_bytes / (clock.monotonic_s() - begun_s)

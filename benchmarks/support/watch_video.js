@@ -1,8 +1,8 @@
-// Makes a peer as the operator's page does, notes when each picture is displayed, and returns the offer.
-async () => {
+// Makes a peer, as the operator's page does where it shows at once, notes when each picture is displayed, and returns the offer.
+async (showsAtOnce) => {
   const peer = new RTCPeerConnection();
   const { receiver } = (window.peer = peer).addTransceiver("video", { direction: "recvonly" });
-  if ("jitterBufferTarget" in receiver) receiver.jitterBufferTarget = 0;
+  if (showsAtOnce && "jitterBufferTarget" in receiver) receiver.jitterBufferTarget = 0;
   peer.createDataChannel("status", { ordered: false, maxRetransmits: 0 });
   const video = document.createElement("video");
   Object.assign(video, { muted: true, autoplay: true });

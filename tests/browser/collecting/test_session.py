@@ -18,7 +18,7 @@ from mart.protocol.codec import decode
 from mart.protocol.messages import OUTCOME_SUCCESS, ArmState, Event, State
 from mart.runtime.bus.base import Sample
 from tests.browser.collecting.people import BrowserUser, Phone, person
-from tests.browser.pages.visits import INSPECT
+from tests.browser.pages.legibility import faults
 from tests.browser.whole_platform import whole_platform
 
 WAIT_S = 60.0
@@ -156,7 +156,7 @@ def test_the_episode_is_found_watched_and_labelled(
         expect(rita.page.locator(".episode")).to_have_count(1)
         expect(rita.page.locator(".thumb img")).to_be_visible()
         rita.shoot("episodes")
-        assert rita.page.evaluate(INSPECT) == []
+        assert faults(rita.page) == []
         rita.page.locator(".episode a").click()
         seen = rita.page.locator("video")
         expect(seen).to_have_count(2)
@@ -179,7 +179,7 @@ def test_the_episode_is_found_watched_and_labelled(
         rita.page.get_by_label("Fit for training").uncheck()
         expect(rita.page.locator("#one")).to_contain_text("left out of data sets")
         rita.shoot("episode")
-        assert rita.page.evaluate(INSPECT) == []
+        assert faults(rita.page) == []
         with rita.page.expect_download() as download:
             rita.page.get_by_role("link", name="Download MCAP").click()
         assert download.value.path().stat().st_size > 100_000

@@ -17,7 +17,8 @@ from mart.episodes import labels
 from mart.episodes.labels import LabelKind
 from mart.runtime.ports import free_port
 from tests.browser.pages.joined import joined
-from tests.browser.pages.visits import INSPECT, LOOKS, SCREENSHOTS
+from tests.browser.pages.legibility import faults
+from tests.browser.pages.visits import LOOKS, SCREENSHOTS
 from tests.recorder.files import write_episode
 from tests.support.processes import running_router, running_service
 
@@ -84,7 +85,7 @@ def test_from_a_filter_to_a_data_set_to_a_training(browser: Browser, site: Runni
         expect(data.locator("option:checked")).to_have_text("cubes-good (4 episodes)")
         expect(page.locator("#order")).to_contain_text("1 episode of it is left out")
         page.screenshot(path=SCREENSHOTS / "datasets-training.png", full_page=True)
-        assert page.evaluate(INSPECT) == []
+        assert faults(page) == []
         with page.expect_request("**/api/training/jobs") as submitted:
             page.get_by_role("button", name="Train r-HBC").click()
         asked = json.loads(submitted.value.post_data or "")
@@ -128,7 +129,7 @@ def test_an_episode_without_video_is_drawn_when_somebody_asks(browser: Browser, 
             page.wait_for_function("() => document.querySelector('video')?.readyState >= 2")
             expect(page.locator(".videos figcaption")).to_have_text("Front")
             page.screenshot(path=SCREENSHOTS / "episode-drawn.png", full_page=True)
-            assert page.evaluate(INSPECT) == []
+            assert faults(page) == []
     finally:
         (folder / LOCKSTEP).unlink()
 
@@ -145,6 +146,6 @@ def test_it_is_legible_and_whole(browser: Browser, site: RunningSite, size: str,
         page.locator(".tick").first.check()
         expect(page.get_by_role("button", name="Choose none")).to_be_visible()
         page.screenshot(path=SCREENSHOTS / f"datasets-{size}-{scheme}.png", full_page=True)
-        assert page.evaluate(INSPECT) == []
+        assert faults(page) == []
         page.locator("#curated").get_by_role("button", name="Undo").click()
         expect(page.locator("#curated")).to_have_text("Undone: there is no “few” any more.")

@@ -12,7 +12,8 @@ from playwright.sync_api import Browser, Page, expect
 
 from mart.platform.run.running import Platform
 from tests.browser.pages.conftest import Run
-from tests.browser.pages.visits import HERE, INSPECT, SCREENSHOTS, driving, listen, visit
+from tests.browser.pages.legibility import faults
+from tests.browser.pages.visits import HERE, SCREENSHOTS, driving, listen, visit
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class Phone:
     def is_fine(self, what: str) -> None:
         SCREENSHOTS.mkdir(parents=True, exist_ok=True)
         self.page.screenshot(path=SCREENSHOTS / f"{what}.png")
-        assert self.page.evaluate(INSPECT) == []
+        assert faults(self.page) == []
         assert self.noise == []
 
 
@@ -206,4 +207,4 @@ def test_a_reload_carries_on_and_a_used_code_is_explained(browser: Browser, plat
         with visit(browser, platform, "narrow", "dark") as thief:
             thief.page.goto(phone.url)
             expect(thief.page.get_by_text("used already")).to_be_visible()
-            assert thief.page.evaluate(INSPECT) == []
+            assert faults(thief.page) == []

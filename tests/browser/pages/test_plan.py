@@ -44,5 +44,5 @@ def test_good_episodes_are_counted_until_the_plan_is_reached(
         expect(card).to_contain_text("Planned episode recorded")
         ana.is_fine(f"lobby-plan-reached-{size}-{scheme}")
         for _ in range(2):
-            ana.page.get_by_role("button", name=f"Close {room}").click()
+            card.locator("button.close").click()
         expect(card).to_have_count(0)

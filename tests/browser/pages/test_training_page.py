@@ -16,7 +16,8 @@ from mart.protocol.tasks import get_task
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.ports import free_port
 from tests.browser.pages.joined import joined
-from tests.browser.pages.visits import INSPECT, LOOKS
+from tests.browser.pages.legibility import faults
+from tests.browser.pages.visits import LOOKS
 from tests.support.processes import running_router, running_service
 from tests.web.room import Room, speaking
 from tests.web.trainer import OTHER_TASK, TASK, Trainer
@@ -73,7 +74,7 @@ def test_it_is_legible_and_whole(
             "Episodes learned from: 57 of the 58 in “cubes-good”; digest 1f6b0c9a2d3e. Left out: room-1-0007"
         )
         page.screenshot(path=SCREENSHOTS / f"training-{size}-{scheme}.png", full_page=True)
-        assert page.evaluate(INSPECT) == []
+        assert faults(page) == []
 
 
 def test_without_a_trainer_it_says_how_to_start_one_and_goes_on_by_itself(
@@ -81,7 +82,7 @@ def test_without_a_trainer_it_says_how_to_start_one_and_goes_on_by_itself(
 ) -> None:
     with page_of(browser, site) as page:
         expect(page.locator("#absent")).to_contain_text("mart trainer")
-        assert page.evaluate(INSPECT) == []
+        assert faults(page) == []
         with contextlib.closing(Trainer(site.bus, jobs=False)):
             expect(page.locator("#no-runs")).to_be_visible()
 

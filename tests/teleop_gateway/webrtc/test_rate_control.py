@@ -180,6 +180,21 @@ def test_an_estimate_that_was_never_tried_limits_nothing() -> None:
     assert control.limit_bps() == math.inf
 
 
+@pytest.mark.parametrize(
+    ("round_trip_s", "estimate_bps", "limited"),
+    [(1.0, 450_000, True), (1.0, 750_000, False), (0.4, 450_000, False)],
+)
+def test_a_link_that_is_full_from_the_first_packet_on_is_found_by_both(
+    round_trip_s: float, estimate_bps: int, limited: bool
+) -> None:
+    control = RateControl()
+    for step in range(12):  # three seconds of 800 kbit/s
+        control.on_sent(25_000, 0.25 * step)
+        control.on_report(ReceiverReport(0, 20 * step, round_trip_s), 0.25 * step)
+        control.on_estimate(estimate_bps, 0.25 * step)
+    assert (control.limit_bps() < estimate_bps) is limited
+
+
 def test_a_receiver_that_floods_or_to_which_nothing_is_sent_fills_no_memory() -> None:
     control = RateControl()
     tracemalloc.start()

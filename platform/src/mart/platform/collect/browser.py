@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import shutil
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mart.platform.collect.web_client import WebClient
@@ -48,13 +49,27 @@ def running_browser() -> Iterator[Browser]:
             yield browser
 
 
-def open_operator_page(browser: Browser, web_client: WebClient, url: str, room: str, arm: str) -> Page:
-    """The operator's page of a seat that `web_client` holds, once its picture runs."""
-    context = browser.new_context(viewport={"width": 960, "height": 720}, ignore_https_errors=True)
+@dataclass(frozen=True)
+class OperatorPage:
+    """Say how an operator's page is opened. query: of its address, for example `picture=drawn`."""
+
+    query: str = ""
+    width_px: int = 960
+    height_px: int = 720
+
+
+USUAL_PAGE = OperatorPage()
+
+
+def open_operator_page(
+    browser: Browser, web_client: WebClient, address: str, opened: OperatorPage = USUAL_PAGE
+) -> Page:
+    """The operator's page at the address of a seat that `web_client` holds, once its picture runs."""
+    context = browser.new_context(
+        viewport={"width": opened.width_px, "height": opened.height_px}, ignore_https_errors=True
+    )
     context.add_cookies(web_client.cookies())  # type: ignore[arg-type]
     page = context.new_page()
-    page.goto(f"{url}rooms/{room}/arms/{arm}")
-    page.wait_for_function(
-        "() => { const v = document.querySelector('video'); return v && v.videoWidth > 0 }"
-    )
+    page.goto(f"{address}?{opened.query}")
+    page.wait_for_selector("#picture.live")
     return page

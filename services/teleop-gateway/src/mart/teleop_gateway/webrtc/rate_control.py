@@ -1,7 +1,8 @@
 """Decide what a receiver's link carries, by what the receiver reports. Pure: reports and `now_s` in, a limit out.
 
 There is no limit until a queue shows that one is needed: round trips (RFC 3550) that are all longer than they were, or
-a tenth of the packets lost (draft-ietf-rmcat-gcc-02). How low it must be, the receiver's estimate says (REMB,
+that are longer than ways are, while much less is estimated than is sent (a link that was full from the first packet
+on), or a tenth of the packets lost (draft-ietf-rmcat-gcc-02). How low it must be, the receiver's estimate says (REMB,
 draft-alvestrand-rmcat-remb-03): a browser knows what came while packets queued. Alone it is not believed. Where delay
 varies by tens of milliseconds it falls again and again, by what is sent and not by what could be.
 
@@ -32,6 +33,8 @@ _QUEUED_S = (
     0.1  # that the quickest round trip of _NOW_S is longer than the quickest of _BASE_S: a queue, no jitter
 )
 _NOW_S, _BASE_S = 2.0, 30.0
+_LONGEST_WAY_S = 0.5  # there and back: a geostationary satellite's takes as long, all others are quicker
+_MUCH_LESS = 0.7  # of what is sent
 
 _LOWER, _LOWER_EVERY_S = 0.85, 2.0
 _RAISE = 1.08  # a second
@@ -124,12 +127,16 @@ class RateControl:
         elapsed_s, self._judged_s = min(1.0, now_s - self._judged_s), now_s
         sent_bps = self._sent_bps(now_s)
         self._need_bps = max(self._need_bps, sent_bps)
-        queued_s = self._quickest_s(_NOW_S, now_s) - self._quickest_s(_BASE_S, now_s)
-        if self._loss > _MUCH_LOSS or queued_s > _QUEUED_S:
+        if self._loss > _MUCH_LOSS or self._is_queueing(sent_bps, now_s):
             if now_s - self._lowered_s >= _LOWER_EVERY_S:
                 self._lower(min(self._limit_bps, sent_bps), now_s)
         elif self._loss < _LITTLE_LOSS and sent_bps > _USED * self._limit_bps:
             self._raise(_RAISE**elapsed_s, now_s)
+
+    def _is_queueing(self, sent_bps: float, now_s: float) -> bool:
+        round_trip_s = self._quickest_s(_NOW_S, now_s)
+        since_the_first = round_trip_s > _LONGEST_WAY_S and self._estimate_bps < _MUCH_LESS * sent_bps
+        return since_the_first or round_trip_s - self._quickest_s(_BASE_S, now_s) > _QUEUED_S
 
     def _lower(self, now_bps: float, now_s: float) -> None:
         to_bps = _LOWER * now_bps if math.isinf(self._estimate_bps) else _PICTURES_SHARE * self._estimate_bps

@@ -22,8 +22,9 @@ const WITHIN_MS = 3000;
 export function emergencyStop({ label, id, key, onStop, onLetGo }) {
   const who = element("p", { class: "who", role: "status" });
   const words = element("span");
+  const about = element("span", { class: "screen-reader" });
   const cap = key ? [element("kbd", { "aria-hidden": "true" }, key)] : [];
-  const button = element("button", { type: "button", class: "stop", on: { click: press } }, words, ...cap);
+  const button = element("button", { type: "button", class: "stop", on: { click: press } }, words, about, ...cap);
   if (id) button.id = id;
   const node = element("div", { class: "emergency-stop" }, who, button);
   /** @type {Stop} */
@@ -56,7 +57,7 @@ export function emergencyStop({ label, id, key, onStop, onLetGo }) {
     setShown(button, mayStop() || !stop?.by_host);
     const goOn = sure ? "Press again: go on" : "Go on";
     setText(words, mayStop() ? "Stop" : goOn);
-    button.setAttribute("aria-label", mayStop() ? `Stop everything: ${label}` : `${words.textContent}: ${label}`);
+    setText(about, mayStop() ? ` everything: ${label}` : `: ${label}`);
   }
 
   /** @param {Stop} latest */

@@ -122,18 +122,23 @@ function closeButton(attempt, onClosed) {
   const press = () => {
     if (sure) attempt(close);
     sure = !sure;
-    setText(node, sure ? "Press again to close" : "Close room");
+    show();
   };
   const node = element("button", { type: "button", class: "quiet close", on: { click: press } }, "Close room");
+
+  function show() {
+    setText(node, sure ? "Press again to close" : "Close room");
+    node.setAttribute("aria-label", `${node.textContent}: ${room}`);
+  }
 
   /** @param {Api.Room} latest */
   function update(latest) {
     room = latest.room;
-    node.setAttribute("aria-label", `Close ${room}`);
     const records = ["countdown", "recording"].includes(latest.episode.phase);
     const busy = records || latest.seats.some((seat) => seat.operator === "human");
     setShown(node, !busy);
     if (busy) sure = false;
+    show();
   }
 
   return { node, update };

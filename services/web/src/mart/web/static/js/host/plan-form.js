@@ -25,7 +25,7 @@ export function planForm(room, attempt) {
     "form",
     { class: "plan-form", on },
     element("label", {}, "Good episodes wanted (0: no plan)", wanted),
-    element("button", { type: "submit", "aria-label": `Set the plan: ${room}` }, "Set plan"),
+    element("button", { type: "submit", "aria-label": `Set plan: ${room}` }, "Set plan"),
   );
   let planned = 0;
 
