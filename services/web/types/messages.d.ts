@@ -38,6 +38,8 @@ declare namespace Messages {
     operators: string[];
     datasets: NamedDataSet[];
     skills: string[];
+    simulated_s: number;
+    drivers: DriverStatistics[];
   }
 
   interface Curve {
@@ -53,6 +55,13 @@ declare namespace Messages {
     name: string;
     left_out: number;
     sha256: string;
+  }
+
+  interface DriverStatistics {
+    name: string;
+    episodes: number;
+    successes: number;
+    simulated_s: number;
   }
 
   interface Evaluation {

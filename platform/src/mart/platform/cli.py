@@ -22,6 +22,7 @@ from mart.runtime.rate_option import room_rate_option
 if TYPE_CHECKING:
     from mart.platform.collect.collection import CollectionSpec
     from mart.platform.collect.saved_episodes import CollectedEpisode
+    from mart.platform.run.running import Platform
 
 _SKILLS = click.Choice(["expert", "average", "novice"])
 _TIME_LIMIT = click.FloatRange(0.0, 3600.0, min_open=True)
@@ -74,7 +75,6 @@ def run(
     as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
-    from mart.platform.run.invitation import in_words, urls_for_others
     from mart.platform.run.plan import (
         PlatformOptions,
         processes,
@@ -112,25 +112,31 @@ def run(
         options, plan = with_relay(options, relay), (relay.process, *plan)
     click.echo("Starting MART …", err=True)
     with stop_requested() as stop, running_platform(options, plan) as platform, opening_rooms(platform):
-        others = urls_for_others(options)
-        result = {
-            "url": platform.url,
-            "urls": others,
-            "join_code": platform.join_code,
-            "host_code_file": str(platform.host_code_path),
-            "room": room,
-            "task": task,
-        }
-        on_terminal = sys.stdout.isatty()  # anything else may be a log
-        kept = platform.host_code_path
-        host_code = kept.read_text().strip() if on_terminal else f"in {kept}"
-        text = in_words(
-            platform.url, platform.join_code, others, host_code=host_code, with_picture=on_terminal
-        )
-        print_result(result, text, as_json)
+        _print_invitation(platform, as_json)
         stop.wait()
         with contextlib.suppress(OSError):  # a terminal that was closed
             click.echo("Stopping MART …", err=True)
+
+
+def _print_invitation(platform: Platform, as_json: bool) -> None:
+    """Print how people come in; the host code only on a terminal, since anything else may be a log."""
+    from mart.platform.run.invitation import in_words, urls_for_others
+
+    options = platform.options
+    others = urls_for_others(options)
+    result = {
+        "url": platform.url,
+        "urls": others,
+        "join_code": platform.join_code,
+        "host_code_file": str(platform.host_code_path),
+        "room": options.room,
+        "task": options.task,
+    }
+    on_terminal = sys.stdout.isatty()  # anything else may be a log
+    kept = platform.host_code_path
+    host_code = kept.read_text().strip() if on_terminal else f"in {kept}"
+    text = in_words(platform.url, platform.join_code, others, host_code=host_code, with_picture=on_terminal)
+    print_result(result, text, as_json)
 
 
 @click.command()

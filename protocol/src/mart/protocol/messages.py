@@ -12,6 +12,7 @@ from mart.protocol.vocabulary import EpisodeEndedBy, EpisodeOutcome, OperatorKin
 from mart.v1.catalogue_pb2 import (
     CatalogueReply,
     CatalogueRequest,
+    DriverStatistics,
     Lane,
     NamedDataSet,
     RecordedEpisode,
@@ -143,6 +144,7 @@ __all__ = [
     "Cue",
     "Curve",
     "DataSet",
+    "DriverStatistics",
     "EmergencyStop",
     "EndedBy",
     "Episode",

@@ -7,6 +7,7 @@ import { pressedTwice } from "../pressed-twice.js";
 import * as hosting from "./host-api.js";
 import { planForm } from "./plan-form.js";
 import { roomNow } from "./room-words.js";
+import { sessionStatistics } from "./session-statistics.js";
 import { seatView } from "./seat-view.js";
 
 /** @import { Attempt } from "../api.js" */
@@ -24,6 +25,7 @@ export function hostedRoom(name, attempt) {
   const views = element("ul", { class: "views", "aria-label": `Seats of ${name}` });
   const actions = roomActions(name, attempt);
   const plan = planForm(name, attempt);
+  const statistics = sessionStatistics(name, attempt);
   const node = element(
     "article",
     { class: "hosted-room card" },
@@ -33,6 +35,7 @@ export function hostedRoom(name, attempt) {
     element("div", { class: "host-actions" }, ...Object.values(actions)),
     counted,
     plan.node,
+    statistics.node,
   );
   /** @type {Map<string, Part<[Api.Seat, Api.Room]>>} */
   const seats = new Map();
@@ -47,6 +50,8 @@ export function hostedRoom(name, attempt) {
     node.classList.toggle("paused", room.stop !== null);
     setText(counted, countedText(room));
     plan.update(room);
+    statistics.update(room);
+    setShown(statistics.node, !room.practice);
     keepChildren(views, room.seats.map(({ arm }) => arm), seats, (arm) => seatView(name, arm, attempt));
     for (const seat of room.seats) seats.get(seat.arm)?.update(seat, room);
     const recording = room.episode.phase === "recording";
