@@ -30,6 +30,13 @@ declare namespace Messages {
     viewpoints: string[];
   }
 
+  interface CatalogueReplyDriverStatistics {
+    name: string;
+    episodes: number;
+    successes: number;
+    simulated_s: number;
+  }
+
   interface CatalogueReplyListing {
     episodes: RecordedEpisode[];
     matching: number;
@@ -39,7 +46,7 @@ declare namespace Messages {
     datasets: NamedDataSet[];
     skills: string[];
     simulated_s: number;
-    drivers: DriverStatistics[];
+    drivers: CatalogueReplyDriverStatistics[];
   }
 
   interface Curve {
@@ -55,13 +62,6 @@ declare namespace Messages {
     name: string;
     left_out: number;
     sha256: string;
-  }
-
-  interface DriverStatistics {
-    name: string;
-    episodes: number;
-    successes: number;
-    simulated_s: number;
   }
 
   interface Evaluation {

@@ -12,7 +12,6 @@ from mart.protocol.vocabulary import EpisodeEndedBy, EpisodeOutcome, OperatorKin
 from mart.v1.catalogue_pb2 import (
     CatalogueReply,
     CatalogueRequest,
-    DriverStatistics,
     Lane,
     NamedDataSet,
     RecordedEpisode,
@@ -144,7 +143,6 @@ __all__ = [
     "Cue",
     "Curve",
     "DataSet",
-    "DriverStatistics",
     "EmergencyStop",
     "EndedBy",
     "Episode",

@@ -138,18 +138,6 @@ class NamedDataSet(_message.Message):
     created_ns: int
     def __init__(self, name: _Optional[str] = ..., episodes: _Optional[int] = ..., sha256: _Optional[str] = ..., created_ns: _Optional[int] = ...) -> None: ...
 
-class DriverStatistics(_message.Message):
-    __slots__ = ("name", "episodes", "successes", "simulated_s")
-    NAME_FIELD_NUMBER: _ClassVar[int]
-    EPISODES_FIELD_NUMBER: _ClassVar[int]
-    SUCCESSES_FIELD_NUMBER: _ClassVar[int]
-    SIMULATED_S_FIELD_NUMBER: _ClassVar[int]
-    name: str
-    episodes: int
-    successes: int
-    simulated_s: float
-    def __init__(self, name: _Optional[str] = ..., episodes: _Optional[int] = ..., successes: _Optional[int] = ..., simulated_s: _Optional[float] = ...) -> None: ...
-
 class CatalogueRequest(_message.Message):
     __slots__ = ("list", "show", "label", "file", "video", "picture", "curate", "undo")
     class List(_message.Message):
@@ -256,6 +244,17 @@ class CatalogueRequest(_message.Message):
 
 class CatalogueReply(_message.Message):
     __slots__ = ("error", "listing", "details", "episode", "piece", "curated")
+    class DriverStatistics(_message.Message):
+        __slots__ = ("name", "episodes", "successes", "simulated_s")
+        NAME_FIELD_NUMBER: _ClassVar[int]
+        EPISODES_FIELD_NUMBER: _ClassVar[int]
+        SUCCESSES_FIELD_NUMBER: _ClassVar[int]
+        SIMULATED_S_FIELD_NUMBER: _ClassVar[int]
+        name: str
+        episodes: int
+        successes: int
+        simulated_s: float
+        def __init__(self, name: _Optional[str] = ..., episodes: _Optional[int] = ..., successes: _Optional[int] = ..., simulated_s: _Optional[float] = ...) -> None: ...
     class Listing(_message.Message):
         __slots__ = ("episodes", "matching", "successes", "tasks", "operators", "datasets", "skills", "simulated_s", "drivers")
         EPISODES_FIELD_NUMBER: _ClassVar[int]
@@ -275,8 +274,8 @@ class CatalogueReply(_message.Message):
         datasets: _containers.RepeatedCompositeFieldContainer[NamedDataSet]
         skills: _containers.RepeatedScalarFieldContainer[str]
         simulated_s: float
-        drivers: _containers.RepeatedCompositeFieldContainer[DriverStatistics]
-        def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ..., datasets: _Optional[_Iterable[_Union[NamedDataSet, _Mapping]]] = ..., skills: _Optional[_Iterable[str]] = ..., simulated_s: _Optional[float] = ..., drivers: _Optional[_Iterable[_Union[DriverStatistics, _Mapping]]] = ...) -> None: ...
+        drivers: _containers.RepeatedCompositeFieldContainer[CatalogueReply.DriverStatistics]
+        def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ..., datasets: _Optional[_Iterable[_Union[NamedDataSet, _Mapping]]] = ..., skills: _Optional[_Iterable[str]] = ..., simulated_s: _Optional[float] = ..., drivers: _Optional[_Iterable[_Union[CatalogueReply.DriverStatistics, _Mapping]]] = ...) -> None: ...
     class Details(_message.Message):
         __slots__ = ("episode", "wall_s", "lanes", "traces", "views", "cadence", "versions", "verification", "simulated", "viewpoints")
         class CadenceEntry(_message.Message):

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from mart.episodes.datasets import NamedDataSet
 from mart.episodes.filter import EpisodeFilter
 from mart.episodes.labelled_episode import LabelledEpisode
-from mart.protocol.messages import CatalogueReply, CatalogueRequest, DriverStatistics, RecordedEpisode
+from mart.protocol.messages import CatalogueReply, CatalogueRequest, RecordedEpisode
 from mart.protocol.messages import NamedDataSet as NamedDataSetMessage
 from mart.protocol.vocabulary import EpisodeOutcome
 
@@ -37,14 +37,14 @@ def listing(
     )
 
 
-def drivers_of(rows: Iterable[LabelledEpisode]) -> list[DriverStatistics]:
+def drivers_of(rows: Iterable[LabelledEpisode]) -> list[CatalogueReply.DriverStatistics]:
     """Return what each person and policy that is named has driven in these episodes, by name."""
     by_name: dict[str, list[LabelledEpisode]] = {}
     for row in rows:
         for name in names_of(row):
             by_name.setdefault(name, []).append(row)
     return [
-        DriverStatistics(
+        CatalogueReply.DriverStatistics(
             name=_cut(name),
             episodes=len(driven),
             successes=sum(row.outcome == EpisodeOutcome.SUCCESS for row in driven),

@@ -55,7 +55,7 @@ const head = () =>
 /** @param {string} text */
 const heading = (text) => element("th", { scope: "col" }, text);
 
-/** @param {Messages.DriverStatistics} driver */
+/** @param {Messages.CatalogueReplyDriverStatistics} driver */
 function row({ name, episodes, successes, simulated_s: driven }) {
   const figures = [String(episodes), shareText(successes, episodes), clockTime(driven)];
   return element("tr", {}, element("th", { scope: "row" }, name), ...figures.map((text) => element("td", {}, text)));
