@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, expect
 
 from mart.platform.run.running import Platform
+from mart.protocol import codec, keys
+from mart.protocol.messages import EpisodeRequest
 from tests.browser.pages.conftest import Run
 from tests.browser.pages.test_status_bar import room, seat, view
 from tests.browser.pages.visits import visit
@@ -138,6 +141,15 @@ def test_the_course_is_opened_from_the_lobby_and_guides(
         expect(card).to_have_count(0)
 
 
+@pytest.fixture
+def free_again(platform: Platform) -> Iterator[None]:
+    """The room is everybody's after the test, however it ends."""
+    yield
+    everybody = EpisodeRequest(require_course=EpisodeRequest.RequireCourse(name="The test"))
+    platform.bus.query(keys.episode(platform.options.room), codec.encode(everybody), 30.0)
+
+
+@pytest.mark.usefixtures("free_again")
 def test_where_the_course_is_required_one_practises_and_is_led_there(
     browser: Browser, platform: Platform
 ) -> None:

@@ -21,7 +21,7 @@ const PHASES = {
  */
 export function episodeText({ phase, ready, practises_only: practisesOnly }) {
   if (phase !== "practice") return PHASES[phase];
-  if (practisesOnly) return "Practice only, nothing is recorded. ";
+  if (practisesOnly) return "Practice only. ";
   return ready ? "Ready. " : PHASES.practice;
 }
 
