@@ -89,6 +89,14 @@ def test_who_has_not_passed_the_course_practises_and_holds_up_who_would_record_w
     assert harness.status().episode.phase == EPISODE_PHASE_COUNTDOWN
 
 
+def test_a_room_at_another_rate_or_after_a_restart_knows_who_has_passed(cubes: World) -> None:
+    harness = RoomHarness(cubes, SavedRoom(seed=1, course_required=True))
+    claim(harness, "arm0", passed=False)
+    claim(harness, "arm0", passed=True)
+    restarted = RoomHarness(cubes, SavedRoom.model_validate_json(harness.kept[-1].model_dump_json()))
+    assert [seat.passed_course for seat in restarted.status().seats] == [True, False]
+
+
 def test_nobody_slips_into_a_recording_who_may_not_record(cubes: World) -> None:
     harness = RoomHarness(cubes, SavedRoom(seed=1, course_required=True))
     claim(harness, "arm0", passed=True)

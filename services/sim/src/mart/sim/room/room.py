@@ -124,6 +124,8 @@ class Room:
                 self._seat_changed(seat, now_s)
                 if request.HasField("free"):
                     self.tell(room_messages.freed(request.free))
+            elif request.HasField("claim"):  # they may have passed the course meanwhile
+                self._remember(self._record.with_seats(self._seats))
         except MartError as error:
             return RoomReply(error=error_message(error), status=self.status(now_s))
         return RoomReply(status=self.status(now_s), seat=self._seat_message(seat, now_s))
@@ -194,10 +196,6 @@ class Room:
             practice=self._terms.practice,
             **room_messages.counts(self._record),
         )
-
-    @property
-    def _rules(self) -> RecordingRules:
-        return RecordingRules(self._terms.practice, self._record.course_required)
 
     def _fire(self, inputs: TickInputs, now_s: float) -> None:
         try:
@@ -292,6 +290,7 @@ class Room:
     def _remember(self, record: SavedRoom) -> None:
         """Keep the record over a restart; a disk that is full must not stop the world."""
         self._record = record
+        self._rules = RecordingRules(self._terms.practice, record.course_required)
         try:
             self._keep(record)
         except OSError as error:

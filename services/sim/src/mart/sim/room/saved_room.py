@@ -47,12 +47,12 @@ class SavedSeat(SavedDriver):
     arm: str
     epoch: int = Field(ge=1, le=MAX_COUNTER)
     relieved: SavedDriver | None = None
+    passed_course: bool = False
 
     def holder(self) -> SeatHolder:
         """Return the seat that this stores."""
-        return SeatHolder(
-            self.arm, self.epoch, self.driver(), self.relieved.driver() if self.relieved else None
-        )
+        relieved = self.relieved.driver() if self.relieved else None
+        return SeatHolder(self.arm, self.epoch, self.driver(), relieved, self.passed_course)
 
     def freed(self) -> SavedSeat:
         """Return the seat after its holder is gone."""
@@ -209,9 +209,8 @@ def _wanting(record: SavedRoom, task: str, episodes: int | None) -> SavedRoom:
 
 def _seat_record(seat: SeatHolder) -> SavedSeat:
     relieved = _fields(seat.relieved) if seat.relieved else None
-    return SavedSeat.model_validate(
-        {"arm": seat.arm, "epoch": seat.epoch, "relieved": relieved, **_fields(seat.driver)}
-    )
+    own = {"arm": seat.arm, "epoch": seat.epoch, "relieved": relieved, "passed_course": seat.passed_course}
+    return SavedSeat.model_validate({**own, **_fields(seat.driver)})
 
 
 def _fields(driver: Driver) -> dict[str, str]:
