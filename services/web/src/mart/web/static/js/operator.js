@@ -2,10 +2,10 @@
 
 import * as api from "./api.js";
 import { hasPicture } from "./arms.js";
+import { courseRoom, freeArm } from "./course.js";
 import { byId, letGoOfButton, letGoOnEscape, setShown, setText } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
-import { waitingText } from "./formatting.js";
 import { isCue, isOffered } from "./hud/command-kinds.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
@@ -13,13 +13,14 @@ import { DisplayedTicks } from "./hud/displayed-ticks.js";
 import { Headset } from "./headset/headset.js";
 import { showHealth } from "./hud/health-figure.js";
 import { showHolder } from "./hud/holder.js";
-import { showIdentity } from "./hud/identity.js";
 import { InputPanel } from "./hud/input-panel.js";
-import { keepAsFailed } from "./hud/keep-as-failed.js";
 import { showNotice } from "./hud/notice.js";
+import { keepDiscarded } from "./hud/keep-discarded.js";
 import { showPartners } from "./hud/partners.js";
 import { showPicture } from "./hud/picture.js";
+import { showSeatTitle } from "./hud/seat-title.js";
 import { StatusBar } from "./hud/status-bar.js";
+import { showWaiting } from "./hud/waiting.js";
 import { approachAsPage } from "./link/page-approach.js";
 import { DrawnPicture } from "./scene/drawn-picture.js";
 import { pictureChoice } from "./scene/picture-choice.js";
@@ -31,7 +32,7 @@ import { inPlainWords } from "./plain-words.js";
 import { VoicePanel } from "./voice/voice-panel.js";
 
 /** @import { Command } from "./drive/keys.js" */
-/** @import { ActionCommand } from "./hud/status-bar-view.js" */
+/** @import { ActionCommand } from "./hud/view-parts.js" */
 
 const AGE_MS = 500;
 const NO_NEWS_MS = 2500; // rooms are told once a second at least
@@ -44,6 +45,8 @@ const video = byId("video", HTMLVideoElement);
 let room = null;
 /** @type {StatusChannel.Tick | null} */
 let status = null;
+/** Where the practice course is done. @type {Api.Room | null} */
+let course = null;
 let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
 let pictured = false; // by the present connection: its picture comes a round trip before its first word
@@ -89,7 +92,7 @@ const cues = new Cues(armId, (message) => link.send(message), () => render());
 begin();
 
 function begin() {
-  showIdentity(roomName, armId);
+  showSeatTitle(roomName, armId);
   byId("edge").prepend(voice.node);
   for (const command of /** @type {const} */ (["gripper", "leave"])) {
     byId(command).addEventListener("click", () => run(command));
@@ -124,6 +127,7 @@ function onRooms(rooms) {
   // A room that was there and is gone is being restarted, or will be missed: the page stays.
   heardMs = performance.now();
   room = rooms.find((one) => one.room === roomName) ?? (room && { ...room, stale: true });
+  course = courseRoom(rooms);
   follow(ownSeat());
   render();
 }
@@ -189,7 +193,7 @@ function render() {
   const seat = ownSeat();
   const mine = seat?.mine ?? false;
   const isNew = !localStorage.getItem(RECORDED_KEY);
-  statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches });
+  statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches, course });
   const told = isTold();
   const still = displayed.standStill(status?.tick ?? 0, performance.now());
   const forMs = performance.now() - beganMs;
@@ -208,9 +212,7 @@ function render() {
 function showRoom(shown) {
   drawn.onProgress(shown.progress.subtasks);
   showPartners(shown, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
-  const waiting = shown.stale ? "" : waitingText(shown);
-  setText(byId("waiting"), waiting);
-  setShown(byId("waiting"), waiting !== "");
+  showWaiting(shown);
 }
 
 /**
@@ -243,14 +245,18 @@ const ACTIONS = {
   help: () => panel.toggleHelp(),
   lobby: toLobby,
   here: () => link.connect(),
-  keep: () => keepAsFailed(room),
+  keep: () => keepDiscarded(room),
   take: () => api.takeSeat(roomName, armId),
   back: () => api.handBack(roomName, armId),
-  leave: async () => {
-    if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);
-    toLobby();
-  },
+  course: () => leaveFor(course ? `/rooms/${course.room}/arms/${freeArm(course.seats) ?? "arm0"}` : "/"),
+  leave: () => leaveFor("/"),
 };
+
+/** @param {string} path */
+async function leaveFor(path) {
+  if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);
+  location.assign(path);
+}
 
 /** Two ways at once, because one may be lost: with the frames of a hand, and over HTTP. */
 async function pressStop() {

@@ -1,6 +1,6 @@
 // The phone: a hand that is usable without looking.
 
-import { actByPhone, letGoByPhone, messageOf, redeemPairing, stopByPhone } from "./api.js";
+import { actByPhone, letGoByPhone, messageOf, stopByPhone } from "./api.js";
 import { armName, theArm } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
@@ -12,6 +12,8 @@ import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { ClutchPad, GripperBar, StopButton } from "./phone/controls.js";
 import { EpisodeButton, episodeText } from "./phone/episode-button.js";
 import { keepScreenOn, vibrate, vibrationsFor } from "./phone/feedback.js";
+import { takePairing } from "./phone/pairing.js";
+import { PhoneCues } from "./phone/phone-cues.js";
 import { stoppedByText, stoppedHoldText } from "./phone/stop-words.js";
 import { TouchTracker } from "./phone/touch-tracker.js";
 import { Tutorial } from "./phone/tutorial.js";
@@ -22,7 +24,6 @@ import { canTrack, XrTracker } from "./phone/xr.js";
 
 const STOP_TOLD_MS = 1000;
 const PROBLEM_MS = 4000;
-const PAIRING_KEY = "mart.pairing";
 const TUTORIAL_DONE_KEY = "mart.coached";
 
 const gripper = new GripperBar(byId("gripper"));
@@ -32,6 +33,13 @@ const stop = new StopButton(byId("stop"), byId("stop-text"), { onStop: pressStop
 const episode = new EpisodeButton(byId("episode"), (action) =>
   ask((room, seat, token) => actByPhone(room, seat, token, action)),
 );
+
+/** @type {SeatLink | null} */
+let seatLink = null;
+const cues = new PhoneCues((message) => seatLink?.send(message), (what) => {
+  if (what === "open") clutch.release(); // the sheet covers what moves the arm
+  else vibrate("step");
+});
 
 /** @type {XrTracker | TouchTracker | null} */
 let tracker = null;
@@ -88,20 +96,6 @@ const HOW = {
     "phone turns the hand.",
 };
 
-/**
- * The code in the address works once; what it gave is kept for a reload of this tab.
- * @returns {Promise<Api.PairedPhone | null>}
- */
-async function takePairing() {
-  const code = location.hash.slice(1);
-  if (code) {
-    history.replaceState(null, "", "/phone");
-    sessionStorage.removeItem(PAIRING_KEY);
-    sessionStorage.setItem(PAIRING_KEY, JSON.stringify(await redeemPairing(code)));
-  }
-  return JSON.parse(sessionStorage.getItem(PAIRING_KEY) ?? "null");
-}
-
 /** @param {Api.PairedPhone} pairing */
 function connect(pairing) {
   const link = new SeatLink({
@@ -114,6 +108,7 @@ function connect(pairing) {
     onState: () => onLinkState(link),
     onStatus: (tick) => onStatus(tick, link),
   });
+  seatLink = link;
   link.connect();
   everyFrame((nowMs) => sendFrame(link, nowMs));
   return link;
@@ -247,6 +242,7 @@ function showLink(link) {
   const stopped = live && status?.barrier === "stopped";
   if (live) stop.update(stopped);
   episode.update(live ? status : null);
+  cues.update(live ? status : null);
   if (performance.now() > problemUntilMs) problem = "";
   byId("app").classList.toggle("stopped", stopped);
   setText(byId("link"), problem || linkText(link));
