@@ -2,20 +2,21 @@
 
 import * as api from "./api.js";
 import { hasPicture } from "./arms.js";
-import { courseRoom, freeArm } from "./course.js";
-import { byId, letGoOfButton, letGoOnEscape, setShown, setText } from "./dom.js";
+import { coursePath, courseRoom } from "./course.js";
+import { byId, letGoOfButton, letGoOnEscape } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
+import { Headset } from "./headset/headset.js";
 import { isCue, isOffered } from "./hud/command-kinds.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
+import { onDeviceButtons } from "./hud/device-buttons.js";
 import { DisplayedTicks } from "./hud/displayed-ticks.js";
-import { Headset } from "./headset/headset.js";
 import { showHealth } from "./hud/health-figure.js";
 import { showHolder } from "./hud/holder.js";
 import { InputPanel } from "./hud/input-panel.js";
-import { showNotice } from "./hud/notice.js";
 import { keepDiscarded } from "./hud/keep-discarded.js";
+import { showNotice } from "./hud/notice.js";
 import { showPartners } from "./hud/partners.js";
 import { showPicture } from "./hud/picture.js";
 import { showSeatTitle } from "./hud/seat-title.js";
@@ -97,12 +98,10 @@ function begin() {
   for (const command of /** @type {const} */ (["gripper", "leave"])) {
     byId(command).addEventListener("click", () => run(command));
   }
-  byId("spacemouse").addEventListener("click", () => attempt(() => input.askForDevice()));
-  byId("toggle").addEventListener("click", () => {
-    byId("toggle").setAttribute("aria-pressed", String(input.toggleHold()));
-  });
-  byId("switch").addEventListener("click", () => {
-    link.send({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" });
+  onDeviceButtons({
+    spaceMouse: () => attempt(() => input.askForDevice()),
+    hold: () => input.toggleHold(),
+    other: () => link.send({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" }),
   });
   byId("emergency").append(stop.node);
   byId("health").addEventListener("toggle", () => render());
@@ -248,7 +247,7 @@ const ACTIONS = {
   keep: () => keepDiscarded(room),
   take: () => api.takeSeat(roomName, armId),
   back: () => api.handBack(roomName, armId),
-  course: () => leaveFor(course ? `/rooms/${course.room}/arms/${freeArm(course.seats) ?? "arm0"}` : "/"),
+  course: () => leaveFor(coursePath(course)),
   leave: () => leaveFor("/"),
 };
 
