@@ -185,12 +185,15 @@ function onStatus(tick) {
 /** Whether pictures come, or the last ones are still worth showing. */
 const isLive = () => link.state === LinkState.LIVE || (link.state === LinkState.CONNECTING && pictured);
 
+/** Whether the room is heard now. */
+const isTold = () => performance.now() - heardMs < NO_NEWS_MS && room !== null && !room.stale;
+
 function render() {
   const seat = ownSeat();
   const mine = seat?.mine ?? false;
   const isNew = !localStorage.getItem(RECORDED_KEY);
   statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches, course });
-  const told = performance.now() - heardMs < NO_NEWS_MS && room !== null && !room.stale;
+  const told = isTold();
   const still = displayed.standStill(status?.tick ?? 0, performance.now());
   const forMs = performance.now() - beganMs;
   showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn, link }, video);
@@ -277,10 +280,7 @@ function perform(command) {
   return api.actOnEpisode(roomName, command, armId);
 }
 
-/**
- * @param {string} command
- * @returns {command is PageCommand}
- */
+/** @type {(command: string) => command is PageCommand} */
 const isPageCommand = (command) => command in ACTIONS;
 
 /** @param {unknown} error */
