@@ -280,7 +280,7 @@ function perform(command) {
   return api.actOnEpisode(roomName, command, armId);
 }
 
-/** @type {(command: string) => command is PageCommand} */
+/** @param {string} command @returns {command is PageCommand} */
 const isPageCommand = (command) => command in ACTIONS;
 
 /** @param {unknown} error */
