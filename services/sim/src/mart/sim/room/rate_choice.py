@@ -16,7 +16,9 @@ from mart.protocol.errors import InvalidInput
 # Shares of what the machine can do in a tick's time.
 RISES_BELOW = 0.6
 HOLDS_BELOW = 0.85
-SMALLER = 0.7  # of a whole picture's time: three quarters as wide, which a quicker answer is worth to one seat
+SMALLER = (
+    0.7  # of a whole picture's time: three quarters as wide, which a quicker answer is worth to one seat
+)
 HELD_FACTOR = 0.98  # of real time
 FIRST_WAIT_S = 60.0  # after a step down, before a step up
 LONGEST_WAIT_S = 960.0
