@@ -54,6 +54,9 @@ class _Orders:
     def on_watched(self, limits_bps: Any) -> None:
         self.limits_bps = dict(limits_bps)
 
+    def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None:
+        """Nobody speaks."""
+
     def on_keyframe_wanted(self, stream: Stream) -> None:
         self.wanted.add(stream)
 
