@@ -49,6 +49,7 @@ from mart.runtime.ports import free_port
 Inbox = queue.Queue[Event | RoomStatus]
 
 SETTLE_S = 5.0
+LONGEST_SILENCE_S = 30.0
 REPORTS = 35  # one a second; the newest is of the last 100 pictures, 20 s, so that the start is left out
 SCREEN_HZ = 60.0
 
@@ -119,7 +120,7 @@ def measure(case: Case) -> Heard:
             people[0].web_client.assign(options.room, arm.name, "script")
         inbox = stack.enter_context(_listening(platform))
         if case.control_hz is None:
-            _play_one_away(options.room, people, inbox)
+            _play_one(options.room, people, inbox)
         return _hear(inbox, arms)
 
 
@@ -138,14 +139,12 @@ def _listening(platform: Platform) -> Iterator[Inbox]:
         yield inbox
 
 
-def _play_one_away(room: str, people: Sequence[EmulatedUser], inbox: Inbox) -> None:
-    """Begin an episode and throw it away: after one, a room knows what pictures take and may choose another rate."""
+def _play_one(room: str, people: Sequence[EmulatedUser], inbox: Inbox) -> None:
+    """Play an episode: after one, a room knows what pictures take and may choose another rate."""
     time.sleep(SETTLE_S)
     for person in people:
         person.web_client.act(room, person.arm, "ready")
     _await(inbox, EPISODE_PHASE_RECORDING)
-    time.sleep(SETTLE_S)
-    people[0].web_client.act(room, people[0].arm, "discard")
     _await(inbox, EPISODE_PHASE_ENDED)
     people[0].web_client.act(room, people[0].arm, "reset")
     _await(inbox, EPISODE_PHASE_PRACTICE)
@@ -153,7 +152,7 @@ def _play_one_away(room: str, people: Sequence[EmulatedUser], inbox: Inbox) -> N
 
 def _await(inbox: Inbox, phase: EpisodePhase) -> None:
     while True:
-        told = inbox.get(timeout=30.0)
+        told = inbox.get(timeout=LONGEST_SILENCE_S)
         if isinstance(told, RoomStatus) and told.episode.phase == phase:
             return
 
@@ -161,7 +160,7 @@ def _await(inbox: Inbox, phase: EpisodePhase) -> None:
 def _hear(inbox: Inbox, arms: Sequence[str]) -> Heard:
     heard = Heard()
     while min((heard.reports.get(arm, 0) for arm in arms), default=0) < REPORTS:
-        told = inbox.get(timeout=30.0)
+        told = inbox.get(timeout=LONGEST_SILENCE_S)
         if isinstance(told, Event):
             heard.on_event(told)
         else:

@@ -54,9 +54,6 @@ class _Orders:
     def on_watched(self, limits_bps: Any) -> None:
         self.limits_bps = dict(limits_bps)
 
-    def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None:
-        """Nobody speaks."""
-
     def on_keyframe_wanted(self, stream: Stream) -> None:
         self.wanted.add(stream)
 
@@ -64,6 +61,7 @@ class _Orders:
     def on_left(self, peer: Peer) -> None: ...
     def on_pose(self, peer: Peer, payload: bytes) -> None: ...
     def on_status(self, peer: Peer, text: str) -> None: ...
+    def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None: ...
 
 
 def show(

@@ -19,20 +19,21 @@ from mart.teleop_gateway.webrtc import status_channel
 
 _PING_EVERY_S = 1.0
 _OPEN_TIMEOUT_S = 30.0
+_OFFER_EVERY_S = 0.25  # a seat takes five a second
 T = TypeVar("T")
 
 
 class Watcher:
-    """Hold one page's connection to a seat. pictures: that came; poses: that came instead."""
+    """Hold one page's connection to a seat."""
 
     def __init__(self) -> None:
-        self.pictures = self.poses = 0
+        self._poses = 0
         self._connection = RTCPeerConnection(RTCConfiguration([]))
         self._status = self._channel("status")
         self._opened = asyncio.Event()
         self._status.on("open", self._opened.set)
         self._channel("bodies").on("message", self._on_poses)
-        self._connection.addTransceiver("video", direction="recvonly")
+        self._receiver = self._connection.addTransceiver("video", direction="recvonly").receiver
         self._pinging: asyncio.Task[None] | None = None
 
     async def open(self, exchange: Callable[[str], str], *, draws: bool) -> None:
@@ -44,6 +45,12 @@ class Watcher:
         drawing = {"type": "drawing", "on": draws, "p50_ms": 1.0, "p95_ms": 1.0, "per_s": 60.0}
         self._status.send(json.dumps(drawing))
         self._pinging = asyncio.ensure_future(self._ping())
+
+    async def received(self) -> tuple[int, int]:
+        """Return how many packets of video came, and how many messages with poses."""
+        stats = await self._receiver.getStats()
+        packets = sum(one.packetsReceived for one in stats.values() if one.type == "inbound-rtp")
+        return packets, self._poses
 
     async def close(self) -> None:
         """End the connection."""
@@ -57,15 +64,18 @@ class Watcher:
             await asyncio.sleep(_PING_EVERY_S)
 
     def _on_poses(self, _: bytes) -> None:
-        self.poses += 1
+        self._poses += 1
 
     def _channel(self, label: str) -> RTCDataChannel:
         return self._connection.createDataChannel(label, ordered=False, maxRetransmits=0)
 
 
 @contextlib.contextmanager
-def watching(clients: Sequence[WebClient], room: str, arm: str, *, draws: bool) -> Iterator[list[Watcher]]:
-    """Have each of these watch a seat: by video, or by poses where they draw."""
+def watching(clients: Sequence[WebClient], room: str, arm: str, *, draws: bool) -> Iterator[None]:
+    """Have each of these watch a seat: by video, or by poses where they draw.
+
+    Raises RuntimeError at the end where one has seen nothing.
+    """
     loop = asyncio.new_event_loop()
     thread = threading.Thread(target=loop.run_forever, name="watchers", daemon=True)
     thread.start()
@@ -79,19 +89,23 @@ def watching(clients: Sequence[WebClient], room: str, arm: str, *, draws: bool) 
         return watcher
 
     def close(watcher: Watcher) -> None:
+        packets, poses = run(watcher.received())
         run(watcher.close())
+        if not (poses if draws else packets):
+            raise RuntimeError(
+                f"A watcher saw nothing: {packets} packets of video, {poses} messages with poses."
+            )
 
     with mock.patch.object(rtcrtpreceiver, "decoder_worker", _discard), contextlib.ExitStack() as stack:
         stack.callback(loop.close)
         stack.callback(thread.join)
         stack.callback(loop.call_soon_threadsafe, loop.stop)
-        watchers = []
         for client in clients:
             if draws:
                 _have_scene_made(client, room, arm)
-            watchers.append(run(opened(client)))
-            stack.callback(close, watchers[-1])
-        yield watchers
+            stack.callback(close, run(opened(client)))
+            clock.sleep_s(_OFFER_EVERY_S)
+        yield
 
 
 def _have_scene_made(client: WebClient, room: str, arm: str) -> None:

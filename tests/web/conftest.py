@@ -50,11 +50,9 @@ def bus() -> MemoryBus:
 @pytest.fixture
 async def app_state(bus: MemoryBus, tmp_path: Path) -> AsyncIterator[AppState]:
     aio = AsyncBus(bus, asyncio.get_running_loop())
-    lobby = Lobby()
-    with (
-        contextlib.closing(LobbyFeed(aio, lobby)),
-        contextlib.closing(UserSessions(":memory:")) as user_sessions,
-    ):
+    with contextlib.closing(UserSessions(":memory:")) as user_sessions, contextlib.ExitStack() as opened:
+        lobby = Lobby(user_sessions.pass_course)
+        opened.enter_context(contextlib.closing(LobbyFeed(aio, lobby)))
         yield AppState(
             bus=aio,
             lobby=lobby,

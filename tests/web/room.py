@@ -26,6 +26,7 @@ from mart.runtime.bus.base import Bus, Request
 from mart.sim.room.barrier import Barrier
 from mart.sim.room.emergency_stop import StopLatch
 from mart.sim.room.episode_state_machine import EpisodeStateMachine
+from mart.sim.room.recording_rules import RecordingRules
 from mart.sim.room.saved_room import SavedStop
 from mart.sim.room.seats import SeatHolder, SeatTable
 
@@ -62,6 +63,7 @@ class Room:
         self.tick = 1
         self.control_hz = 20.0
         self.plan = 0
+        self.practice = self.course_required = False
         self._barrier = Barrier(task.arm_names, 0.05, 0.0)
         self._stop = StopLatch(self._barrier, self.seats, None, self._on_stop_changed, 0.0)
         self._subtasks = task.subtasks
@@ -88,6 +90,8 @@ class Room:
             stop=self._stop.message(),
             seats=[self._seat(seat) for seat in self.seats],
             wall_ns=clock.wall_ns(),
+            practice=self.practice,
+            course_required=self.course_required,
         )
         if self.plan:
             status.plan.episodes = self.plan
@@ -115,6 +119,7 @@ class Room:
             name=seat.name,
             ready=self.course.is_ready(seat.arm),
             policy=seat.driver.policy,
+            passed_course=seat.passed_course,
             relieved=seat.relieved.called if seat.relieved else "",
         )
 
@@ -139,7 +144,11 @@ class Room:
                     self._stop.let_go(asked.go_on)
                 case "set_plan":
                     self.plan = asked.set_plan.episodes
+                case "require_course":
+                    self.course_required = asked.require_course.required
                 case _:
+                    rules = RecordingRules(self.practice, self.course_required)
+                    rules.require_may_begin(asked, self.seats)
                     self.course.answer(asked, self.seats, clock.monotonic_s())
         except MartError as error:
             reply.error.CopyFrom(error_message(error))

@@ -5,6 +5,7 @@ declare namespace Api {
     holder_id: string;
     name: string;
     hosts: boolean;
+    passed_course: boolean;
   }
 
   interface TaskOption {
@@ -21,6 +22,8 @@ declare namespace Api {
     control_hz: number;
     episodes: number;
     arms: number;
+    practice: boolean;
+    course_required: boolean;
   }
 
   interface Finding {
@@ -58,6 +61,7 @@ declare namespace Api {
     policy: string;
     relieved: string;
     kept_s: number;
+    passed_course: boolean;
   }
 
   interface Waiting {
@@ -84,6 +88,9 @@ declare namespace Api {
     title: string;
     arms: string[];
     done: boolean;
+    /** Simulated, and 0 where the task keeps no score. */
+    seconds: number;
+    tries: number;
   }
 
   interface Plan {
@@ -134,6 +141,8 @@ declare namespace Api {
     plan: Plan | null;
     stop: { arm: string; name: string; by_host: boolean; also_name: string } | null;
     unrecorded: string;
+    practice: boolean;
+    course_required: boolean;
     still: number;
     /** By arm, of those from whose side somebody looks. */
     stills: Record<string, number>;

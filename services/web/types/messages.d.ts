@@ -30,6 +30,13 @@ declare namespace Messages {
     viewpoints: string[];
   }
 
+  interface CatalogueReplyDriverStatistics {
+    name: string;
+    episodes: number;
+    successes: number;
+    simulated_s: number;
+  }
+
   interface CatalogueReplyListing {
     episodes: RecordedEpisode[];
     matching: number;
@@ -38,6 +45,8 @@ declare namespace Messages {
     operators: string[];
     datasets: NamedDataSet[];
     skills: string[];
+    simulated_s: number;
+    drivers: CatalogueReplyDriverStatistics[];
   }
 
   interface Curve {

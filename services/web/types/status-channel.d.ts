@@ -25,6 +25,8 @@ declare namespace StatusChannel {
     barrier: Messages.BarrierPhase;
     phase: Messages.EpisodePhase | "unspecified";
     ready: boolean;
+    practises_only: boolean;
+    partners: boolean;
     stopped_by: string;
     paused_by_host: boolean;
     waiting: { arm: string; since_s: number }[];

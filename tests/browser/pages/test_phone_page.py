@@ -5,11 +5,13 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mart.platform.run.running import Platform
+from tests.browser.pages.conftest import Run
 from tests.browser.pages.legibility import faults
 from tests.browser.pages.visits import HERE, SCREENSHOTS, driving, listen, visit
 
@@ -139,6 +141,49 @@ def test_an_episode_is_begun_and_discarded_by_the_phone(browser: Browser, platfo
         phone.page.get_by_role("button", name="Discard").click()
         phone.page.get_by_role("button", name="Press again to discard").click()
         expect(phone.operator.locator("#state-label")).to_have_text("Discarded")
+        expect(phone.page.get_by_role("button", name="Again", exact=True)).to_be_visible()
+
+
+@pytest.mark.parametrize(
+    ("status", "again", "text"),
+    [
+        ({}, False, "Ready"),
+        ({}, True, "Again"),
+        ({"ready": True}, True, "Not ready yet"),
+        ({"practises_only": True}, False, None),
+        ({"phase": "recording"}, False, "Discard"),
+        ({"phase": "ended"}, True, None),
+    ],
+)
+def test_the_button_of_the_episode_offers_what_can_be_done(
+    run: Run, status: dict[str, Any], again: bool, text: str | None
+) -> None:
+    status = {"phase": "practice", "ready": False, "practises_only": False} | status
+    script = "({ nextAction }, { status, again }) => nextAction(status, again)?.text ?? null"
+    assert run("phone/episode-button.js", script, {"status": status, "again": again}) == text
+
+
+@pytest.mark.parametrize(("width", "height"), [(360, 640), (740, 360)])
+def test_a_word_is_said_to_the_partners_by_the_phone(
+    browser: Browser, platform: Platform, width: int, height: int
+) -> None:
+    with paired(browser, platform, xr=True, width=width, height=height) as phone:
+        phone.start()
+        chip = phone.operator.locator(".partner[data-arm=arm1]")
+        phone.page.get_by_role("button", name="Wait", exact=True).click()
+        expect(chip).to_contain_text("Waits for you")
+        phone.page.get_by_role("button", name="Go", exact=True).click()
+        expect(chip).not_to_contain_text("Waits for you")
+        phone.press("#hold")
+        expect(phone.page.locator("#hold")).to_have_attribute("aria-pressed", "true")
+        phone.page.mouse.up()
+        phone.page.get_by_role("button", name="Say…").click()
+        expect(phone.page.get_by_role("button", name="Come closer")).to_be_visible()
+        phone.is_fine(f"phone-say-{width}x{height}")
+        phone.page.get_by_role("button", name="Slower").click()
+        expect(phone.page.locator("#say")).to_be_hidden()
+        said = phone.operator.locator("#cues .said")
+        expect(said).to_contain_text("Slower")
 
 
 def test_the_gripper_bar_slides_and_taps(browser: Browser, platform: Platform) -> None:

@@ -52,3 +52,22 @@ def test_a_plan_counts_good_episodes(good: int, words: str) -> None:
 def test_without_a_plan_nothing_is_counted() -> None:
     assert as_json(m.RoomStatus(room="room-1"))["plan"] is None
     assert "episode " not in in_words(m.RoomStatus(room="room-1"))
+
+
+def test_the_score_of_the_course_is_shown_station_by_station() -> None:
+    status = m.RoomStatus(room="room-2", task="practice_course", practice=True)
+    status.seats.append(m.Seat(arm="arm0", operator=m.OPERATOR_HUMAN, name="Ana"))
+    status.episode.phase = m.EPISODE_PHASE_PRACTICE
+    for name, seconds, tries in (("reach0", 3.24, 1), ("turn0", 5.0, 2), ("grip0", 1.0, 1)):
+        status.progress.subtasks.add(name=name, done=True, seconds=seconds, tries=tries)
+    status.progress.subtasks.add(name="carry0", seconds=0.5)
+    line, score = in_words(status).splitlines()
+    assert line.endswith("practice room")
+    assert (
+        score
+        == "  arm0 Ana: reach0 3.2 s in 1 try, turn0 5.0 s in 2 tries, grip0 1.0 s in 1 try, carry0 open"
+    )
+    told = as_json(status)["course"]
+    assert [(one["arm"], one["passed"]) for one in told] == [("arm0", False)]
+    status.progress.subtasks[3].done = True
+    assert in_words(status).endswith("passed in 9.7 s")

@@ -8,9 +8,11 @@ from mart.platform.run.plan import (
     environment,
     lockstep_processes,
     processes,
+    room,
     training_processes,
 )
 from mart.platform.run.supervisor import configuration
+from mart.protocol.messages import RoomsRequest
 from mart.protocol.vocabulary import ServiceKind
 
 
@@ -31,6 +33,12 @@ def test_options_reach_the_commands() -> None:
     assert [" ".join(one.command) for one in left if one.kind == ServiceKind.SIM] == [
         "sim --room lab --task t --control-hz auto"
     ]
+    practice = processes(PlatformOptions(Path("data"), room="lab", task="t", practice=True))
+    assert practice[1].command[-1] == "--practice"
+    wanted = RoomsRequest.Open(room="room-2", task="t", course_required=True)
+    assert room(PlatformOptions(Path("data"), practice=True), wanted).command == (
+        *("sim", "--room", "room-2", "--task", "t", "--control-hz", "auto", "--course-required"),
+    )
     assert words[ServiceKind.WEB] == "web --host 127.0.0.1 --port 8443 --public-host lab.local"
 
 

@@ -59,6 +59,29 @@ def test_it_says_how_many_there_are_and_what_to_choose_from() -> None:
     assert list(told.operators) == ["Ana", "Ben", "lifter"]
 
 
+def test_what_each_has_driven_is_added_up_since_a_time() -> None:
+    def episode(path: str, started_ns: int, outcome: str, driver: str) -> LabelledEpisode:
+        return LabelledEpisode(
+            path=path,
+            size_bytes=1,
+            outcome=outcome,
+            simulated_s=10.0,
+            started_ns=started_ns,
+            operators={"arm0": driver, "arm1": "script"},
+        )
+
+    rows = [
+        episode("a", 1, "success", "human Ana"),
+        episode("b", 5, "success", "human Ana | tick 9: human Ben"),
+        episode("c", 6, "failure", "human Ana"),
+    ]
+    told = listing(rows, Asked(since_ns=5))
+    assert (told.matching, told.successes, told.simulated_s) == (2, 1, 20.0)
+    drivers = [(one.name, one.episodes, one.successes, one.simulated_s) for one in told.drivers]
+    assert drivers == [("Ana", 2, 1, 20.0), ("Ben", 1, 1, 10.0)]
+    assert len(listing(rows, Asked()).drivers) == 2
+
+
 def test_an_episode_travels_whole() -> None:
     (episode,) = listing(ROWS, Asked(operator="Ben")).episodes
     assert (episode.task, episode.verdict, episode.HasField("real_time_factor")) == (

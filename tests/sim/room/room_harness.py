@@ -17,6 +17,7 @@ from mart.protocol.messages import (
     State,
     pose_message,
 )
+from mart.sim.room.episode_state_machine import Terms
 from mart.sim.room.room import Room
 from mart.sim.room.saved_room import SavedRoom
 from mart.sim.world import Diverged, World
@@ -58,6 +59,7 @@ class RoomHarness:
         world: World,
         record: SavedRoom | None = None,
         explain: Callable[[Diverged], str] = str,
+        terms: Terms = Terms(),  # noqa: B008 - frozen
     ) -> None:
         self.world = world
         self.publisher = CapturingPublisher()
@@ -71,6 +73,7 @@ class RoomHarness:
             self.kept.append,
             now_s=self.now_s,
             explain=explain,
+            terms=terms,
         )
         self._sequence = 0
 

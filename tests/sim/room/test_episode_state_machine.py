@@ -26,13 +26,13 @@ from mart.protocol.messages import (
     EpisodeRequest,
     Outcome,
 )
+from mart.sim.room.episode_say import EpisodeEnder
 from mart.sim.room.episode_state_machine import (
     COUNTDOWN_S,
     ENDED_S,
     BeginEpisode,
     Effect,
     EndEpisode,
-    EpisodeEnder,
     EpisodeStateMachine,
     ResetWorld,
     seed_of,

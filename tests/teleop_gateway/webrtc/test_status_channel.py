@@ -13,6 +13,8 @@ from mart.protocol.messages import (
     BARRIER_PHASE_STALLED,
     CUE_WAIT,
     EPISODE_PHASE_RECORDING,
+    OPERATOR_HOLD,
+    OPERATOR_SCRIPT,
     ArmState,
     Episode,
     RoomStatus,
@@ -50,7 +52,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
     room = RoomStatus(
         barrier=BARRIER_PHASE_STALLED,
         waiting_for=[Waiting(arm="arm1", since_s=0.801)],
-        seats=[Seat(arm="arm1"), Seat(arm="arm0", ready=True)],
+        seats=[Seat(arm="arm1", operator=OPERATOR_HOLD), Seat(arm="arm0", ready=True)],
         episode=Episode(phase=EPISODE_PHASE_RECORDING),
     )
     text = status_channel.tick(state, room, driving(), 10.016, frames_per_s=19.98, latency=LATENCY)
@@ -67,6 +69,8 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "holding": False,
         "phase": "recording",
         "ready": True,
+        "practises_only": False,
+        "partners": False,
         "barrier": "stalled",
         "stopped_by": "",
         "paused_by_host": False,
@@ -108,6 +112,24 @@ def test_who_speaks_fits_one_packet_however_they_are_called() -> None:
         "speakers": [{"arm": "arm3", "name": "🤖" * 32}] * LANES,
         "heard": False,
     }
+
+
+@pytest.mark.parametrize(
+    ("practice", "required", "passed", "practises_only"),
+    [
+        (False, False, False, False),
+        (True, False, True, True),
+        (False, True, False, True),
+        (False, True, True, False),
+    ],
+)
+def test_a_phone_is_told_where_nothing_is_recorded_with_its_person(
+    practice: bool, required: bool, passed: bool, practises_only: bool
+) -> None:
+    seats = [Seat(arm="arm0", passed_course=passed), Seat(arm="arm1", operator=OPERATOR_SCRIPT)]
+    room = RoomStatus(practice=practice, course_required=required, seats=seats)
+    said = json.loads(status_channel.tick(State(), room, driving(), 10.0, frames_per_s=0, latency=None))
+    assert (said["practises_only"], said["partners"]) == (practises_only, True)
 
 
 def test_nothing_is_made_up_before_there_is_anything() -> None:

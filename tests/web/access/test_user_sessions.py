@@ -20,6 +20,30 @@ def test_a_restart_throws_nobody_out(tmp_path: Path) -> None:
         assert people.find(session_id, SESSION_S) == ana
 
 
+def test_who_has_passed_the_course_is_kept_over_a_restart_until_they_leave(tmp_path: Path) -> None:
+    path = tmp_path / "sessions.sqlite"
+    with contextlib.closing(UserSessions(path)) as people:
+        session_id, ana = people.join("Ana", 0.0)
+        people.join("Ben", 0.0)
+        assert people.pass_course(lambda holder_id: holder_id == ana.holder_id, 40.0, 6)
+        assert not people.pass_course(lambda _: False, 1.0, 1)
+    with contextlib.closing(UserSessions(path)) as people:
+        found = people.find(session_id, 1.0)
+        assert found == User(ana.holder_id, "Ana", passed_course=True)
+        assert people.has_passed_course(ana.holder_id)
+        people.leave(found)
+        assert not people.has_passed_course(ana.holder_id)
+
+
+def test_the_best_time_of_a_course_is_kept() -> None:
+    people = UserSessions(":memory:")
+    people.join("Ana", 0.0)
+    for seconds, tries in ((40.0, 6), (30.0, 5), (60.0, 4)):
+        people.pass_course(lambda _: True, seconds, tries)
+    assert people._database.execute("SELECT seconds, tries FROM passed_course").fetchall() == [(30.0, 5)]
+    people.close()
+
+
 def test_the_file_lets_nobody_in(tmp_path: Path) -> None:
     path = tmp_path / "sessions.sqlite"
     with contextlib.closing(UserSessions(path)) as people:

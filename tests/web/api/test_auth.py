@@ -49,7 +49,7 @@ async def test_joining_again_keeps_the_person_and_changes_the_name(enter: Enter)
     before = (await ana.get("/api/me")).json()
     await ana.post("/api/join", json={"code": JOIN_CODE, "name": "Anna"})
     after = (await ana.get("/api/me")).json()
-    assert after == {"holder_id": before["holder_id"], "name": "Anna", "hosts": False}
+    assert after == {"holder_id": before["holder_id"], "name": "Anna", "hosts": False, "passed_course": False}
 
 
 async def test_a_wrong_code_is_refused_in_words(enter: Enter) -> None:

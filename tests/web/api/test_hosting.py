@@ -26,6 +26,7 @@ REQUESTS: dict[tuple[str, str], Any] = {
     ("POST", "/api/rooms/{room}/host/pause"): None,
     ("DELETE", "/api/rooms/{room}/host/pause"): None,
     ("PUT", "/api/rooms/{room}/host/plan"): {"episodes": 5},
+    ("PUT", "/api/rooms/{room}/host/course"): {"required": True},
 }
 
 

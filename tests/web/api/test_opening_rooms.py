@@ -60,6 +60,19 @@ async def test_a_room_is_opened_and_closed(enter: Enter, asked: list[RoomsReques
     )
 
 
+async def test_a_room_for_practice_and_one_that_asks_for_the_course(
+    enter: Enter, asked: list[RoomsRequest]
+) -> None:
+    ana = await enter("Ana")
+    task = "practice_course"
+    await ana.post("/api/rooms", json={"task": task, "practice": True})
+    await ana.post("/api/rooms", json={"task": task, "course_required": True})
+    assert [request.open for request in asked] == [
+        RoomsRequest.Open(task=task, practice=True),
+        RoomsRequest.Open(task=task, course_required=True),
+    ]
+
+
 async def test_only_who_has_joined_and_only_from_our_pages(enter: Enter, asked: list[RoomsRequest]) -> None:
     stranger, ana = await enter(), await enter("Ana")
     body = {"task": "three_arm_lift_wiping"}

@@ -59,7 +59,14 @@ def test_a_room_is_told_in_the_words_of_the_protocol() -> None:
     assert room["episode"]["phase"] == "recording"
     assert room["to_do"] == {"arm0": "Hold it."}
     assert room["progress"]["subtasks"] == [
-        {"name": "lift_cube0", "title": "The blue cube is up", "arms": ["arm0"], "done": True}
+        {
+            "name": "lift_cube0",
+            "title": "The blue cube is up",
+            "arms": ["arm0"],
+            "done": True,
+            "seconds": 0.0,
+            "tries": 0,
+        }
     ]
     assert room["time_limit_s"] > 0
     assert [seat["operator"] for seat in room["seats"]] == ["human", "script"]

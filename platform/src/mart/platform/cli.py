@@ -22,6 +22,7 @@ from mart.runtime.rate_option import room_rate_option
 if TYPE_CHECKING:
     from mart.platform.collect.collection import CollectionSpec
     from mart.platform.collect.saved_episodes import CollectedEpisode
+    from mart.platform.run.running import Platform
 
 _SKILLS = click.Choice(["expert", "average", "novice"])
 _TIME_LIMIT = click.FloatRange(0.0, 3600.0, min_open=True)
@@ -46,6 +47,8 @@ _CONTROL_HZ_OPTION = click.option(
     type=click.IntRange(1, 10_000),
     help="How many good episodes are wanted; the pages count them.  [default: no plan]",
 )
+@click.option("--practice", is_flag=True, help="Nothing is recorded in this room.")
+@click.option("--course-required", is_flag=True, help="Only who has passed the practice course records.")
 @click.option(
     "--host", default="127.0.0.1", show_default=True, help="0.0.0.0 lets phones and other laptops in."
 )
@@ -63,6 +66,8 @@ def run(
     room: str,
     control_hz: float | str | None,
     episodes: int | None,
+    practice: bool,
+    course_required: bool,
     host: str,
     port: int,
     public_host: str,
@@ -70,7 +75,6 @@ def run(
     as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
-    from mart.platform.run.invitation import in_words, urls_for_others
     from mart.platform.run.plan import (
         PlatformOptions,
         processes,
@@ -79,15 +83,27 @@ def run(
     from mart.platform.run.room_manager import opening_rooms
     from mart.platform.run.running import running_platform
     from mart.platform.run.turn_server import relay_beside, with_relay
+    from mart.protocol.practice import require_practice_alone
     from mart.protocol.tasks import get_task
     from mart.runtime.service import stop_requested
     from mart.runtime.settings import Settings
 
     get_task(task)
+    require_practice_alone(practice=practice, course_required=course_required, episodes=episodes or 0)
     settings = Settings()
     given_hz = control_hz if isinstance(control_hz, float) else None
     options = PlatformOptions(
-        settings.data_dir, settings.router, host, port, public_host, room, task, given_hz, episodes=episodes
+        settings.data_dir,
+        settings.router,
+        host,
+        port,
+        public_host,
+        room,
+        task,
+        given_hz,
+        episodes=episodes,
+        practice=practice,
+        course_required=course_required,
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)
@@ -96,25 +112,31 @@ def run(
         options, plan = with_relay(options, relay), (relay.process, *plan)
     click.echo("Starting MART …", err=True)
     with stop_requested() as stop, running_platform(options, plan) as platform, opening_rooms(platform):
-        others = urls_for_others(options)
-        result = {
-            "url": platform.url,
-            "urls": others,
-            "join_code": platform.join_code,
-            "host_code_file": str(platform.host_code_path),
-            "room": room,
-            "task": task,
-        }
-        on_terminal = sys.stdout.isatty()  # anything else may be a log
-        kept = platform.host_code_path
-        host_code = kept.read_text().strip() if on_terminal else f"in {kept}"
-        text = in_words(
-            platform.url, platform.join_code, others, host_code=host_code, with_picture=on_terminal
-        )
-        print_result(result, text, as_json)
+        _print_invitation(platform, as_json)
         stop.wait()
         with contextlib.suppress(OSError):  # a terminal that was closed
             click.echo("Stopping MART …", err=True)
+
+
+def _print_invitation(platform: Platform, as_json: bool) -> None:
+    """Print how people come in; the host code only on a terminal, since anything else may be a log."""
+    from mart.platform.run.invitation import in_words, urls_for_others
+
+    options = platform.options
+    others = urls_for_others(options)
+    result = {
+        "url": platform.url,
+        "urls": others,
+        "join_code": platform.join_code,
+        "host_code_file": str(platform.host_code_path),
+        "room": options.room,
+        "task": options.task,
+    }
+    on_terminal = sys.stdout.isatty()  # anything else may be a log
+    kept = platform.host_code_path
+    host_code = kept.read_text().strip() if on_terminal else f"in {kept}"
+    text = in_words(platform.url, platform.join_code, others, host_code=host_code, with_picture=on_terminal)
+    print_result(result, text, as_json)
 
 
 @click.command()

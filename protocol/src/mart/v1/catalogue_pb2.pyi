@@ -141,7 +141,7 @@ class NamedDataSet(_message.Message):
 class CatalogueRequest(_message.Message):
     __slots__ = ("list", "show", "label", "file", "video", "picture", "curate", "undo")
     class List(_message.Message):
-        __slots__ = ("task", "outcome", "verdict", "operator", "room", "offset", "count", "skill", "dataset")
+        __slots__ = ("task", "outcome", "verdict", "operator", "room", "offset", "count", "skill", "dataset", "since_ns")
         TASK_FIELD_NUMBER: _ClassVar[int]
         OUTCOME_FIELD_NUMBER: _ClassVar[int]
         VERDICT_FIELD_NUMBER: _ClassVar[int]
@@ -151,6 +151,7 @@ class CatalogueRequest(_message.Message):
         COUNT_FIELD_NUMBER: _ClassVar[int]
         SKILL_FIELD_NUMBER: _ClassVar[int]
         DATASET_FIELD_NUMBER: _ClassVar[int]
+        SINCE_NS_FIELD_NUMBER: _ClassVar[int]
         task: str
         outcome: str
         verdict: str
@@ -160,7 +161,8 @@ class CatalogueRequest(_message.Message):
         count: int
         skill: str
         dataset: str
-        def __init__(self, task: _Optional[str] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., operator: _Optional[str] = ..., room: _Optional[str] = ..., offset: _Optional[int] = ..., count: _Optional[int] = ..., skill: _Optional[str] = ..., dataset: _Optional[str] = ...) -> None: ...
+        since_ns: int
+        def __init__(self, task: _Optional[str] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., operator: _Optional[str] = ..., room: _Optional[str] = ..., offset: _Optional[int] = ..., count: _Optional[int] = ..., skill: _Optional[str] = ..., dataset: _Optional[str] = ..., since_ns: _Optional[int] = ...) -> None: ...
     class Show(_message.Message):
         __slots__ = ("path",)
         PATH_FIELD_NUMBER: _ClassVar[int]
@@ -242,8 +244,19 @@ class CatalogueRequest(_message.Message):
 
 class CatalogueReply(_message.Message):
     __slots__ = ("error", "listing", "details", "episode", "piece", "curated")
+    class DriverStatistics(_message.Message):
+        __slots__ = ("name", "episodes", "successes", "simulated_s")
+        NAME_FIELD_NUMBER: _ClassVar[int]
+        EPISODES_FIELD_NUMBER: _ClassVar[int]
+        SUCCESSES_FIELD_NUMBER: _ClassVar[int]
+        SIMULATED_S_FIELD_NUMBER: _ClassVar[int]
+        name: str
+        episodes: int
+        successes: int
+        simulated_s: float
+        def __init__(self, name: _Optional[str] = ..., episodes: _Optional[int] = ..., successes: _Optional[int] = ..., simulated_s: _Optional[float] = ...) -> None: ...
     class Listing(_message.Message):
-        __slots__ = ("episodes", "matching", "successes", "tasks", "operators", "datasets", "skills")
+        __slots__ = ("episodes", "matching", "successes", "tasks", "operators", "datasets", "skills", "simulated_s", "drivers")
         EPISODES_FIELD_NUMBER: _ClassVar[int]
         MATCHING_FIELD_NUMBER: _ClassVar[int]
         SUCCESSES_FIELD_NUMBER: _ClassVar[int]
@@ -251,6 +264,8 @@ class CatalogueReply(_message.Message):
         OPERATORS_FIELD_NUMBER: _ClassVar[int]
         DATASETS_FIELD_NUMBER: _ClassVar[int]
         SKILLS_FIELD_NUMBER: _ClassVar[int]
+        SIMULATED_S_FIELD_NUMBER: _ClassVar[int]
+        DRIVERS_FIELD_NUMBER: _ClassVar[int]
         episodes: _containers.RepeatedCompositeFieldContainer[RecordedEpisode]
         matching: int
         successes: int
@@ -258,7 +273,9 @@ class CatalogueReply(_message.Message):
         operators: _containers.RepeatedScalarFieldContainer[str]
         datasets: _containers.RepeatedCompositeFieldContainer[NamedDataSet]
         skills: _containers.RepeatedScalarFieldContainer[str]
-        def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ..., datasets: _Optional[_Iterable[_Union[NamedDataSet, _Mapping]]] = ..., skills: _Optional[_Iterable[str]] = ...) -> None: ...
+        simulated_s: float
+        drivers: _containers.RepeatedCompositeFieldContainer[CatalogueReply.DriverStatistics]
+        def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ..., datasets: _Optional[_Iterable[_Union[NamedDataSet, _Mapping]]] = ..., skills: _Optional[_Iterable[str]] = ..., simulated_s: _Optional[float] = ..., drivers: _Optional[_Iterable[_Union[CatalogueReply.DriverStatistics, _Mapping]]] = ...) -> None: ...
     class Details(_message.Message):
         __slots__ = ("episode", "wall_s", "lanes", "traces", "views", "cadence", "versions", "verification", "simulated", "viewpoints")
         class CadenceEntry(_message.Message):

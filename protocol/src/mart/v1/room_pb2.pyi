@@ -81,7 +81,7 @@ CUE_LET_GO: Cue
 CUE_COME_CLOSER: Cue
 
 class Seat(_message.Message):
-    __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged", "policy", "relieved", "holder_tag", "kept_s")
+    __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged", "policy", "relieved", "holder_tag", "passed_course", "kept_s")
     ARM_FIELD_NUMBER: _ClassVar[int]
     OPERATOR_FIELD_NUMBER: _ClassVar[int]
     EPOCH_FIELD_NUMBER: _ClassVar[int]
@@ -92,6 +92,7 @@ class Seat(_message.Message):
     POLICY_FIELD_NUMBER: _ClassVar[int]
     RELIEVED_FIELD_NUMBER: _ClassVar[int]
     HOLDER_TAG_FIELD_NUMBER: _ClassVar[int]
+    PASSED_COURSE_FIELD_NUMBER: _ClassVar[int]
     KEPT_S_FIELD_NUMBER: _ClassVar[int]
     arm: str
     operator: _command_pb2.Operator
@@ -103,8 +104,9 @@ class Seat(_message.Message):
     policy: str
     relieved: str
     holder_tag: str
+    passed_course: bool
     kept_s: float
-    def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., epoch: _Optional[int] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., ready: _Optional[bool] = ..., engaged: _Optional[bool] = ..., policy: _Optional[str] = ..., relieved: _Optional[str] = ..., holder_tag: _Optional[str] = ..., kept_s: _Optional[float] = ...) -> None: ...
+    def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., epoch: _Optional[int] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., ready: _Optional[bool] = ..., engaged: _Optional[bool] = ..., policy: _Optional[str] = ..., relieved: _Optional[str] = ..., holder_tag: _Optional[str] = ..., passed_course: _Optional[bool] = ..., kept_s: _Optional[float] = ...) -> None: ...
 
 class Waiting(_message.Message):
     __slots__ = ("arm", "since_s")
@@ -165,7 +167,7 @@ class EmergencyStop(_message.Message):
     def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ..., by_host: _Optional[bool] = ..., also_name: _Optional[str] = ...) -> None: ...
 
 class RoomStatus(_message.Message):
-    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded", "to_do")
+    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded", "practice", "course_required", "to_do")
     class ToDoEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -192,6 +194,8 @@ class RoomStatus(_message.Message):
     STOP_FIELD_NUMBER: _ClassVar[int]
     LAST_ENDED_FIELD_NUMBER: _ClassVar[int]
     UNRECORDED_FIELD_NUMBER: _ClassVar[int]
+    PRACTICE_FIELD_NUMBER: _ClassVar[int]
+    COURSE_REQUIRED_FIELD_NUMBER: _ClassVar[int]
     TO_DO_FIELD_NUMBER: _ClassVar[int]
     room: str
     task: str
@@ -212,22 +216,26 @@ class RoomStatus(_message.Message):
     stop: EmergencyStop
     last_ended: Event.EpisodeEnded
     unrecorded: str
+    practice: bool
+    course_required: bool
     to_do: _containers.ScalarMap[str, str]
-    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ..., to_do: _Optional[_Mapping[str, str]] = ...) -> None: ...
+    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ..., practice: _Optional[bool] = ..., course_required: _Optional[bool] = ..., to_do: _Optional[_Mapping[str, str]] = ...) -> None: ...
 
 class SeatRequest(_message.Message):
     __slots__ = ("claim", "release", "assign", "hand_back", "free")
     class Claim(_message.Message):
-        __slots__ = ("arm", "holder_id", "name", "operator")
+        __slots__ = ("arm", "holder_id", "name", "operator", "passed_course")
         ARM_FIELD_NUMBER: _ClassVar[int]
         HOLDER_ID_FIELD_NUMBER: _ClassVar[int]
         NAME_FIELD_NUMBER: _ClassVar[int]
         OPERATOR_FIELD_NUMBER: _ClassVar[int]
+        PASSED_COURSE_FIELD_NUMBER: _ClassVar[int]
         arm: str
         holder_id: str
         name: str
         operator: _command_pb2.Operator
-        def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ...) -> None: ...
+        passed_course: bool
+        def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., passed_course: _Optional[bool] = ...) -> None: ...
     class Release(_message.Message):
         __slots__ = ("arm", "holder_id")
         ARM_FIELD_NUMBER: _ClassVar[int]
@@ -271,7 +279,7 @@ class SeatRequest(_message.Message):
     def __init__(self, claim: _Optional[_Union[SeatRequest.Claim, _Mapping]] = ..., release: _Optional[_Union[SeatRequest.Release, _Mapping]] = ..., assign: _Optional[_Union[SeatRequest.Assign, _Mapping]] = ..., hand_back: _Optional[_Union[SeatRequest.HandBack, _Mapping]] = ..., free: _Optional[_Union[SeatRequest.Free, _Mapping]] = ...) -> None: ...
 
 class EpisodeRequest(_message.Message):
-    __slots__ = ("ready", "finish", "reset", "set_plan", "stop", "go_on")
+    __slots__ = ("ready", "finish", "reset", "set_plan", "require_course", "stop", "go_on")
     class Ready(_message.Message):
         __slots__ = ("arm", "holder_id", "ready", "number")
         ARM_FIELD_NUMBER: _ClassVar[int]
@@ -322,35 +330,48 @@ class EpisodeRequest(_message.Message):
         episodes: int
         name: str
         def __init__(self, episodes: _Optional[int] = ..., name: _Optional[str] = ...) -> None: ...
+    class RequireCourse(_message.Message):
+        __slots__ = ("required", "name")
+        REQUIRED_FIELD_NUMBER: _ClassVar[int]
+        NAME_FIELD_NUMBER: _ClassVar[int]
+        required: bool
+        name: str
+        def __init__(self, required: _Optional[bool] = ..., name: _Optional[str] = ...) -> None: ...
     READY_FIELD_NUMBER: _ClassVar[int]
     FINISH_FIELD_NUMBER: _ClassVar[int]
     RESET_FIELD_NUMBER: _ClassVar[int]
     SET_PLAN_FIELD_NUMBER: _ClassVar[int]
+    REQUIRE_COURSE_FIELD_NUMBER: _ClassVar[int]
     STOP_FIELD_NUMBER: _ClassVar[int]
     GO_ON_FIELD_NUMBER: _ClassVar[int]
     ready: EpisodeRequest.Ready
     finish: EpisodeRequest.Finish
     reset: EpisodeRequest.Reset
     set_plan: EpisodeRequest.SetPlan
+    require_course: EpisodeRequest.RequireCourse
     stop: EpisodeRequest.Stop
     go_on: EpisodeRequest.GoOn
-    def __init__(self, ready: _Optional[_Union[EpisodeRequest.Ready, _Mapping]] = ..., finish: _Optional[_Union[EpisodeRequest.Finish, _Mapping]] = ..., reset: _Optional[_Union[EpisodeRequest.Reset, _Mapping]] = ..., set_plan: _Optional[_Union[EpisodeRequest.SetPlan, _Mapping]] = ..., stop: _Optional[_Union[EpisodeRequest.Stop, _Mapping]] = ..., go_on: _Optional[_Union[EpisodeRequest.GoOn, _Mapping]] = ...) -> None: ...
+    def __init__(self, ready: _Optional[_Union[EpisodeRequest.Ready, _Mapping]] = ..., finish: _Optional[_Union[EpisodeRequest.Finish, _Mapping]] = ..., reset: _Optional[_Union[EpisodeRequest.Reset, _Mapping]] = ..., set_plan: _Optional[_Union[EpisodeRequest.SetPlan, _Mapping]] = ..., require_course: _Optional[_Union[EpisodeRequest.RequireCourse, _Mapping]] = ..., stop: _Optional[_Union[EpisodeRequest.Stop, _Mapping]] = ..., go_on: _Optional[_Union[EpisodeRequest.GoOn, _Mapping]] = ...) -> None: ...
 
 class RoomsRequest(_message.Message):
     __slots__ = ("open", "close")
     class Open(_message.Message):
-        __slots__ = ("room", "task", "control_hz", "episodes", "arms")
+        __slots__ = ("room", "task", "control_hz", "episodes", "arms", "practice", "course_required")
         ROOM_FIELD_NUMBER: _ClassVar[int]
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
         EPISODES_FIELD_NUMBER: _ClassVar[int]
         ARMS_FIELD_NUMBER: _ClassVar[int]
+        PRACTICE_FIELD_NUMBER: _ClassVar[int]
+        COURSE_REQUIRED_FIELD_NUMBER: _ClassVar[int]
         room: str
         task: str
         control_hz: float
         episodes: int
         arms: int
-        def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., episodes: _Optional[int] = ..., arms: _Optional[int] = ...) -> None: ...
+        practice: bool
+        course_required: bool
+        def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., episodes: _Optional[int] = ..., arms: _Optional[int] = ..., practice: _Optional[bool] = ..., course_required: _Optional[bool] = ...) -> None: ...
     class Close(_message.Message):
         __slots__ = ("room", "with_people")
         ROOM_FIELD_NUMBER: _ClassVar[int]

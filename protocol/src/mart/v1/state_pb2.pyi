@@ -55,12 +55,16 @@ class Observation(_message.Message):
     def __init__(self, name: _Optional[str] = ..., value: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class Subtask(_message.Message):
-    __slots__ = ("name", "done")
+    __slots__ = ("name", "done", "seconds", "tries")
     NAME_FIELD_NUMBER: _ClassVar[int]
     DONE_FIELD_NUMBER: _ClassVar[int]
+    SECONDS_FIELD_NUMBER: _ClassVar[int]
+    TRIES_FIELD_NUMBER: _ClassVar[int]
     name: str
     done: bool
-    def __init__(self, name: _Optional[str] = ..., done: _Optional[bool] = ...) -> None: ...
+    seconds: float
+    tries: int
+    def __init__(self, name: _Optional[str] = ..., done: _Optional[bool] = ..., seconds: _Optional[float] = ..., tries: _Optional[int] = ...) -> None: ...
 
 class Progress(_message.Message):
     __slots__ = ("subtasks", "success_now", "success_ticks", "success", "failed")

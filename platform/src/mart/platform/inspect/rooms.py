@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from mart.protocol.messages import Plan, RoomStatus, barrier_word, operator_word, phase_word
+from mart.protocol.messages import Plan, RoomStatus, Seat, barrier_word, operator_word, phase_word
+from mart.protocol.practice import has_passed, stations_of
 
 
 def as_json(status: RoomStatus) -> dict[str, Any]:
@@ -24,6 +25,9 @@ def as_json(status: RoomStatus) -> dict[str, Any]:
         "episodes_saved": status.episodes_saved,
         "episodes_good": status.episodes_good,
         "plan": _plan_json(status),
+        "practice": status.practice,
+        "course_required": status.course_required,
+        "course": [_course_json(status, seat) for seat in status.seats if stations_of(status, seat.arm)],
     }
 
 
@@ -41,7 +45,42 @@ def in_words(status: RoomStatus) -> str:
     )
     if status.HasField("plan"):
         line = f"{line}  {_plan_in_words(status.plan)}"
-    return f"{line}  waiting for {waiting}" if waiting else line
+    if status.practice:
+        line = f"{line}  practice room"
+    if status.course_required:
+        line = f"{line}  practice course required"
+    if waiting:
+        line = f"{line}  waiting for {waiting}"
+    scores = [_course_in_words(status, seat) for seat in status.seats if stations_of(status, seat.arm)]
+    return "\n".join([line, *scores])
+
+
+def _course_json(status: RoomStatus, seat: Seat) -> dict[str, Any]:
+    """Return the score of the practice course of whoever drives an arm."""
+    return {
+        "arm": seat.arm,
+        "name": seat.name,
+        "stations": [
+            {"name": one.name, "done": one.done, "seconds": round(one.seconds, 2), "tries": one.tries}
+            for one in stations_of(status, seat.arm)
+        ],
+        "passed": has_passed(status, seat.arm),
+    }
+
+
+def _course_in_words(status: RoomStatus, seat: Seat) -> str:
+    """Return the same in a line, station by station."""
+    stations = stations_of(status, seat.arm)
+    told = ", ".join(
+        f"{one.name} {one.seconds:.1f} s in {one.tries} {'try' if one.tries == 1 else 'tries'}"
+        if one.done
+        else f"{one.name} open"
+        for one in stations
+    )
+    total = (
+        f"  passed in {sum(one.seconds for one in stations):.1f} s" if has_passed(status, seat.arm) else ""
+    )
+    return f"  {seat.arm} {seat.name or operator_word(seat.operator)}: {told}{total}"
 
 
 def _plan_in_words(plan: Plan) -> str:

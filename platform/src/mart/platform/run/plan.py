@@ -54,6 +54,8 @@ class PlatformOptions:
     seed: int | None = None
     skill: str | None = None
     episodes: int | None = None
+    practice: bool = False
+    course_required: bool = False
     time_limit_s: float | None = None
     environment: Mapping[str, str] = field(default_factory=dict)
     name: str = ""
@@ -130,13 +132,19 @@ def _sim(options: PlatformOptions, room: str, *more: str) -> Process:
     }
     for option, value in chosen.items():
         command += [] if value is None else [option, str(value)]
+    command += ["--practice"] * options.practice + ["--course-required"] * options.course_required
     return Process((*command, *more), ServiceKind.SIM, room)
 
 
 def room(options: PlatformOptions, wanted: RoomsRequest.Open) -> Process:
     """One room more."""
     chosen = replace(
-        options, task=wanted.task, control_hz=wanted.control_hz or None, episodes=wanted.episodes or None
+        options,
+        task=wanted.task,
+        control_hz=wanted.control_hz or None,
+        episodes=wanted.episodes or None,
+        practice=wanted.practice,
+        course_required=wanted.course_required,
     )
     arms = ("--arms", str(wanted.arms)) if wanted.arms else ()
     return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None), wanted.room, *arms)

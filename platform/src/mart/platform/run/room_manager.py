@@ -26,6 +26,7 @@ from mart.protocol.messages import (
     RoomsRequest,
     RoomStatus,
 )
+from mart.protocol.practice import require_practice_alone
 from mart.protocol.queryables import ROOMS
 from mart.protocol.received import decode_received
 from mart.protocol.tasks import get_task
@@ -107,6 +108,8 @@ class RoomManager:
             control_hz=asked.control_hz,
             episodes=asked.episodes,
             arms=asked.arms,
+            practice=asked.practice,
+            course_required=asked.course_required,
         )
         self._start(wanted)
         self._kept[wanted.room] = wanted
@@ -122,6 +125,9 @@ class RoomManager:
             raise InvalidInput(
                 f"{wanted.episodes} episodes were given; plan at most {MAX_EPISODES}, or none (0)."
             )
+        require_practice_alone(
+            practice=wanted.practice, course_required=wanted.course_required, episodes=wanted.episodes
+        )
         if wanted.room in self.names:
             raise Conflict(f"{wanted.room!r} is open already; give the new room another name.")
         if len(self.names) >= MAX_ROOMS:

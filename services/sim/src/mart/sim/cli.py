@@ -30,6 +30,10 @@ def _given(**options: Any) -> dict[str, Any]:
 @click.option(
     "--episodes", type=int, help="How many good ones are wanted, at most 10000.  [default: no plan]"
 )
+@click.option("--practice", is_flag=True, default=None, help="Nothing is recorded in this room.")
+@click.option(
+    "--course-required", is_flag=True, default=None, help="Only who has passed the practice course records."
+)
 @click.option("--lockstep", is_flag=True, default=None, help="Scripts drive every arm, as fast as possible.")
 @click.option("--skill", help="Of the scripts that drive here, kept in the files: expert, average or novice.")
 def sim(**options: Any) -> None:

@@ -44,6 +44,10 @@ class SimSettings(_WorldSettings):
     episodes: int | None = Field(
         None, ge=1, le=10_000, description="How many good episodes are wanted; default: nobody counts."
     )
+    practice: bool = Field(False, description="Nothing is recorded in this room.")
+    course_required: bool = Field(
+        False, description="People record here who have passed the practice course; others practise."
+    )
     lockstep: bool = Field(False, description="Scripts drive every arm, as fast as the machine allows.")
     skill: str | None = Field(
         None, description="Of the scripts that drive here, told in files: expert, average or novice."

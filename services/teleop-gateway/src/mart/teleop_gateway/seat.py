@@ -76,6 +76,7 @@ class Seat:
             self._latency,
             self._input.on_drawn,
             holder_draws=lambda: self._peers.holder_draws,
+            left_out=lambda: self._broadcaster.recorded_view.is_left_out,
         )
         self._pages = PageDrawing(loop, self._send_poses)
         self._views = ViewManager(

@@ -22,7 +22,7 @@ def listing(
     rows: Sequence[LabelledEpisode], wanted: CatalogueRequest.List, datasets: Iterable[NamedDataSet] = ()
 ) -> CatalogueReply.Listing:
     """Return one page of what is wanted, newest first, and what there is to choose from. rows: oldest first."""
-    matching = filter_of(wanted).apply(reversed(rows))
+    matching = [row for row in filter_of(wanted).apply(reversed(rows)) if row.started_ns >= wanted.since_ns]
     count = min(wanted.count or DEFAULT_COUNT, MAX_COUNT)
     return CatalogueReply.Listing(
         episodes=map(episode_message, matching[wanted.offset : wanted.offset + count]),
@@ -32,7 +32,26 @@ def listing(
         operators=sorted({name for row in rows for name in names_of(row)})[:MAX_OPERATORS],
         datasets=map(dataset_message, datasets),
         skills=sorted({row.skill for row in rows if row.skill}),
+        simulated_s=sum(row.simulated_s for row in matching),
+        drivers=drivers_of(matching),
     )
+
+
+def drivers_of(rows: Iterable[LabelledEpisode]) -> list[CatalogueReply.DriverStatistics]:
+    """Return what each person and policy that is named has driven in these episodes, by name."""
+    by_name: dict[str, list[LabelledEpisode]] = {}
+    for row in rows:
+        for name in names_of(row):
+            by_name.setdefault(name, []).append(row)
+    return [
+        CatalogueReply.DriverStatistics(
+            name=_cut(name),
+            episodes=len(driven),
+            successes=sum(row.outcome == EpisodeOutcome.SUCCESS for row in driven),
+            simulated_s=sum(row.simulated_s for row in driven),
+        )
+        for name, driven in sorted(by_name.items())[:MAX_OPERATORS]
+    ]
 
 
 def filter_of(wanted: CatalogueRequest.List) -> EpisodeFilter:

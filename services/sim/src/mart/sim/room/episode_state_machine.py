@@ -14,14 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mart.protocol.errors import Conflict, Forbidden, InvalidInput
+from mart.protocol.errors import Conflict, InvalidInput
 from mart.protocol.messages import (
     ENDED_BY_ABSENCE,
-    ENDED_BY_OPERATOR,
     ENDED_BY_ROOM,
     ENDED_BY_TASK,
     ENDED_BY_TIME,
-    ENDED_BY_UNSPECIFIED,
     EPISODE_PHASE_COUNTDOWN,
     EPISODE_PHASE_ENDED,
     EPISODE_PHASE_PRACTICE,
@@ -32,14 +30,14 @@ from mart.protocol.messages import (
     OUTCOME_FAILURE,
     OUTCOME_SUCCESS,
     OUTCOME_UNSPECIFIED,
-    EndedBy,
     EpisodePhase,
     EpisodeRequest,
     Outcome,
     phase_word,
 )
 from mart.protocol.received import MAX_NUMBER
-from mart.sim.room.seats import SeatHolder, SeatTable, require_name
+from mart.sim.room.episode_say import EpisodeEnder, called, ender_of, require_say
+from mart.sim.room.seats import SeatTable
 
 COUNTDOWN_S = 3.0
 ENDED_S = 2.0
@@ -48,11 +46,15 @@ MAX_NUMBER_LEAP = 1_000_000  # of one request: whoever could leap further would 
 
 @dataclass(frozen=True)
 class Terms:
-    """Hold what is true of every episode of a room and told at its start; None: as long as the task allows."""
+    """Hold what is true of every episode of a room; time_limit_s: None: as long as the task allows.
+
+    practice: there are none, because nothing is recorded in this room.
+    """
 
     lockstep: bool = False
     skill: str = ""
     time_limit_s: float | None = None
+    practice: bool = False
 
 
 @dataclass(frozen=True)
@@ -68,15 +70,6 @@ class BeginEpisode:
 
     number: int
     seed: int
-
-
-@dataclass(frozen=True)
-class EpisodeEnder:
-    """Tell what brought an episode to its end; of an operator, the name that others see and the arm."""
-
-    by: EndedBy = ENDED_BY_UNSPECIFIED
-    name: str = ""
-    arm: str = ""
 
 
 @dataclass(frozen=True)
@@ -168,7 +161,7 @@ class EpisodeStateMachine:
             self.phase = EPISODE_PHASE_RECORDING
             return (BeginEpisode(self.number, self.seed),)
         if self.phase == EPISODE_PHASE_ENDED:
-            return self._practice()
+            return self.practise_anew()
         return ()
 
     def ticked(self, success: bool, failed: str | None, now_s: float) -> Sequence[Effect]:
@@ -198,10 +191,18 @@ class EpisodeStateMachine:
     def abandon(self, outcome: Outcome, reason: str, ender: EpisodeEnder, now_s: float) -> Sequence[Effect]:
         """Go back to practice with a fresh world at once; a recording ends with this outcome."""
         if self.recording:
-            return (*self.end(outcome, reason, ender, now_s), *self._practice())
+            return (*self.end(outcome, reason, ender, now_s), *self.practise_anew())
         if self.phase == EPISODE_PHASE_COUNTDOWN:
             self.number -= 1  # this episode never began; its number is free again
-        return self._practice()
+        return self.practise_anew()
+
+    def practise_anew(self) -> Sequence[Effect]:
+        """Go on practising in a fresh world; call it where nothing is under way."""
+        self._practices += 1
+        self._begin(
+            EPISODE_PHASE_PRACTICE, seed_of(self._room_seed, f"practice {self._practices}", self.number)
+        )
+        return (ResetWorld(self.seed),)
 
     def diverged(self, now_s: float) -> Sequence[Effect]:
         """Begin anew where the physics left their bounds."""
@@ -209,7 +210,7 @@ class EpisodeStateMachine:
 
     def _answer_ready(self, ready: EpisodeRequest.Ready, seats: SeatTable, now_s: float) -> Sequence[Effect]:
         seat = seats[ready.arm]
-        _require_say(seats, (seat,), ready.holder_id)
+        require_say(seats, (seat,), ready.holder_id)
         if self.phase == EPISODE_PHASE_COUNTDOWN and not ready.ready:
             return self.seats_changed(seats, now_s)
         if self.phase != EPISODE_PHASE_PRACTICE:
@@ -238,30 +239,23 @@ class EpisodeStateMachine:
     def _answer_finish(
         self, finish: EpisodeRequest.Finish, seats: SeatTable, now_s: float
     ) -> Sequence[Effect]:
-        ender = _ender(seats, finish)
+        ender = ender_of(seats, finish)
         if not self.recording:
             raise Conflict(f"An outcome was given during {phase_word(self.phase)}; only a recording has one.")
         if finish.outcome not in (OUTCOME_SUCCESS, OUTCOME_FAILURE, OUTCOME_DISCARDED):
             raise InvalidInput(
                 "An outcome that does not exist was given; it must be success, failure or discarded."
             )
-        return self.end(finish.outcome, f"said by {_called(ender)}", ender, now_s)
+        return self.end(finish.outcome, f"said by {called(ender)}", ender, now_s)
 
     def _answer_reset(self, reset: EpisodeRequest.Reset, seats: SeatTable, now_s: float) -> Sequence[Effect]:
-        ender = _ender(seats, reset)
-        return self.abandon(OUTCOME_DISCARDED, f"reset by {_called(ender)}", ender, now_s)
+        ender = ender_of(seats, reset)
+        return self.abandon(OUTCOME_DISCARDED, f"reset by {called(ender)}", ender, now_s)
 
     def _count_down(self, number: int, now_s: float) -> Sequence[Effect]:
         self.number = number or self.number + 1
         self._begin(EPISODE_PHASE_COUNTDOWN, seed_of(self._room_seed, "episode", self.number))
         self._until_s = now_s + COUNTDOWN_S
-        return (ResetWorld(self.seed),)
-
-    def _practice(self) -> Sequence[Effect]:
-        self._practices += 1
-        self._begin(
-            EPISODE_PHASE_PRACTICE, seed_of(self._room_seed, f"practice {self._practices}", self.number)
-        )
         return (ResetWorld(self.seed),)
 
     def _begin(self, phase: EpisodePhase, seed: int) -> None:
@@ -270,31 +264,3 @@ class EpisodeStateMachine:
         self.ender = EpisodeEnder()
         self._ready = frozenset()
         self._until_s = 0.0
-
-
-def _require_say(seats: SeatTable, about: tuple[SeatHolder, ...], holder_id: str) -> None:
-    """Raise Forbidden unless the holder sits in one of the seats `about`; where no human sits, anybody may say."""
-    if any(holder_id and seat.holder_id == holder_id for seat in about):
-        return
-    if holder_id or seats.of_operator(OPERATOR_HUMAN):
-        raise Forbidden("This is decided by those who drive; take a seat to have a say.")
-
-
-def _ender(seats: SeatTable, said: EpisodeRequest.Finish | EpisodeRequest.Reset) -> EpisodeEnder:
-    """Return who says it: a host, the holder of a seat, or somebody without a name where no human sits.
-
-    Raises Forbidden where they have no say, InvalidInput where a host's name cannot be shown.
-    """
-    if said.host:
-        require_name(said.host)
-        return EpisodeEnder(ENDED_BY_OPERATOR, said.host)
-    _require_say(seats, tuple(seats), said.holder_id)
-    held = next(iter(seats.of_holder(said.holder_id)), None)
-    return EpisodeEnder(ENDED_BY_OPERATOR, held.name, held.arm) if held else EpisodeEnder(ENDED_BY_OPERATOR)
-
-
-def _called(ender: EpisodeEnder) -> str:
-    """Return who ended something, in words; whoever has a name and no arm is a host."""
-    if not ender.name:
-        return "an operator"
-    return ender.name if ender.arm else f"{ender.name}, the host"

@@ -13,6 +13,7 @@ from mart.protocol.messages import (
     BARRIER_PHASE_STOPPED,
     EPISODE_PHASE_PRACTICE,
     OPERATOR_HOLD,
+    OPERATOR_HUMAN,
     OUTCOME_SUCCESS,
     EpisodeRequest,
     Event,
@@ -25,8 +26,8 @@ from mart.protocol.messages import (
 )
 from mart.sim.room import room_messages
 from mart.sim.room.barrier import Barrier, Decision, TickInputs
-from mart.sim.room.command_age import CommandAge
-from mart.sim.room.command_validation import CommandRejected, CommandRejection, validate_command
+from mart.sim.room.command_intake import CommandIntake
+from mart.sim.room.command_validation import CommandRejection
 from mart.sim.room.emergency_stop import StopLatch
 from mart.sim.room.episode_state_machine import (
     BeginEpisode,
@@ -36,6 +37,8 @@ from mart.sim.room.episode_state_machine import (
     ResetWorld,
     Terms,
 )
+from mart.sim.room.host_words import hear_host
+from mart.sim.room.recording_rules import RecordingRules
 from mart.sim.room.recording_watch import RecordingWatch
 from mart.sim.room.room_publisher import REPEAT_S, STATUS_S, RoomPublisher
 from mart.sim.room.saved_room import SavedRoom, SavedStop
@@ -73,12 +76,12 @@ class Room:
         self._barrier = Barrier(world.arms, world.control_period_s / pace, now_s)
         for seat in self._seats:
             self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s, restored=True)
-        self._age = CommandAge(world.control_hz)
         self._terms = terms
         self._time_limit_s = terms.time_limit_s or world.task.time_limit_s
         horizon_ticks = round(self._time_limit_s / world.control_period_s)
         self._episode = EpisodeStateMachine(record.seed, horizon_ticks, record.episodes)
         self._ticker = Ticker(name, world, self._boot_ns, now_s, before.tick)
+        self._intake = CommandIntake(self._barrier, self._ticker, self._seats, self.tell, world.control_hz)
         self._last_ended = before.last_ended if before.HasField("last_ended") else None
         self.recording_watch = RecordingWatch(self._boot_ns)
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
@@ -107,28 +110,22 @@ class Room:
 
     def hear(self, payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> None:
         """Take a command that came on the key of `arm`, or count why it cannot be used."""
-        try:
-            received = validate_command(payload, arm, at_s, at_wall_ns)
-        except CommandRejected as error:
-            self._barrier.rejected[error.reason] += 1
-            return
-        reason = self._barrier.offer(received, too_old=self._age.objection(received, self._ticker.tick))
-        if reason is None:
-            self._ticker.aim(received)
-        elif reason is CommandRejection.OLD_STATE and self._age.worth_telling(received, self._ticker.tick):
-            self.tell(room_messages.old_commands(self._seats[arm], self._age.limit_ticks))
-        if received.emergency_stop:
+        received = self._intake.take(payload, arm, at_s, at_wall_ns)
+        if received is not None and received.emergency_stop:
             self._stop.heard(received.arm)
 
     def answer_seat(self, request: SeatRequest, now_s: float) -> RoomReply:
         """Do what a seat request asks; the reply holds the status, and the seat or an error."""
         try:
             before = list(self._seats)
+            self._rules.require_may_come(request, self._seats, practising=self.in_practice)
             seat = self._seats.answer(request)
             if seat not in before:
                 self._seat_changed(seat, now_s)
                 if request.HasField("free"):
                     self.tell(room_messages.freed(request.free))
+            elif request.HasField("claim"):  # they may have passed the course meanwhile
+                self._remember(self._record.with_seats(self._seats))
         except MartError as error:
             return RoomReply(error=error_message(error), status=self.status(now_s))
         return RoomReply(status=self.status(now_s), seat=self._seat_message(seat, now_s))
@@ -141,10 +138,12 @@ class Room:
                     self._stop.press(request.stop, now_s)
                 case "go_on":
                     self._stop.let_go(request.go_on)
-                case "set_plan":
-                    self.tell(room_messages.planned(request.set_plan))
-                    self._remember(self._record.with_host_plan(request.set_plan.episodes))
+                case "set_plan" | "require_course":
+                    record, said = hear_host(request, self._record, practice=self._terms.practice)
+                    self.tell(said)
+                    self._remember(record)
                 case _:
+                    self._rules.require_may_begin(request, self._seats)
                     self._do(self._episode.answer(request, self._seats, now_s), now_s)
         except MartError as error:
             return RoomReply(error=error_message(error), status=self.status(now_s))
@@ -188,15 +187,14 @@ class Room:
             episode=room_messages.episode(self._episode, self._world.control_period_s, now_s),
             progress=room_messages.progress(progress) if progress is not None else None,
             to_do=room_messages.to_do(self._world, progress) if progress is not None else None,
-            episodes_saved=self._record.saved,
-            episodes_good=self._record.good,
             wall_ns=clock.wall_ns(),
             boot=self._boot_ns,
             rejected_commands=self.rejected.total(),
-            plan=room_messages.plan(self._record),
             stop=self._stop.message(),
             last_ended=self._last_ended,
             unrecorded=self.recording_watch.objection(now_s),
+            practice=self._terms.practice,
+            **room_messages.counts(self._record),
         )
 
     def _fire(self, inputs: TickInputs, now_s: float) -> None:
@@ -217,7 +215,7 @@ class Room:
                     fresh = self._ticker.reset(effect.seed, self._seats, self._episode, now_s)
                     self._tell_state(fresh, now_s)
                     self._barrier.restart(now_s)
-                    self._age.world_reset(self._ticker.tick)
+                    self._intake.world_reset()
                     self.tell(Event(world_reset=Event.WorldReset(seed=effect.seed)))
                 case BeginEpisode():
                     self._start(effect, now_s)
@@ -245,6 +243,8 @@ class Room:
         self._remember(self._record.with_seats(self._seats))
         self.tell(Event(seat_changed=self._seat_message(seat, now_s)))
         self._do(self._episode.seats_changed(self._seats, now_s), now_s)
+        if seat.operator == OPERATOR_HUMAN and self.in_practice and self._ticker.keeps_score:
+            self._do(self._episode.practise_anew(), now_s)  # a score is of who drove from the beginning
         self._status_due_s = now_s
 
     def _stop_changed(self, pressed: SavedStop | None, event: Event) -> None:
@@ -290,6 +290,7 @@ class Room:
     def _remember(self, record: SavedRoom) -> None:
         """Keep the record over a restart; a disk that is full must not stop the world."""
         self._record = record
+        self._rules = RecordingRules(self._terms.practice, record.course_required)
         try:
             self._keep(record)
         except OSError as error:

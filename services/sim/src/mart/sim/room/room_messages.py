@@ -8,12 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mart.protocol.errors import InvalidInput
 from mart.protocol.holders import holder_tag
 from mart.protocol.messages import (
     BarrierPhase,
     Episode,
-    EpisodeRequest,
     Event,
     Plan,
     Seat,
@@ -24,10 +22,9 @@ from mart.sim.room.barrier import FREED_AFTER_S
 from mart.sim.room.command_validation import ReceivedCommand
 from mart.sim.room.episode_state_machine import BeginEpisode, EndEpisode, EpisodeStateMachine, Terms
 from mart.sim.room.saved_room import SavedRoom
-from mart.sim.room.seats import SeatHolder, require_name
+from mart.sim.room.seats import SeatHolder
 from mart.sim.world import TaskProgress, World
-
-MAX_PLANNED = 10_000  # good episodes
+from mart.sim.world.progress import Score
 
 # What any operator sees, by name: see mart.protocol.tasks.
 Seen = Mapping[str, NDArray[np.float64]]
@@ -74,12 +71,19 @@ def observations(seen: Seen) -> list[Fields]:
 def progress(progress: TaskProgress) -> Fields:
     """Return the fields of a Progress message."""
     return {
-        "subtasks": [{"name": name, "done": done} for name, done in progress.subtasks.items()],
+        "subtasks": [
+            {"name": name, "done": done, **_score(progress.scores.get(name))}
+            for name, done in progress.subtasks.items()
+        ],
         "success_now": progress.success_now,
         "success_ticks": progress.success_ticks,
         "success": progress.success,
         "failed": progress.failed or "",
     }
+
+
+def _score(score: Score | None) -> Fields:
+    return {} if score is None else {"seconds": score.seconds, "tries": score.tries}
 
 
 def to_do(world: World, progress: TaskProgress) -> dict[str, str]:
@@ -104,6 +108,7 @@ def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None, salt: 
         policy=holder.driver.policy,
         relieved=holder.relieved.called if holder.relieved else "",
         kept_s=kept_s,
+        passed_course=holder.passed_course,
     )
 
 
@@ -142,10 +147,16 @@ def episode_ended(effect: EndEpisode, last_tick: int, progress: TaskProgress | N
     )
 
 
-def plan(record: SavedRoom) -> Plan | None:
-    """Return how many good episodes are wanted and there, None where nobody counts."""
+def counts(record: SavedRoom) -> Fields:
+    """Return the fields of a RoomStatus that come from what a room keeps: episodes, the plan, whom it lets record."""
     wanted = record.plan
-    return Plan(episodes=wanted.episodes, good=record.good - wanted.good_before) if wanted else None
+    plan = Plan(episodes=wanted.episodes, good=record.good - wanted.good_before) if wanted else None
+    return {
+        "episodes_saved": record.saved,
+        "episodes_good": record.good,
+        "plan": plan,
+        "course_required": record.course_required,
+    }
 
 
 def waiting(arms: Iterable[tuple[str, float]]) -> list[Waiting]:
@@ -175,20 +186,6 @@ def gave_up(seat: SeatHolder) -> Event:
 def freed(free: SeatRequest.Free) -> Event:
     """Return the notice that a host freed a seat."""
     return notice("warning", f"{free.name}, the host, freed {free.arm}.")
-
-
-def planned(wanted: EpisodeRequest.SetPlan) -> Event:
-    """Return the notice that a host wants so many episodes.
-
-    Raises InvalidInput where they are too many, or the name cannot be shown.
-    """
-    require_name(wanted.name)
-    if wanted.episodes > MAX_PLANNED:
-        raise InvalidInput(f"{wanted.episodes} episodes were given; plan at most {MAX_PLANNED}, or none (0).")
-    plan = f"{wanted.episodes} good episodes are" if wanted.episodes != 1 else "one good episode is"
-    return notice(
-        "info", f"{wanted.name}, the host, set the plan: {plan if wanted.episodes else 'none is'} wanted."
-    )
 
 
 def episode_started(

@@ -47,12 +47,12 @@ class SavedSeat(SavedDriver):
     arm: str
     epoch: int = Field(ge=1, le=MAX_COUNTER)
     relieved: SavedDriver | None = None
+    passed_course: bool = False
 
     def holder(self) -> SeatHolder:
         """Return the seat that this stores."""
-        return SeatHolder(
-            self.arm, self.epoch, self.driver(), self.relieved.driver() if self.relieved else None
-        )
+        relieved = self.relieved.driver() if self.relieved else None
+        return SeatHolder(self.arm, self.epoch, self.driver(), relieved, self.passed_course)
 
     def freed(self) -> SavedSeat:
         """Return the seat after its holder is gone."""
@@ -111,6 +111,8 @@ class SavedRoom(BaseModel):
     counted: the newest of them, so that what is told again counts once. task: that the seats are for, empty in records
     of 0.2 and older. picture_s: what a seat's picture took here; 0: nobody has said, or nobody asked. asked: how many
     good ones whoever started the room wanted; host_plan: what a host said instead, until the room is asked for others.
+    course_required: whether people must have passed the practice course to record; course_asked: whether whoever
+    started the room wanted it so.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -123,6 +125,8 @@ class SavedRoom(BaseModel):
     counted: tuple[CountedEpisode, ...] = ()
     seats: tuple[SavedSeat, ...] = ()
     plan: SavedPlan | None = None
+    course_required: bool = False
+    course_asked: bool = False
     asked: int | None = Field(None, ge=1, le=MAX_NUMBER)
     host_plan: SavedHostPlan | None = None
     stop: SavedStop | None = None
@@ -147,6 +151,16 @@ class SavedRoom(BaseModel):
         """Return it with what a host wants: so many good episodes of its task from now on; 0: no plan."""
         said = SavedHostPlan(task=self.task, asked=self.asked, episodes=episodes)
         return _wanting(self.with_changes(host_plan=said), self.task, episodes or None)
+
+    def with_course_required(self, required: bool) -> SavedRoom:
+        """Return it with what a host says of who may record; a restart that asks for the same leaves it so."""
+        return self.with_changes(course_required=required)
+
+    def requiring(self, course: bool) -> SavedRoom:
+        """Return it as it begins to run where the practice course is asked for, or is not."""
+        if course == self.course_asked:
+            return self
+        return self.with_changes(course_asked=course, course_required=course)
 
     def with_saved(self, number: int, good: bool) -> SavedRoom:
         """Return it with this episode counted; itself where that changes nothing.
@@ -195,9 +209,8 @@ def _wanting(record: SavedRoom, task: str, episodes: int | None) -> SavedRoom:
 
 def _seat_record(seat: SeatHolder) -> SavedSeat:
     relieved = _fields(seat.relieved) if seat.relieved else None
-    return SavedSeat.model_validate(
-        {"arm": seat.arm, "epoch": seat.epoch, "relieved": relieved, **_fields(seat.driver)}
-    )
+    own = {"arm": seat.arm, "epoch": seat.epoch, "relieved": relieved, "passed_course": seat.passed_course}
+    return SavedSeat.model_validate({**own, **_fields(seat.driver)})
 
 
 def _fields(driver: Driver) -> dict[str, str]:
@@ -225,10 +238,10 @@ def load_or_put_aside(path: Path) -> SavedRoom | None:
         return None
 
 
-def load_or_begin(path: Path, task: str, episodes: int | None) -> SavedRoom:
+def load_or_begin(path: Path, task: str, episodes: int | None, *, course_required: bool = False) -> SavedRoom:
     """Return the record of a room that begins to run: with this task and plan, as it was left or anew."""
     kept = load_or_put_aside(path) or SavedRoom(seed=secrets.randbits(_SEED_BITS))
-    return kept.for_task(task).planned(task, episodes)
+    return kept.for_task(task).planned(task, episodes).requiring(course_required)
 
 
 def save(path: Path, record: SavedRoom) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 from mart.protocol.errors import Conflict, Forbidden, InvalidInput, NotFound
 from mart.protocol.messages import (
@@ -56,12 +56,16 @@ NOBODY = Driver()
 
 @dataclass(frozen=True)
 class SeatHolder:
-    """Hold one seat. `relieved`: the machine that its human took over from, if any."""
+    """Hold one seat. `relieved`: the machine that its human took over from, if any.
+
+    passed_course: what was said of its human; no change of it makes another holder.
+    """
 
     arm: str
     epoch: int = 1
     driver: Driver = NOBODY
     relieved: Driver | None = None
+    passed_course: bool = field(default=False, compare=False)
 
     @property
     def operator(self) -> Operator:
@@ -117,7 +121,9 @@ class SeatTable:
         match request.WhichOneof("what"):
             case "claim":
                 claim = request.claim
-                return self.claim(claim.arm, claim.holder_id, claim.name, claim.operator)
+                seat = self.claim(claim.arm, claim.holder_id, claim.name, claim.operator)
+                self._seats[seat.arm] = replace(seat, passed_course=claim.passed_course)
+                return self._seats[seat.arm]
             case "release":
                 return self.release(request.release.arm, request.release.holder_id)
             case "assign":

@@ -12,6 +12,7 @@ from functools import partial
 from mart.protocol import clock, keys
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.messages import Event, RoomStatus
+from mart.protocol.practice import require_practice_alone
 from mart.protocol.vocabulary import OperatorKind, ServiceKind
 from mart.runtime.bus import Bus, Closable
 from mart.runtime.decoding_subscriber import DecodingSubscriber
@@ -45,8 +46,15 @@ DEFAULT_SKILL = "expert"
 def serve_room(settings: SimSettings) -> None:
     """Build the world of `settings` and serve its room.
 
-    Raises what building a world raises, and NotFound for an unknown skill.
+    Raises what building a world raises, NotFound for an unknown skill, and InvalidInput for a practice room that is to
+    count or to run by itself.
     """
+    require_practice_alone(
+        practice=settings.practice,
+        course_required=settings.course_required,
+        episodes=settings.episodes or 0,
+        lockstep=settings.lockstep,
+    )
     skill = get_skill(settings.skill) if settings.skill else None
     world = World.build(settings.task, settings.control_hz or DEFAULT_CONTROL_HZ, settings.arms)
     if settings.lockstep:
@@ -164,7 +172,7 @@ def _hear_pictures(
 
 
 def _maker(settings: SimSettings, publisher: RoomPublisher) -> MakeRoom:
-    terms = Terms(skill=settings.skill or "", time_limit_s=settings.time_limit_s)
+    terms = Terms(skill=settings.skill or "", time_limit_s=settings.time_limit_s, practice=settings.practice)
     archive = _archive(settings)
 
     def make(
@@ -207,5 +215,7 @@ def _keeper(settings: SimSettings) -> Callable[[SavedRoom], None]:
 
 
 def _record(settings: SimSettings) -> SavedRoom:
-    record = saved_room.load_or_begin(settings.room_path, settings.task, settings.episodes)
+    record = saved_room.load_or_begin(
+        settings.room_path, settings.task, settings.episodes, course_required=settings.course_required
+    )
     return record if settings.seed is None else record.with_changes(seed=settings.seed)

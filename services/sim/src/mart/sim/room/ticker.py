@@ -54,6 +54,11 @@ class Ticker:
         stamps = TickStamps(fired_ns=wall_ns, stepped_ns=wall_ns)
         return self._state(seats, episode, now_s, self._world.progress(), stamps=stamps)
 
+    @property
+    def keeps_score(self) -> bool:
+        """Whether the task tells how long its subtasks take, and how many tries."""
+        return self.progress is not None and bool(self.progress.scores)
+
     def aim(self, received: ReceivedCommand) -> None:
         """Work out beforehand what an accepted command asks for."""
         self._targets.aim(received)

@@ -7,7 +7,7 @@ import math
 import operator
 from abc import ABC, abstractmethod
 from collections.abc import Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import mujoco
 import numpy as np
@@ -22,15 +22,25 @@ _NARROW_GAP_RAD = 2.0
 
 
 @dataclass(frozen=True)
+class SubtaskScore:
+    """Tell for how many simulated seconds a subtask was worked at, and in how many tries; each of shape (...)."""
+
+    seconds: Array
+    tries: Array
+
+
+@dataclass(frozen=True)
 class TaskStatus:
     """Tell how a task stands at one instant: flags of shape (...), one for each world.
 
     failed: what makes success impossible, in words, and where it has happened; of several, the first is told.
+    scores: by subtask, where the task keeps a score.
     """
 
     subtasks: Mapping[str, Flags]
     success_now: Flags
     failed: Mapping[str, Flags]
+    scores: Mapping[str, SubtaskScore] = field(default_factory=dict)
 
 
 class Scene(ABC):

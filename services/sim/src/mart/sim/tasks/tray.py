@@ -53,7 +53,7 @@ def add_tray(spec: mujoco.MjSpec, carriers: Sequence[Arm]) -> None:
     tray.add_geom(name="tray", type=_BOX, size=HALF_M, mass=_PLATE_KG, material="oak", **_SLIDING)
     _add_rim(tray)
     for carrier, side in zip(carriers, (-1, 1), strict=True):
-        _add_handle(spec, tray, carrier, side)
+        add_handle(spec, tray, carrier, side)
     for index, (x, y) in enumerate(_DRINKS_AT_M):
         _add_drink(spec, index, (x, y, 2 * HALF_M[2] + DRINK_HALF_M))
     add_shadow(spec, "tray", radius_m=0.24)
@@ -70,7 +70,8 @@ def _add_rim(tray: mujoco.MjsBody) -> None:
             tray.add_geom(type=_BOX, pos=position, size=size, mass=_RIM_KG, material="walnut")
 
 
-def _add_handle(spec: mujoco.MjSpec, tray: mujoco.MjsBody, carrier: Arm, side: int) -> None:
+def add_handle(spec: mujoco.MjSpec, tray: mujoco.MjsBody, carrier: Arm, side: int) -> None:
+    """Add the carrier's handle at the end of a plate as long as the tray's; side: -1 at -x, 1 at +x."""
     x, y, z = side * HANDLE_M[0], HANDLE_M[1], HANDLE_M[2]
     name, look = handle_of(carrier.name), {"material": "paint", "rgba": rgba(carrier.color)}
     tray.add_site(name=name, pos=(x, y, z), size=(0.005, 0, 0), group=4)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -11,10 +11,19 @@ from mart.sim.scene.data import Flags
 
 
 @dataclass(frozen=True)
+class Score:
+    """Tell for how many simulated seconds one world's subtask was worked at, and in how many tries."""
+
+    seconds: float
+    tries: int
+
+
+@dataclass(frozen=True)
 class TaskProgress:
     """Tell how far one world's task is: `success_ticks` of success in a row; `success` once they reach the hold.
 
-    `failed` says in words why the task can no longer succeed, None while it can.
+    `failed` says in words why the task can no longer succeed, None while it can. `scores`: by subtask, where the task
+    keeps a score.
     """
 
     subtasks: dict[str, bool]
@@ -22,6 +31,7 @@ class TaskProgress:
     success_ticks: int
     success: bool
     failed: str | None
+    scores: dict[str, Score] = field(default_factory=dict)
 
 
 def first_reasons(failed: Mapping[str, Flags], worlds: int) -> list[str]:

@@ -31,7 +31,7 @@ from mart.sim.world import kinematics, model, osc
 from mart.sim.world.arm import MeasuredArm
 from mart.sim.world.control_interface import ControlInterface
 from mart.sim.world.last_states import Diverged, LastStates, StateHistory
-from mart.sim.world.progress import TaskProgress, first_reasons
+from mart.sim.world.progress import Score, TaskProgress, first_reasons
 
 # As a number: looking an enumeration up takes longer than what is called with it.
 STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
@@ -231,6 +231,9 @@ class World:
             success_ticks=ticks,
             success=ticks >= self.success_hold_ticks,
             failed=reason or None,
+            scores={
+                name: Score(float(score.seconds), int(score.tries)) for name, score in status.scores.items()
+            },
         )
 
     def to_do(self, arm: str, progress: TaskProgress | None = None) -> str:

@@ -9,7 +9,17 @@ from dataclasses import dataclass
 from typing import Any
 
 from mart.protocol.errors import InvalidInput
-from mart.protocol.messages import Cue, RoomStatus, State, barrier_word, cue_from_word, phase_word
+from mart.protocol.messages import (
+    OPERATOR_HUMAN,
+    OPERATOR_POLICY,
+    OPERATOR_SCRIPT,
+    Cue,
+    RoomStatus,
+    State,
+    barrier_word,
+    cue_from_word,
+    phase_word,
+)
 from mart.teleop_gateway.input.driving import Driving, InputDevice, PhoneState
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 from mart.teleop_gateway.voice.lanes import Speaker
@@ -18,7 +28,8 @@ MAX_CHARACTERS = 1100  # one SCTP packet
 _LARGEST = 2**63 - 1
 _LONGEST_DRAW_MS = 60_000
 _NAME_CHARACTERS = 24
-_REASON_CHARACTERS = 100
+_REASON_CHARACTERS = 78
+_DRIVING = (OPERATOR_HUMAN, OPERATOR_POLICY, OPERATOR_SCRIPT)
 
 
 @dataclass(frozen=True)
@@ -156,6 +167,8 @@ def tick(
             "hand_scale": driving.retarget.scale,
             "phase": phase_word(room.episode.phase),
             "ready": any(seat.ready for seat in room.seats if seat.arm == driving.arm),
+            "practises_only": _practises_only(room, driving.arm),
+            "partners": any(seat.operator in _DRIVING for seat in room.seats if seat.arm != driving.arm),
             "barrier": barrier_word(room.barrier),
             "stopped_by": room.stop.name[:_NAME_CHARACTERS],
             "paused_by_host": room.stop.by_host,
@@ -168,6 +181,12 @@ def tick(
             "latency": latency and _latency(latency),
         }
     )
+
+
+def _practises_only(room: RoomStatus, arm: str) -> bool:
+    """Whether nothing is recorded here, or not with whoever holds this seat."""
+    passed = any(seat.passed_course for seat in room.seats if seat.arm == arm)
+    return room.practice or (room.course_required and not passed)
 
 
 def _phone(phone: PhoneState) -> dict[str, Any]:

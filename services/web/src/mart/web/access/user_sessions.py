@@ -7,7 +7,7 @@ import hashlib
 import logging
 import secrets
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -27,6 +27,11 @@ CREATE TABLE IF NOT EXISTS joined (
     expires_s REAL NOT NULL,
     code_digest BLOB NOT NULL
 ) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS passed_course (
+    holder_id TEXT PRIMARY KEY,
+    seconds REAL NOT NULL,
+    tries INTEGER NOT NULL
+) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS hosting (
     holder_id TEXT PRIMARY KEY,
     code_digest BLOB NOT NULL
@@ -39,12 +44,13 @@ DROP TABLE IF EXISTS session; -- of 0.2.0 and before, which did not say for whic
 class User:
     """Somebody who has joined: `holder_id` is what the sim knows a seat's holder by, and others never see it.
 
-    hosts: whether they gave the host code.
+    hosts: whether they gave the host code. passed_course: whether they have passed the practice course.
     """
 
     holder_id: str
     name: str
     hosts: bool = False
+    passed_course: bool = False
 
     @property
     def only_watches(self) -> bool:
@@ -73,7 +79,7 @@ class UserSessions:
             self._database = _opened(path)
         self._database.execute("DELETE FROM joined WHERE code_digest <> ?", (code_digest,))
         self._database.execute("DELETE FROM hosting WHERE code_digest <> ?", (host_digest,))
-        self._forget_hosts()
+        self._forget_those_who_left()
 
     def join(
         self, name: str, now_s: float, known: User | None = None, *, only_watches: bool = False
@@ -85,8 +91,8 @@ class UserSessions:
         """
         keeps = known is not None and known.only_watches == only_watches
         new_id = f"{_SPECTATOR if only_watches else ''}{secrets.token_hex(16)}"
-        hosts = known is not None and keeps and known.hosts
-        user = User(known.holder_id if known and keeps else new_id, clean_name(name), hosts)
+        same = known if keeps else None
+        user = replace(same or User(new_id, ""), name=clean_name(name))
         session_id = secrets.token_urlsafe(32)
         with _told():
             self._database.execute("DELETE FROM joined WHERE expires_s < ?", (now_s,))
@@ -109,16 +115,41 @@ class UserSessions:
         """
         with _told():
             row = self._database.execute(
-                "SELECT holder_id, name, holder_id IN (SELECT holder_id FROM hosting) FROM joined "
+                "SELECT holder_id, name, holder_id IN (SELECT holder_id FROM hosting), "
+                "holder_id IN (SELECT holder_id FROM passed_course) FROM joined "
                 "WHERE id_sha256 = ? AND expires_s >= ?",
                 (_hash(session_id), now_s),
             ).fetchone()
-        return User(row[0], row[1], bool(row[2])) if row else None
+        return User(row[0], row[1], bool(row[2]), bool(row[3])) if row else None
+
+    def pass_course(self, is_them: Callable[[str], bool], seconds: float, tries: int) -> bool:
+        """Keep that somebody has passed the practice course, and how; their best in seconds counts.
+
+        is_them: whether a holder id is theirs. Return whether somebody is known by one. Raises Unavailable as `join`.
+        """
+        with _told():
+            known = (row[0] for row in self._database.execute("SELECT holder_id FROM joined").fetchall())
+            holder_id = next(filter(is_them, known), None)
+            if holder_id is not None:
+                self._database.execute(
+                    "INSERT INTO passed_course VALUES (?, ?, ?) ON CONFLICT (holder_id) DO UPDATE "
+                    "SET seconds = excluded.seconds, tries = excluded.tries WHERE excluded.seconds < seconds",
+                    (holder_id, seconds, tries),
+                )
+        return holder_id is not None
+
+    def has_passed_course(self, holder_id: str) -> bool:
+        """Whether whoever holds seats by this id has passed the practice course. Raises Unavailable as `find`."""
+        with _told():
+            row = self._database.execute(
+                "SELECT 1 FROM passed_course WHERE holder_id = ?", (holder_id,)
+            ).fetchone()
+        return row is not None
 
     def host(self, user: User) -> User:
         """Let a user who joined host from now on, until they leave; return them so. Raises Unavailable as `join`."""
         with _told():
-            self._forget_hosts()
+            self._forget_those_who_left()
             self._database.execute(
                 "INSERT OR REPLACE INTO hosting VALUES (?, ?)", (user.holder_id, self._host_digest)
             )
@@ -128,11 +159,14 @@ class UserSessions:
         """End the session of a user."""
         with _told():
             self._database.execute("DELETE FROM joined WHERE holder_id = ?", (user.holder_id,))
-            self._forget_hosts()
+            self._forget_those_who_left()
 
-    def _forget_hosts(self) -> None:
-        """Whoever has no session any more hosts no more."""
-        self._database.execute("DELETE FROM hosting WHERE holder_id NOT IN (SELECT holder_id FROM joined)")
+    def _forget_those_who_left(self) -> None:
+        """Whoever has no session any more hosts no more, and comes back as somebody else."""
+        for table in ("hosting", "passed_course"):
+            self._database.execute(
+                f"DELETE FROM {table} WHERE holder_id NOT IN (SELECT holder_id FROM joined)"  # noqa: S608 - both are above
+            )
 
     def close(self) -> None:
         """Close the database."""

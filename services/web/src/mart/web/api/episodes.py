@@ -44,6 +44,7 @@ class EpisodeListQuery(CatalogueFilter):
 
     offset: int = Field(0, ge=0, lt=2**31)
     count: int = Field(50, ge=1, le=200)
+    since_ns: int = Field(0, ge=0, lt=2**63)  # begun at or after this, Unix time
 
 
 class LabelRequest(BaseModel):

@@ -43,6 +43,12 @@ class PlanRequest(BaseModel):
     episodes: int = Field(ge=0, le=10_000)
 
 
+class CourseRequest(BaseModel):
+    """Whether people must have passed the practice course before they record."""
+
+    required: bool
+
+
 @router.post("/host")
 async def become_host(
     body: HostRequest, response: Response, app: App, known: MaybeUser, address: Address
@@ -101,6 +107,13 @@ async def end_pause(room: str, app: App, host: HostingUser) -> Json:
 async def set_plan(room: str, body: PlanRequest, app: App, host: HostingUser) -> Json:
     """Plan so many good episodes from now on, and send the room."""
     await app.rooms.set_plan(room, host, body.episodes)
+    return _room_json(app, room, host)
+
+
+@router.put("/rooms/{room}/host/course")
+async def require_course(room: str, body: CourseRequest, app: App, host: HostingUser) -> Json:
+    """Ask for the practice course before anybody records, or do so no more, and send the room."""
+    await app.rooms.require_course(room, host, required=body.required)
     return _room_json(app, room, host)
 
 

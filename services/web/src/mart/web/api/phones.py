@@ -60,4 +60,5 @@ def _person(app: AppState, room: str, arm: str, authorization: str) -> User:
     paired = claims_of(app, room, arm, authorization)
     seat = app.lobby.rooms.seat(room, arm, clock.monotonic_s())
     named = is_held_by(seat, paired.holder_id) and seat.name
-    return User(paired.holder_id, seat.name if named else "A phone")
+    passed = app.user_sessions.has_passed_course(paired.holder_id)
+    return User(paired.holder_id, seat.name if named else "A phone", passed_course=passed)

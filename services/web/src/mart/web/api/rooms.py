@@ -36,6 +36,8 @@ class NewRoom(BaseModel):
     control_hz: float = 0.0  # 0: as the machine holds
     episodes: int = Field(0, ge=0, le=10_000)  # good ones that are wanted; 0: no plan
     arms: int = Field(0, ge=0, le=MAX_ARMS)  # 0: as many as the task usually has
+    practice: bool = False  # nothing is to be recorded in it
+    course_required: bool = False  # people record who have passed the practice course
 
 
 class TakeSeatRequest(BaseModel):

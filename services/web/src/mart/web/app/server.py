@@ -64,12 +64,13 @@ async def serve(
     settings: WebSettings, service: AsyncService, listener: socket.socket, join_code: str, host_code: str
 ) -> None:
     """Serve the pages and the API at `listener` until cancelled, or stopped by a signal."""
-    lobby, listener_port = Lobby(), listener.getsockname()[1]
+    listener_port = listener.getsockname()[1]
     with contextlib.ExitStack() as stack:
         secret = load_or_create_secret(settings.secret_path)
         digests = (digest_of(join_code, secret), digest_of(host_code, secret))
         sessions = UserSessions(settings.sessions_path, *digests)
         user_sessions = stack.enter_context(contextlib.closing(sessions))
+        lobby = Lobby(user_sessions.pass_course)
         feed = stack.enter_context(contextlib.closing(LobbyFeed(service.bus, lobby)))
         state = AppState(
             bus=service.bus,

@@ -33,7 +33,13 @@ class RoomRequester:
 
     async def take_seat(self, room: str, arm: str, user: User) -> Seat:
         """Give the seat of `arm` to `user`, also from a machine that drives it; return it."""
-        claim = SeatRequest.Claim(arm=arm, holder_id=user.holder_id, name=user.name, operator=OPERATOR_HUMAN)
+        claim = SeatRequest.Claim(
+            arm=arm,
+            holder_id=user.holder_id,
+            name=user.name,
+            operator=OPERATOR_HUMAN,
+            passed_course=user.passed_course,
+        )
         return await self._ask_seat(room, arm, SeatRequest(claim=claim))
 
     async def leave_seat(self, room: str, arm: str, user: User) -> Seat:
@@ -56,6 +62,9 @@ class RoomRequester:
 
     async def set_ready(self, room: str, arm: str, user: User, ready: bool) -> None:
         """Say for the seat of `arm` that its operator is ready for the next episode, or is not."""
+        seat = self._lobby.rooms.seat(room, arm, clock.monotonic_s())
+        if ready and user.passed_course and not seat.passed_course and is_held_by(seat, user.holder_id):
+            await self.take_seat(room, arm, user)  # they have passed the course since they sat down
         request = EpisodeRequest.Ready(arm=arm, holder_id=self._speaker(room, user), ready=ready)
         await self._ask_episode(room, EpisodeRequest(ready=request))
 
@@ -107,6 +116,11 @@ class RoomRequester:
         """Plan so many good episodes from now on; 0: no plan."""
         plan = EpisodeRequest.SetPlan(episodes=episodes, name=host.name)
         await self._ask_episode(room, EpisodeRequest(set_plan=plan))
+
+    async def require_course(self, room: str, host: User, *, required: bool) -> None:
+        """Let people record only who have passed the practice course, or everybody."""
+        word = EpisodeRequest.RequireCourse(required=required, name=host.name)
+        await self._ask_episode(room, EpisodeRequest(require_course=word))
 
     def _speaker(self, room: str, user: User) -> str:
         """Whoever holds no seat speaks as anybody: the sim hears them where no human drives."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 
 from mart.protocol import keys
 from mart.protocol.errors import InvalidInput
@@ -12,6 +13,7 @@ from mart.runtime.awaited_saves import AwaitedSaves
 from mart.web.lobby.last_episodes import LastEpisodes
 from mart.web.lobby.listeners import LobbyListeners
 from mart.web.lobby.live_services import LiveServices, service_of
+from mart.web.lobby.passed_courses import KeepPass, PassedCourses
 from mart.web.lobby.room_json import Json, event_json, status_json
 from mart.web.lobby.room_table import RoomTable
 from mart.web.lobby.seat_reports import SeatReports
@@ -20,10 +22,16 @@ from mart.web.lobby.thumbnails import Thumbnails
 _NOBODY = ""
 
 
+def _forget_pass(_is_them: Callable[[str], bool], _seconds: float, _tries: int) -> None:
+    """Keep nothing of who passes the practice course."""
+
+
 class Lobby:
     """What the bus tells, put where it belongs; whoever listens is told of each change."""
 
-    def __init__(self) -> None:
+    def __init__(self, keep_pass: KeepPass = _forget_pass) -> None:
+        """Begin with nothing heard. keep_pass: is told who passes the practice course."""
+        self.passed_courses = PassedCourses(keep_pass)
         self.services = LiveServices()
         self.rooms = RoomTable()
         self.thumbnails = Thumbnails()
@@ -40,6 +48,7 @@ class Lobby:
             self.awaited_saves.see_status(status, now_s)
             self.last_episodes.see_status(status, now_s)
             self.listeners.tell_change()
+            self.passed_courses.see_status(status)
 
     def see_event(self, event: Event, now_s: float, wall_ns: int) -> None:
         """Take in an event heard at `wall_ns` (Unix nanoseconds); raises InvalidInput as `see_status` does."""

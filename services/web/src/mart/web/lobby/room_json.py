@@ -37,6 +37,7 @@ def seat_json(seat: Seat, holder_id: str) -> Json:
         "policy": seat.policy,
         "relieved": seat.relieved,
         "kept_s": seat.kept_s,
+        "passed_course": seat.passed_course,
     }
 
 
@@ -91,6 +92,8 @@ def status_json(status: RoomStatus, holder_id: str) -> Json:
         "plan": _plan_json(status),
         "stop": _stop_json(status),
         "unrecorded": status.unrecorded,
+        "practice": status.practice,
+        "course_required": status.course_required,
     }
 
 
@@ -124,6 +127,8 @@ def _task_json(status: RoomStatus) -> Json:
             "title": known[subtask.name].title if subtask.name in known else subtask.name,
             "arms": list(known[subtask.name].arms or arms) if subtask.name in known else [],
             "done": subtask.done,
+            "seconds": subtask.seconds,
+            "tries": subtask.tries,
         }
         for subtask in progress.subtasks
     ]

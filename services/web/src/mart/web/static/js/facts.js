@@ -8,6 +8,7 @@ export const ARM_SYMBOLS = /** @type {const} */ ({ arm0: "circle", arm1: "square
 
 /** The tasks as people call them. */
 export const TASK_TITLES = /** @type {const} */ ({
+  practice_course: "Practice course",
   two_arm_drink_tray_lifting: "Drink tray lifting",
   two_arm_multi_cube_lifting: "Multi-cube lifting",
   two_arm_pick_place_handover: "Pick-place handover",

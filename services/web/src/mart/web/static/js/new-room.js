@@ -1,35 +1,32 @@
 // A room more: its task, seen, its name, its rate and how many episodes are wanted.
 
 import { messageOf, openRoom } from "./api.js";
+import { COURSE } from "./course.js";
 import { byId, element, setText } from "./dom.js";
 import { plural } from "./formatting.js";
 import { CONTROL_RATES_HZ, MAX_NAME_LENGTH, MAX_PLANNED_EPISODES } from "./facts.js";
 import { finalName, nameFrom } from "./names.js";
 import { taskPicture } from "./task-picture.js";
 
+/** Who records in it, and what people read. @type {[string, string][]} */
+const RULES = [
+  ["everybody", "Everybody records"],
+  ["course", "Who has passed the practice course records"],
+  ["practice", "Nothing is recorded: a practice room"],
+];
+
 /**
  * Fills the card `new-room` with a form.
  * @param {Api.TaskOption[]} tasks
  */
 export function newRoom(tasks) {
-  const { task, arms, name, rate, episodes } = inputs(tasks);
+  const fields = inputs(tasks);
+  const { task, arms, name, rate, episodes, rules } = fields;
   const picture = element("img", { alt: "", width: 384, height: 288 });
   const about = element("p", { class: "soft" });
   const button = element("button", { type: "submit", class: "primary" }, "Open room");
   const refusal = element("p", { class: "message", role: "alert" });
-  const fields = element(
-    "div",
-    { class: "fields" },
-    element("label", {}, "Task", task),
-    about,
-    element("label", {}, "Arms", arms),
-    element("label", {}, "Name", name),
-    element("label", {}, "Control rate", rate),
-    element("label", {}, "Good episodes wanted", episodes),
-    refusal,
-    button,
-  );
-  const form = element("form", { class: "opening" }, picture, fields);
+  const form = element("form", { class: "opening" }, picture, labelled(fields, about, refusal, button));
 
   function show() {
     const chosen = tasks.find((one) => one.name === task.value);
@@ -40,6 +37,14 @@ export function newRoom(tasks) {
     arms.replaceChildren(...counts);
     arms.value = String(chosen.arms);
     arms.disabled = counts.length < 2;
+    rules.value = chosen.name === COURSE ? "practice" : "everybody";
+    showRules();
+  }
+
+  /** Where nothing is recorded, no episodes are wanted. */
+  function showRules() {
+    episodes.disabled = rules.value === "practice";
+    if (episodes.disabled) episodes.value = "";
   }
 
   /** @param {SubmitEvent} event */
@@ -60,14 +65,40 @@ export function newRoom(tasks) {
     control_hz: Number(rate.value),
     episodes: Number(episodes.value),
     arms: Number(arms.value),
+    practice: rules.value === "practice",
+    course_required: rules.value === "course",
   });
 
   task.addEventListener("change", show);
+  rules.addEventListener("change", showRules);
   name.addEventListener("input", () => (name.value = nameFrom(name.value)));
   form.addEventListener("input", () => setText(refusal, ""));
   form.addEventListener("submit", open);
   show();
   byId("new-room").append(form);
+}
+
+/**
+ * The fields under their labels, the task's instruction under the task, and at the end what was refused.
+ * @param {ReturnType<typeof inputs>} fields
+ * @param {HTMLElement} about
+ * @param {HTMLElement} refusal
+ * @param {HTMLElement} button
+ */
+function labelled({ task, arms, name, rate, episodes, rules }, about, refusal, button) {
+  return element(
+    "div",
+    { class: "fields" },
+    element("label", {}, "Task", task),
+    about,
+    element("label", {}, "Arms", arms),
+    element("label", {}, "Name", name),
+    element("label", {}, "Control rate", rate),
+    element("label", {}, "Recording", rules),
+    element("label", {}, "Good episodes wanted", episodes),
+    refusal,
+    button,
+  );
 }
 
 /** @param {Api.TaskOption[]} tasks */
@@ -92,6 +123,11 @@ function inputs(tasks) {
       { id: "new-rate" },
       element("option", { value: 0 }, "As fast as this machine holds"),
       ...CONTROL_RATES_HZ.map((hz) => element("option", { value: hz }, `${hz} a second`)),
+    ),
+    rules: element(
+      "select",
+      { id: "new-rules" },
+      ...RULES.map(([value, text]) => element("option", { value }, text)),
     ),
     episodes: element("input", {
       id: "new-episodes",

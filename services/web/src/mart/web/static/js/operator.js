@@ -2,22 +2,26 @@
 
 import * as api from "./api.js";
 import { hasPicture } from "./arms.js";
-import { byId, letGoOfButton, letGoOnEscape, setShown, setText } from "./dom.js";
+import { coursePath, courseRoom } from "./course.js";
+import { byId, letGoOfButton, letGoOnEscape } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
-import { waitingText } from "./formatting.js";
+import { Headset } from "./headset/headset.js";
 import { isCue, isOffered } from "./hud/command-kinds.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
+import { onDeviceButtons } from "./hud/device-buttons.js";
 import { DisplayedTicks } from "./hud/displayed-ticks.js";
-import { showIdentity } from "./hud/identity.js";
-import { InputPanel } from "./hud/input-panel.js";
-import { keepAsFailed } from "./hud/keep-as-failed.js";
 import { showHealth } from "./hud/health-figure.js";
+import { showHolder } from "./hud/holder.js";
+import { InputPanel } from "./hud/input-panel.js";
+import { keepDiscarded } from "./hud/keep-discarded.js";
 import { showNotice } from "./hud/notice.js";
 import { showPartners } from "./hud/partners.js";
 import { showPicture } from "./hud/picture.js";
+import { showSeatTitle } from "./hud/seat-title.js";
 import { StatusBar } from "./hud/status-bar.js";
+import { showWaiting } from "./hud/waiting.js";
 import { approachAsPage } from "./link/page-approach.js";
 import { DrawnPicture } from "./scene/drawn-picture.js";
 import { pictureChoice } from "./scene/picture-choice.js";
@@ -29,7 +33,7 @@ import { inPlainWords } from "./plain-words.js";
 import { VoicePanel } from "./voice/voice-panel.js";
 
 /** @import { Command } from "./drive/keys.js" */
-/** @import { ActionCommand } from "./hud/status-bar-view.js" */
+/** @import { ActionCommand } from "./hud/view-parts.js" */
 
 const AGE_MS = 500;
 const NO_NEWS_MS = 2500; // rooms are told once a second at least
@@ -42,6 +46,8 @@ const video = byId("video", HTMLVideoElement);
 let room = null;
 /** @type {StatusChannel.Tick | null} */
 let status = null;
+/** Where the practice course is done. @type {Api.Room | null} */
+let course = null;
 let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
 let pictured = false; // by the present connection: its picture comes a round trip before its first word
@@ -50,7 +56,7 @@ let beganMs = -Infinity; // when the gateway first told of this holder's seat
 const displayed = new DisplayedTicks();
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
-const panel = new InputPanel(roomName, armId, (error) => showNotice(api.messageOf(error)));
+const panel = new InputPanel(roomName, armId, fail);
 const input = new KeyboardMouseInput(byId("picture"), (command, hasMoved) => {
   if (!hasMoved || room?.episode.phase !== "recording") onKey(command); // a key that has just moved is still meant to
 }, () => confirm.withdraw());
@@ -74,6 +80,7 @@ const drawn = new DrawnPicture({
   onChange: () => render(),
   commanded: () => input.commandedSince(status),
 });
+const headset = new Headset({ room: roomName, arm: armId, picture: drawn, input, onCommand: onKey, onFailure: fail });
 const stop = emergencyStop({
   label: roomName,
   id: "stop",
@@ -86,17 +93,15 @@ const cues = new Cues(armId, (message) => link.send(message), () => render());
 begin();
 
 function begin() {
-  showIdentity(roomName, armId);
+  showSeatTitle(roomName, armId);
   byId("edge").prepend(voice.node);
   for (const command of /** @type {const} */ (["gripper", "leave"])) {
     byId(command).addEventListener("click", () => run(command));
   }
-  byId("spacemouse").addEventListener("click", () => attempt(() => input.askForDevice()));
-  byId("toggle").addEventListener("click", () => {
-    byId("toggle").setAttribute("aria-pressed", String(input.toggleHold()));
-  });
-  byId("switch").addEventListener("click", () => {
-    link.send({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" });
+  onDeviceButtons({
+    spaceMouse: () => attempt(() => input.askForDevice()),
+    hold: () => input.toggleHold(),
+    other: () => link.send({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" }),
   });
   byId("emergency").append(stop.node);
   byId("health").addEventListener("toggle", () => render());
@@ -121,6 +126,7 @@ function onRooms(rooms) {
   // A room that was there and is gone is being restarted, or will be missed: the page stays.
   heardMs = performance.now();
   room = rooms.find((one) => one.room === roomName) ?? (room && { ...room, stale: true });
+  course = courseRoom(rooms);
   follow(ownSeat());
   render();
 }
@@ -169,6 +175,7 @@ function onShown(tick, nowMs) {
 function onStatus(tick) {
   drawn.onTick(tick.tick);
   input.adoptGripper(tick, status);
+  headset.onStatus(tick, status);
   if (status === null) beganMs = performance.now();
   status = tick;
   if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
@@ -185,7 +192,7 @@ function render() {
   const seat = ownSeat();
   const mine = seat?.mine ?? false;
   const isNew = !localStorage.getItem(RECORDED_KEY);
-  statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches });
+  statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches, course });
   const told = isTold();
   const still = displayed.standStill(status?.tick ?? 0, performance.now());
   const forMs = performance.now() - beganMs;
@@ -196,25 +203,15 @@ function render() {
   voice.update();
   if (room) showRoom({ ...room, stale: !told });
   showPicture(seat, status, isLive(), drawn.isShown);
-  showHolder(mine);
-}
-
-/** @param {boolean} mine */
-function showHolder(mine) {
-  document.body.classList.toggle("engaged", status?.engaged ?? false);
-  document.body.classList.toggle("can-drive", mine);
-  setShown(byId("hand"), mine && link.state !== LinkState.REPLACED);
-  const leave = mine ? "Leave" : "Lobby";
-  setText(byId("leave"), confirm.pending === "leave" ? "Press Q again" : leave);
+  showHolder(mine, status, link.state, confirm.pending);
+  headset.update(mine && drives(), room);
 }
 
 /** @param {Api.Room} shown */
 function showRoom(shown) {
   drawn.onProgress(shown.progress.subtasks);
   showPartners(shown, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
-  const waiting = shown.stale ? "" : waitingText(shown);
-  setText(byId("waiting"), waiting);
-  setShown(byId("waiting"), waiting !== "");
+  showWaiting(shown);
 }
 
 /**
@@ -247,14 +244,18 @@ const ACTIONS = {
   help: () => panel.toggleHelp(),
   lobby: toLobby,
   here: () => link.connect(),
-  keep: () => keepAsFailed(room),
+  keep: () => keepDiscarded(room),
   take: () => api.takeSeat(roomName, armId),
   back: () => api.handBack(roomName, armId),
-  leave: async () => {
-    if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);
-    toLobby();
-  },
+  course: () => leaveFor(coursePath(course)),
+  leave: () => leaveFor("/"),
 };
+
+/** @param {string} path */
+async function leaveFor(path) {
+  if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);
+  location.assign(path);
+}
 
 /** Two ways at once, because one may be lost: with the frames of a hand, and over HTTP. */
 async function pressStop() {
@@ -279,17 +280,19 @@ function perform(command) {
   return api.actOnEpisode(roomName, command, armId);
 }
 
-/**
- * @param {string} command
- * @returns {command is PageCommand}
- */
+/** @param {string} command @returns {command is PageCommand} */
 const isPageCommand = (command) => command in ACTIONS;
+
+/** @param {unknown} error */
+function fail(error) {
+  showNotice(api.messageOf(error));
+}
 
 /** @param {() => unknown} action */
 async function attempt(action) {
   try {
     await action();
   } catch (error) {
-    showNotice(api.messageOf(error));
+    fail(error);
   }
 }

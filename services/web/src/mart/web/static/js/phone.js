@@ -1,16 +1,19 @@
 // The phone: a hand that is usable without looking.
 
-import { actByPhone, letGoByPhone, messageOf, phoneToken, redeemPairing, sendOffer, stopByPhone } from "./api.js";
+import { actByPhone, letGoByPhone, messageOf, stopByPhone } from "./api.js";
 import { armName, theArm } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
 import { letGoText } from "./drive/let-go.js";
 import { IDENTITY } from "./drive/quaternion.js";
 import { everyFrame } from "./drive/ticker.js";
+import { approachAsPhone } from "./link/phone-approach.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { ClutchPad, GripperBar, StopButton } from "./phone/controls.js";
 import { EpisodeButton, episodeText } from "./phone/episode-button.js";
 import { keepScreenOn, vibrate, vibrationsFor } from "./phone/feedback.js";
+import { takePairing } from "./phone/pairing.js";
+import { PhoneCues } from "./phone/phone-cues.js";
 import { stoppedByText, stoppedHoldText } from "./phone/stop-words.js";
 import { TouchTracker } from "./phone/touch-tracker.js";
 import { Tutorial } from "./phone/tutorial.js";
@@ -21,7 +24,6 @@ import { canTrack, XrTracker } from "./phone/xr.js";
 
 const STOP_TOLD_MS = 1000;
 const PROBLEM_MS = 4000;
-const PAIRING_KEY = "mart.pairing";
 const TUTORIAL_DONE_KEY = "mart.coached";
 
 const gripper = new GripperBar(byId("gripper"));
@@ -31,6 +33,13 @@ const stop = new StopButton(byId("stop"), byId("stop-text"), { onStop: pressStop
 const episode = new EpisodeButton(byId("episode"), (action) =>
   ask((room, seat, token) => actByPhone(room, seat, token, action)),
 );
+
+/** @type {SeatLink | null} */
+let seatLink = null;
+const cues = new PhoneCues((message) => seatLink?.send(message), (what) => {
+  if (what === "open") clutch.release(); // the sheet covers what moves the arm
+  else vibrate("step");
+});
 
 /** @type {XrTracker | TouchTracker | null} */
 let tracker = null;
@@ -87,38 +96,19 @@ const HOW = {
     "phone turns the hand.",
 };
 
-/**
- * The code in the address works once; what it gave is kept for a reload of this tab.
- * @returns {Promise<Api.PairedPhone | null>}
- */
-async function takePairing() {
-  const code = location.hash.slice(1);
-  if (code) {
-    history.replaceState(null, "", "/phone");
-    sessionStorage.removeItem(PAIRING_KEY);
-    sessionStorage.setItem(PAIRING_KEY, JSON.stringify(await redeemPairing(code)));
-  }
-  return JSON.parse(sessionStorage.getItem(PAIRING_KEY) ?? "null");
-}
-
 /** @param {Api.PairedPhone} pairing */
 function connect(pairing) {
   const link = new SeatLink({
-    approach: async () => {
-      const { room, arm: seat } = pairing;
-      const renewed = await phoneToken(room, seat, pairing.token);
-      const { token, epoch, ice_servers: iceServers } = renewed;
-      if (epoch !== link.epoch) status = null; // somebody else drove meanwhile: the gripper is as they left it
-      paired = { ...pairing, ...renewed };
-      return {
-        iceServers,
-        exchange: async (sdp) => ({ ...(await sendOffer(room, seat, token, sdp)), role: "phone", epoch }),
-      };
-    },
+    approach: () =>
+      approachAsPhone(pairing, (renewed) => {
+        if (renewed.epoch !== link.epoch) status = null; // somebody else drove: the gripper is as they left it
+        paired = { ...pairing, ...renewed };
+      }),
     wantsVideo: false,
     onState: () => onLinkState(link),
     onStatus: (tick) => onStatus(tick, link),
   });
+  seatLink = link;
   link.connect();
   everyFrame((nowMs) => sendFrame(link, nowMs));
   return link;
@@ -252,6 +242,7 @@ function showLink(link) {
   const stopped = live && status?.barrier === "stopped";
   if (live) stop.update(stopped);
   episode.update(live ? status : null);
+  cues.update(live ? status : null);
   if (performance.now() > problemUntilMs) problem = "";
   byId("app").classList.toggle("stopped", stopped);
   setText(byId("link"), problem || linkText(link));

@@ -2,6 +2,7 @@
 
 import * as api from "./api.js";
 import { armName, badge, hasPicture, holderName, isMachine, theArm } from "./arms.js";
+import { rulesText } from "./course.js";
 import { element, keepChildren, setShown, setText } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { keptText, phaseText, plural, planText, waitingText } from "./formatting.js";
@@ -35,7 +36,13 @@ export function roomCard(attempt, onClosed) {
     onStop: () => attempt(() => api.stopRoom(name)),
     onLetGo: () => attempt(() => api.letGoOfStop(name)),
   });
-  const facts = { id: element("span"), rate: element("span"), plan: element("strong"), saved: element("span") };
+  const facts = {
+    rules: element("strong"),
+    id: element("span"),
+    rate: element("span"),
+    plan: element("strong"),
+    saved: element("span"),
+  };
   const about = element("div", {}, element("header", {}, title, phase), instruction);
   const node = element(
     "article",
@@ -60,6 +67,8 @@ export function roomCard(attempt, onClosed) {
     close.update(room);
     setText(phase, room.stale ? "Not answering" : waitingText(room) || phaseText(room.episode));
     setText(instruction, room.instruction);
+    setText(facts.rules, rulesText(room));
+    setShown(facts.rules, rulesText(room) !== "");
     setText(facts.id, room.room);
     setText(facts.rate, `${room.control_hz} Hz, ${room.real_time_factor.toFixed(2)}× real time`);
     setText(facts.plan, planText(room.plan));

@@ -31,6 +31,12 @@ export const endPause = (room) => request("DELETE", hostPath(room, "/pause"));
 /** Plans so many good episodes from now on; 0: no plan. @type {(room: string, episodes: number) => RoomAnswer} */
 export const setPlan = (room, episodes) => request("PUT", hostPath(room, "/plan"), { episodes });
 
+/**
+ * Lets people record only who have passed the practice course, or everybody.
+ * @type {(room: string, required: boolean) => RoomAnswer}
+ */
+export const requireCourse = (room, required) => request("PUT", hostPath(room, "/course"), { required });
+
 /** Closes a room, also where people sit. @type {(room: string) => Promise<{ room: string }>} */
 export const closeWithPeople = (room) => request("DELETE", hostPath(room));
 

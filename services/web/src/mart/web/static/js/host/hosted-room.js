@@ -1,12 +1,14 @@
 // A room on the page of hosts: every view small, what happens now, and what a host does about it.
 
+import { rulesText } from "../course.js";
 import { element, keepChildren, setShown, setText } from "../dom.js";
-import { planText, plural } from "../formatting.js";
+import { asSentence, planText, plural } from "../formatting.js";
 import { pressedTwice } from "../pressed-twice.js";
 import * as hosting from "./host-api.js";
 import { planForm } from "./plan-form.js";
 import { roomVoice } from "./room-voice.js";
 import { roomNow } from "./room-words.js";
+import { sessionStatistics } from "./session-statistics.js";
 import { seatView } from "./seat-view.js";
 
 /** @import { Attempt } from "../api.js" */
@@ -25,6 +27,7 @@ export function hostedRoom(name, attempt) {
   const actions = roomActions(name, attempt);
   const plan = planForm(name, attempt);
   const voice = roomVoice(name);
+  const statistics = sessionStatistics(name, attempt);
   const node = element(
     "article",
     { class: "hosted-room card" },
@@ -35,6 +38,7 @@ export function hostedRoom(name, attempt) {
     element("div", { class: "host-actions" }, ...Object.values(actions)),
     counted,
     plan.node,
+    statistics.node,
   );
   /** @type {Map<string, Part<[Api.Seat, Api.Room]>>} */
   const seats = new Map();
@@ -50,12 +54,17 @@ export function hostedRoom(name, attempt) {
     setText(counted, countedText(room));
     plan.update(room);
     voice.update(room.seats);
+    statistics.update(room);
+    setShown(statistics.node, !room.practice);
     keepChildren(views, room.seats.map(({ arm }) => arm), seats, (arm) => seatView(name, arm, attempt));
     for (const seat of room.seats) seats.get(seat.arm)?.update(seat, room);
     const recording = room.episode.phase === "recording";
     setShown(actions.pause, !room.stop?.by_host);
     setShown(actions.goOn, room.stop !== null);
     for (const action of [actions.success, actions.failure, actions.discard]) setShown(action, recording);
+    setShown(actions.require, !room.practice && !room.course_required);
+    setShown(actions.waive, room.course_required);
+    setShown(plan.node, !room.practice);
     setShown(actions.reset, room.episode.phase === "practice");
     setShown(actions.close, opensRooms && !recording && room.episode.phase !== "countdown");
   }
@@ -68,22 +77,30 @@ export function hostedRoom(name, attempt) {
  * @param {Attempt} attempt
  */
 function roomActions(room, attempt) {
-  const on = { click: () => attempt(() => hosting.pauseRoom(room)) };
+  /** @type {(text: string, action: () => unknown) => HTMLButtonElement} */
+  const button = (text, action) => {
+    const on = { click: () => attempt(action) };
+    return element("button", { type: "button", "aria-label": `${text}: ${room}`, on }, text);
+  };
   /** @type {(text: string, action: () => unknown, kind?: string) => HTMLButtonElement} */
   const twice = (text, action, kind = "") => pressedTwice({ text, about: room, kind, onSure: () => attempt(action) });
   return {
-    pause: element("button", { type: "button", "aria-label": `Pause: ${room}`, on }, "Pause"),
+    pause: button("Pause", () => hosting.pauseRoom(room)),
     goOn: twice("Go on", () => hosting.endPause(room), "primary"),
     success: twice("End: success", () => hosting.endForAll(room, "success")),
     failure: twice("End: failed", () => hosting.endForAll(room, "failure")),
     discard: twice("End: discard", () => hosting.endForAll(room, "discard")),
     reset: twice("Put everything back", () => hosting.endForAll(room, "reset")),
+    require: button("Require the practice course", () => hosting.requireCourse(room, true)),
+    waive: button("Let everybody record", () => hosting.requireCourse(room, false)),
     close: twice("Close room", () => hosting.closeWithPeople(room), "quiet"),
   };
 }
 
 /** @param {Api.Room} room */
-function countedText({ plan, episodes_saved: saved, episodes_good: good }) {
+function countedText(room) {
+  const { plan, episodes_saved: saved, episodes_good: good } = room;
   const counted = saved === 0 ? "No episode yet" : `${plural(saved, "episode")} saved, ${good} good`;
-  return plan ? `${planText(plan)}. ${counted}.` : `${counted}.`;
+  const rules = rulesText(room);
+  return [plan ? planText(plan) : "", room.practice ? "" : counted, rules].filter(Boolean).map(asSentence).join(" ");
 }

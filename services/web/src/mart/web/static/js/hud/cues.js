@@ -1,13 +1,11 @@
 // Words to one's partners: a button each, and what was said, for a few seconds.
 
 import { armName, holderName } from "../arms.js";
-import { cueText, waitsAfter } from "../cues.js";
+import { cueText, sendCue, waitsAfter } from "../cues.js";
 import { byId, element, setShown, setText } from "../dom.js";
 import { CUES } from "../facts.js";
-import { nowUs } from "../link/seat-link.js";
 
 const SHOWN_MS = 4000;
-const SENT_AT_MS = [0, 80, 160]; // the channel may lose a message; the gateway counts a press once
 
 /** The buttons for cues, and the newest cue of each arm. */
 export class Cues {
@@ -40,9 +38,7 @@ export class Cues {
    * @param {Messages.Cue} cue
    */
   give(cue) {
-    if (byId("cues").hidden) return;
-    const message = /** @type {const} */ ({ type: "cue", cue, t_us: nowUs() });
-    for (const afterMs of SENT_AT_MS) setTimeout(() => this.#send(message), afterMs);
+    if (!byId("cues").hidden) sendCue(cue, this.#send);
   }
 
   /**

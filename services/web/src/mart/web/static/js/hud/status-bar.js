@@ -1,13 +1,15 @@
 // The status bar: what is happening, and the next action as the one prominent button.
 
 import { byId, element, setShown, setText } from "../dom.js";
+import { scoreText, stationsOf } from "../course.js";
 import { lastEpisodeOf } from "./last-episode.js";
 import { statusBarView } from "./status-bar-view.js";
 
-/** @import { Action, ActionCommand, Known } from "./status-bar-view.js" */
+/** @import { Action, ActionCommand, Known } from "./view-parts.js" */
 
 const FOLDED_KEY = "mart.folded";
 const REACHED_MS = 8000; // how long "That is it!" stands
+const ACHIEVED_MS = 3000; // the same of one step of the course
 
 /** Shows what is known of the own seat, and offers what can be done. */
 export class StatusBar {
@@ -16,6 +18,7 @@ export class StatusBar {
   /** @type {Action[]} */
   #actions = [];
   #reachedMs = -Infinity;
+  #achieved = new Achieved();
 
   /** @param {(command: ActionCommand) => void} onCommand called when a button is pressed */
   constructor(onCommand) {
@@ -26,11 +29,12 @@ export class StatusBar {
 
   /**
    * Shows it. `pending`: the command whose button or key has to be pressed once more.
-   * @param {Omit<Known, "reached"> & { pending: string }} known
+   * @param {Omit<Known, "reached" | "achieved"> & { pending: string }} known
    */
   update(known) {
     const { room, pending } = known;
-    const view = statusBarView({ ...known, reached: this.#reached(room) });
+    const achieved = this.#achieved.see(room, known.seat, performance.now());
+    const view = statusBarView({ ...known, reached: this.#reached(room), achieved });
     setText(byId("state-label"), view.label);
     byId("state-label").classList.toggle("recording", view.recording);
     setText(byId("state-figure"), view.figure);
@@ -86,7 +90,10 @@ export class StatusBar {
     setShown(byId("steps"), subtasks.length > 0);
     setText(byId("steps-done"), `${reached} of ${subtasks.length} steps done`);
     byId("subtasks").replaceChildren(
-      ...subtasks.map(({ title, done }) => element("li", { class: done ? "done" : "" }, title)),
+      ...subtasks.map((step) => {
+        const score = element("span", { class: "soft figures" }, scoreText(step));
+        return element("li", { class: step.done ? "done" : "" }, `${step.title} `, score);
+      }),
     );
   }
 
@@ -128,5 +135,31 @@ export class StatusBar {
 function stepsOf(room, seat) {
   if (!room || !seat?.mine) return [];
   const isPractice = room.episode.phase === "practice" && !lastEpisodeOf(room, seat);
-  return isPractice || room.episode.phase === "recording" ? room.progress.subtasks : [];
+  const stations = room.practice ? stationsOf(room, seat.arm) : [];
+  const steps = stations.length > 0 ? stations : room.progress.subtasks;
+  return isPractice || room.episode.phase === "recording" ? steps : [];
+}
+
+/** Notices which step of the practice course was just done. */
+class Achieved {
+  #done = 0;
+  /** @type {Api.Subtask | null} */
+  #newest = null;
+  #sinceMs = -Infinity;
+
+  /**
+   * The own step that was done a moment ago, or null.
+   * @param {Api.Room | null} room
+   * @param {Api.Seat | undefined} seat
+   * @param {number} nowMs
+   */
+  see(room, seat, nowMs) {
+    const done = room && seat?.mine ? stationsOf(room, seat.arm).filter((station) => station.done) : [];
+    if (done.length > this.#done) {
+      this.#newest = done.at(-1) ?? null;
+      this.#sinceMs = nowMs;
+    }
+    this.#done = done.length;
+    return done.length > 0 && nowMs - this.#sinceMs < ACHIEVED_MS ? this.#newest : null;
+  }
 }

@@ -19,19 +19,23 @@ const PHASES = {
  * What the episode does now, as the beginning of a line. Pure.
  * @param {StatusChannel.Tick} status
  */
-export const episodeText = ({ phase, ready }) => (phase === "practice" && ready ? "Ready. " : PHASES[phase]);
+export function episodeText({ phase, ready, practises_only: practisesOnly }) {
+  if (phase !== "practice") return PHASES[phase];
+  if (practisesOnly) return "Practice only. ";
+  return ready ? "Ready. " : PHASES.practice;
+}
 
 /**
  * What the button would do now, and in which words. Pure.
- * @param {StatusChannel.Tick["phase"]} phase
- * @param {boolean} ready
+ * @param {StatusChannel.Tick} status
+ * @param {boolean} again an episode has gone before
  * @returns {{ action: PhoneAction, text: string } | null}
  */
-export function nextAction(phase, ready) {
+export function nextAction({ phase, ready, practises_only: practisesOnly }, again) {
   if (phase === "recording") return { action: "discard", text: "Discard" };
   if (phase === "countdown") return { action: "unready", text: "Not ready yet" };
-  if (phase !== "practice") return null;
-  return ready ? { action: "unready", text: "Not ready yet" } : { action: "ready", text: "Ready" };
+  if (phase !== "practice" || practisesOnly) return null;
+  return ready ? { action: "unready", text: "Not ready yet" } : { action: "ready", text: again ? "Again" : "Ready" };
 }
 
 /** Shows what can be done, and does it. */
@@ -40,6 +44,7 @@ export class EpisodeButton {
   /** @type {ReturnType<typeof nextAction>} */
   #next = null;
   #sureUntilMs = -Infinity;
+  #again = false;
 
   /**
    * @param {HTMLElement} node
@@ -65,7 +70,8 @@ export class EpisodeButton {
    * @param {StatusChannel.Tick | null} status
    */
   update(status) {
-    this.#next = status && status.barrier !== "stopped" ? nextAction(status.phase, status.ready) : null;
+    if (status?.phase === "ended") this.#again = true;
+    this.#next = status && status.barrier !== "stopped" ? nextAction(status, this.#again) : null;
     this.#show();
   }
 

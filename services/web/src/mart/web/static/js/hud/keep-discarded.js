@@ -2,8 +2,8 @@
 
 import { labelEpisode } from "../api.js";
 
-/** @param {Api.Room | null} room */
-export async function keepAsFailed(room) {
+/** Labels its file as failed. @param {Api.Room | null} room */
+export async function keepDiscarded(room) {
   const saved = room?.last_episode?.saved;
   if (saved) await labelEpisode(saved.path.replace(/^episodes\//, ""), { outcome: "failure" });
 }

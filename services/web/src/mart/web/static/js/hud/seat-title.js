@@ -1,13 +1,14 @@
-// Whose page it is: the arm in its colour, and the room.
+// Which arm in which room this page is for.
 
 import { armName, badge } from "../arms.js";
 import { byId, setText } from "../dom.js";
 
 /**
+ * Shows it, once.
  * @param {string} room
  * @param {string} arm
  */
-export function showIdentity(room, arm) {
+export function showSeatTitle(room, arm) {
   document.title = `${armName(arm)} · ${room} · MART`;
   document.body.dataset.arm = arm;
   byId("badge").replaceWith(badge(arm));
