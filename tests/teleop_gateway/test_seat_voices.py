@@ -7,12 +7,21 @@ import asyncio
 import pytest
 
 from mart.protocol.tokens import Role
-from tests.teleop_gateway.browser import connected
+from mart.teleop_gateway.webrtc import status_channel
+from tests.teleop_gateway.browser import Browser, connected, in_background
 from tests.teleop_gateway.room import OnSeat, SeatUnderTest, beside
 from tests.teleop_gateway.voice.tone import Tone, heard_hz
 
 ANA = {"arm": "arm0", "name": "Ana"}
 BEN = {"arm": "arm1", "name": "Ben"}
+
+
+async def stay(*browsers: Browser) -> None:
+    """Speaks on the status channel, as pages do: who is silent for 10 s is let go."""
+    while True:
+        for browser in browsers:
+            browser.status.send(status_channel.ping(0.0))
+        await asyncio.sleep(1.0)
 
 
 def test_who_speaks_at_one_seat_is_heard_at_the_other_and_by_who_watches(
@@ -27,6 +36,7 @@ def test_who_speaks_at_one_seat_is_heard_at_the_other_and_by_who_watches(
                 connected(first.exchange(Role.BROWSER, ana_token), says=ana_says) as ana,
                 connected(second.exchange(Role.BROWSER, ben_token), says=ben_says) as ben,
                 connected(second.exchange(Role.VIEWER), Role.VIEWER, says=eve_says) as eve,
+                in_background(stay(ana, ben, eve)),
             ):
                 eve_says.is_on.set()  # a spectator says what she likes
                 ana_says.is_on.set()
@@ -57,6 +67,7 @@ def test_a_third_voice_is_told_that_nobody_hears_it(on_seat: OnSeat) -> None:
             connected(exchanges[0], says=tones[0]) as ana,
             connected(exchanges[1], Role.VIEWER, says=tones[1]) as ben,
             connected(exchanges[2], Role.VIEWER, says=tones[2]) as cem,
+            in_background(stay(ana, ben, cem)),
         ):
             tones[0].is_on.set()
             tones[1].is_on.set()

@@ -190,6 +190,7 @@ declare namespace Api {
     token: string;
     role: PeerRole;
     epoch: number;
+    speaks_as: string;
     ice_servers: RTCIceServer[];
   }
 

@@ -28,6 +28,7 @@ from mart.teleop_gateway.input.frame_validator import FrameRejection
 from mart.teleop_gateway.input.retarget import Retarget
 from mart.teleop_gateway.input.tool_motion import ToolMotion
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
+from mart.teleop_gateway.voice.lanes import LANES, Speaker
 from mart.teleop_gateway.webrtc import status_channel
 from tests.teleop_gateway.input.strategies import phone_frame
 from tests.teleop_gateway.input.test_driving import HOME
@@ -99,6 +100,18 @@ def test_the_longest_tick_message_fits_one_packet() -> None:
         state, room, hand, 1e4, frames_per_s=119.9, latency=slow, no_picture="x" * 1000
     )
     assert len(text.encode()) <= status_channel.MAX_CHARACTERS, len(text.encode())
+
+
+def test_who_speaks_fits_one_packet_however_they_are_called() -> None:
+    speakers = [Speaker("🤖" * 32, "arm3")] * LANES
+    text = status_channel.voices(speakers, is_heard=False)
+    assert len(text.encode()) <= status_channel.MAX_CHARACTERS
+    told = json.loads(text)
+    assert told == {
+        "type": "voices",
+        "speakers": [{"arm": "arm3", "name": "🤖" * 32}] * LANES,
+        "heard": False,
+    }
 
 
 @pytest.mark.parametrize(

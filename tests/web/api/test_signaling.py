@@ -83,6 +83,7 @@ async def test_the_holder_and_a_host_may_speak_and_another_guest_only_hears(
     for person, speaks_as in ((ana, "Ana"), (ben, ""), (hanna, "Hanna")):
         told = (await person.get(f"{SEAT}/token")).json()
         assert verify(told["token"], app_state.secret).speaks_as == speaks_as
+        assert told["speaks_as"] == speaks_as
 
 
 async def test_an_offer_reaches_the_gateway_and_its_answer_comes_back(enter: Enter, gateway: Gateway) -> None:
@@ -107,7 +108,9 @@ async def test_a_page_needs_no_token_and_is_told_what_one_would_tell(
         answer = (await person.post(f"{SEAT}/offer", json={"sdp": SDP})).json()
         signed = verify(gateway.offers[-1].token, app_state.secret)
         assert (signed.role, signed.epoch) == (role, told["epoch"])
-        assert answer == {"sdp": "answer"} | {key: told[key] for key in ("role", "epoch", "ice_servers")}
+        assert answer == {"sdp": "answer"} | {
+            key: told[key] for key in ("role", "epoch", "speaks_as", "ice_servers")
+        }
 
 
 async def test_a_page_at_a_seat_without_a_picture_is_told_at_once(enter: Enter, gateway: Gateway) -> None:

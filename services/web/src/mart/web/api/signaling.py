@@ -158,7 +158,12 @@ def _page_claims(app: AppState, room: str, arm: str, user: User) -> SeatToken:
 
 
 def _told_with(app: AppState, claims: SeatToken) -> Json:
-    return {"role": claims.role.value, "epoch": claims.epoch, "ice_servers": ice_servers_json(app)}
+    return {
+        "role": claims.role.value,
+        "epoch": claims.epoch,
+        "speaks_as": claims.speaks_as,
+        "ice_servers": ice_servers_json(app),
+    }
 
 
 def ice_servers_json(app: AppState) -> list[dict[str, str]]:

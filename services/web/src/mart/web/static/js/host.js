@@ -17,7 +17,6 @@ const nameInput = byId("name", HTMLInputElement);
 /** @type {Map<string, Part<[Api.Room, boolean]>>} */
 const cards = new Map();
 let opensRooms = false;
-let me = "";
 
 begin();
 
@@ -42,7 +41,6 @@ function ask(person) {
 /** @param {Api.Person} person */
 function host({ name }) {
   setShown(form, false);
-  me = name;
   localStorage.setItem(NAME_KEY, name);
   setText(byId("me"), `${name}, host`);
   api.tasks().then(
@@ -56,7 +54,7 @@ function host({ name }) {
 function show(rooms) {
   setText(byId("page-title"), rooms.length > 1 ? `Host of ${rooms.length} rooms` : "Host");
   setShown(byId("no-room"), rooms.length === 0);
-  keepChildren(byId("rooms"), rooms.map(({ room }) => room), cards, (room) => hostedRoom(room, attempt, me));
+  keepChildren(byId("rooms"), rooms.map(({ room }) => room), cards, (room) => hostedRoom(room, attempt));
   for (const room of rooms) cards.get(room.room)?.update(room, opensRooms);
 }
 

@@ -69,7 +69,7 @@ const link = new SeatLink({
   onPoses: (message) => drawn.onPoses(message),
   voice: { onTrack: (track) => voice.onTrack(track), onVoices: (told) => voice.onVoices(told) },
 });
-const voice = new VoicePanel(link, ({ arm }) => arm === armId && link.role === "browser");
+const voice = new VoicePanel(link, armId);
 const drawn = new DrawnPicture({
   host: byId("picture"),
   room: roomName,

@@ -26,7 +26,6 @@ let known = [];
 /** What each arm of the room said last. @type {Map<string, { cue: Messages.Cue, untilMs: number }>} */
 const said = new Map();
 let watched = "";
-let ownName = "";
 /** The picture of the view that is watched. @type {DrawnPicture | null} */
 let drawn = null;
 
@@ -39,7 +38,7 @@ const link = new SeatLink({
   onPoses: (message) => drawn?.onPoses(message),
   voice: { onTrack: (track) => voice.onTrack(track), onVoices: (told) => voice.onVoices(told) },
 });
-const voice = new VoicePanel(link, ({ arm, name }) => arm === "" && name === ownName);
+const voice = new VoicePanel(link);
 const camera = new FreeCamera(byId("watched"), () => drawn?.look());
 const labels = new ToolLabels(byId("labels"));
 
@@ -48,7 +47,7 @@ begin();
 async function begin() {
   const code = new URLSearchParams(location.hash.slice(1)).get("code") ?? "";
   try {
-    ({ name: ownName } = await (code ? api.watch(code) : api.me()));
+    await (code ? api.watch(code) : api.me());
   } catch (error) {
     setText(byId("page-message"), `${api.messageOf(error)} Ask the host for a link to watch.`);
     setShown(byId("choice"), false);

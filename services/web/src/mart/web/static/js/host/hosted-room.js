@@ -17,17 +17,16 @@ import { seatView } from "./seat-view.js";
 /**
  * @param {string} name
  * @param {Attempt} attempt
- * @param {string} me the host's name
  * @returns {Part<[Api.Room, boolean]>}
  */
-export function hostedRoom(name, attempt, me) {
+export function hostedRoom(name, attempt) {
   const title = element("h2");
   const now = element("p", { class: "next figures" });
   const counted = element("p", { class: "soft figures" });
   const views = element("ul", { class: "views", "aria-label": `Seats of ${name}` });
   const actions = roomActions(name, attempt);
   const plan = planForm(name, attempt);
-  const voice = roomVoice(name, me);
+  const voice = roomVoice(name);
   const statistics = sessionStatistics(name, attempt);
   const node = element(
     "article",

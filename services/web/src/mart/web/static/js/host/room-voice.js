@@ -12,10 +12,9 @@ const NOBODY = "Nobody in this room can hear you yet: there are no people here, 
 
 /**
  * @param {string} room
- * @param {string} me the host's name
  * @returns {Part<[Api.Seat[]]>}
  */
-export function roomVoice(room, me) {
+export function roomVoice(room) {
   const join = element("button", { type: "button", on: { click: toggle } }, "Talk and listen");
   const message = element("p", { class: "soft", role: "status", hidden: true });
   const node = element("div", { class: "room-voice" }, join, message);
@@ -40,7 +39,7 @@ export function roomVoice(room, me) {
       onStatus: () => {},
       voice: { onTrack: (track) => panel.onTrack(track), onVoices: (told) => panel.onVoices(told) },
     });
-    const panel = new VoicePanel(link, ({ arm, name }) => arm === "" && name === me);
+    const panel = new VoicePanel(link);
     node.append(panel.node);
     return { link, panel };
   }

@@ -23,11 +23,13 @@ export const LinkState = Object.freeze({
 
 /** @typedef {(typeof LinkState)[keyof typeof LinkState]} State */
 
+/** @typedef {{ sdp: string, role: Api.PeerRole, epoch: number, speaks_as?: string }} Admitted */
+
 /**
  * How a gateway is reached: `exchange` hands it the offer, and tells what one may do there.
  * @typedef {object} Approach
  * @property {RTCIceServer[]} iceServers
- * @property {(sdp: string) => Promise<{ sdp: string, role: Api.PeerRole, epoch: number }>} exchange
+ * @property {(sdp: string) => Promise<Admitted>} exchange
  */
 
 /**
@@ -58,6 +60,7 @@ export class SeatLink {
   epoch = 0;
   /** @type {Api.PeerRole | ""} */
   role = "";
+  speaksAs = ""; // the name by which one may speak to the room
   pictureKbitS = 0; // that the network carries, where that is less than the picture takes
   #options;
   /** @type {Peer | null} */
@@ -164,8 +167,8 @@ export class SeatLink {
       wantsVideo,
       iceServers,
       exchange: async (offer) => {
-        const { sdp, role, epoch } = await exchange(offer);
-        if (attempt === this.#attempt) [this.role, this.epoch] = [role, epoch];
+        const { sdp, role, epoch, speaks_as: speaksAs = "" } = await exchange(offer);
+        if (attempt === this.#attempt) [this.role, this.epoch, this.speaksAs] = [role, epoch, speaksAs];
         return sdp;
       },
       onTrack,

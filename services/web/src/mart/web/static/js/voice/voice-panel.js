@@ -15,6 +15,8 @@ const microphone = new Microphone();
  * What a panel needs of the connection to a seat.
  * @typedef {object} TalkLink
  * @property {boolean} maySpeak
+ * @property {string} speaksAs one's name
+ * @property {string} role
  * @property {(track: MediaStreamTrack | null) => void} say
  */
 
@@ -22,7 +24,7 @@ const microphone = new Microphone();
 export class VoicePanel {
   node;
   #link;
-  #isMe;
+  #arm;
   #loudspeaker = new Loudspeaker(() => this.update());
   #held = false;
   /** @type {"" | "asking" | "talking"} */
@@ -39,11 +41,11 @@ export class VoicePanel {
 
   /**
    * @param {TalkLink} link
-   * @param {(speaker: StatusChannel.Speaker) => boolean} isMe whether it is whoever looks at this page
+   * @param {string} [arm] whose page it is, where it is an arm's
    */
-  constructor(link, isMe) {
+  constructor(link, arm = "") {
     this.#link = link;
-    this.#isMe = isMe;
+    this.#arm = arm;
     this.#talk.append("Hold to talk", element("kbd", { "aria-hidden": "true" }, "V"));
     this.#loudspeaker.mute(sessionStorage.getItem(MUTED_KEY) === "yes");
     const buttons = element("div", { class: "buttons" }, this.#talk, this.#mute);
@@ -100,6 +102,15 @@ export class VoicePanel {
     });
     this.#list.replaceChildren(...rows);
     setShown(this.#list, rows.length > 0);
+  }
+
+  /**
+   * Whether it is whoever looks at this page: a holder is known by the arm, too.
+   * @param {StatusChannel.Speaker} speaker
+   */
+  #isMe({ arm, name }) {
+    const { role, speaksAs } = this.#link;
+    return name === speaksAs && arm === (role === "browser" ? this.#arm : "");
   }
 
   /** @param {boolean} held */
