@@ -2,8 +2,8 @@
 
 Everything shares this machine: the browsers, the renderers, the encoders and the sim. The floor beside each figure is
 what no software can remove at that tick rate: what a steadily moving hand does waits half a tick on average and a whole
-one at worst, and the same for the 60 Hz screen. Where the page draws, its own draw is taken off: without a graphics card
-that is all one would see. Beside them stands what plain aiortc takes from a drawn picture to the screen, and the
+one at worst, and the same for the 60 Hz screen. Where the page draws, its own draw is taken off: without a graphics
+card that is all one would see. Beside them stands what plain aiortc takes from a drawn picture to the screen, and the
 gateway's peers for the same pictures.
 """
 
@@ -13,7 +13,8 @@ import contextlib
 import queue
 import sys
 import tempfile
-from collections.abc import Sequence
+import time
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
@@ -26,7 +27,7 @@ from support.stock_video import show_by_stock_aiortc
 from support.watching_page import Displayed
 
 from mart.platform.collect.browser import USUAL_PAGE, OperatorPage, running_browser
-from mart.platform.collect.emulated_users import EmulatedUsers
+from mart.platform.collect.emulated_users import EmulatedUser, EmulatedUsers
 from mart.platform.run.plan import PlatformOptions
 from mart.platform.run.running import (
     Platform,
@@ -34,9 +35,21 @@ from mart.platform.run.running import (
 )
 from mart.protocol import keys
 from mart.protocol.codec import decode
-from mart.protocol.messages import Event, RoomStatus
+from mart.protocol.messages import (
+    EPISODE_PHASE_ENDED,
+    EPISODE_PHASE_PRACTICE,
+    EPISODE_PHASE_RECORDING,
+    EpisodePhase,
+    Event,
+    RoomStatus,
+)
+from mart.protocol.tasks import get_task
 from mart.runtime.ports import free_port
 
+Inbox = queue.Queue[Event | RoomStatus]
+
+SETTLE_S = 5.0
+LONGEST_SILENCE_S = 30.0
 REPORTS = 35  # one a second; the newest is of the last 100 pictures, 20 s, so that the start is left out
 SCREEN_HZ = 60.0
 
@@ -102,23 +115,56 @@ def measure(case: Case) -> Heard:
         platform = stack.enter_context(running_platform(options))
         browser = stack.enter_context(running_browser())
         arms = [f"arm{number}" for number in range(case.people)]
-        stack.enter_context(EmulatedUsers(platform, "expert", 0, browser, case.page).seated(arms))
-        return _hear(platform, arms)
+        people = stack.enter_context(EmulatedUsers(platform, "expert", 0, browser, case.page).seated(arms))
+        for arm in get_task(case.task).arms[case.people :]:
+            people[0].web_client.assign(options.room, arm.name, "script")
+        inbox = stack.enter_context(_listening(platform))
+        if case.control_hz is None:
+            _play_one(options.room, people, inbox)
+        return _hear(inbox, arms)
 
 
-def _hear(platform: Platform, arms: Sequence[str]) -> Heard:
-    inbox: queue.Queue[Event | RoomStatus] = queue.Queue()
-    room, heard = platform.options.room, Heard()
-    topics = ((keys.event(room).key, Event), (keys.status(room).key, RoomStatus))
-    with contextlib.ExitStack() as stack:
-        for key, kind in topics:
-            subscription = platform.bus.subscribe(
-                key, lambda told, kind=kind: inbox.put(decode(kind, told.payload))
-            )
-            stack.callback(subscription.close)
-        while min((heard.reports.get(arm, 0) for arm in arms), default=0) < REPORTS:
-            told = inbox.get(timeout=30.0)
-            heard.on_event(told) if isinstance(told, Event) else heard.on_status(told)
+@contextlib.contextmanager
+def _listening(platform: Platform) -> Iterator[Inbox]:
+    inbox: Inbox = queue.Queue()
+    bus, room = platform.bus, platform.options.room
+    with (
+        contextlib.closing(
+            bus.subscribe(keys.event(room).key, lambda told: inbox.put(decode(Event, told.payload)))
+        ),
+        contextlib.closing(
+            bus.subscribe(keys.status(room).key, lambda told: inbox.put(decode(RoomStatus, told.payload)))
+        ),
+    ):
+        yield inbox
+
+
+def _play_one(room: str, people: Sequence[EmulatedUser], inbox: Inbox) -> None:
+    """Play an episode: after one, a room knows what pictures take and may choose another rate."""
+    time.sleep(SETTLE_S)
+    for person in people:
+        person.web_client.act(room, person.arm, "ready")
+    _await(inbox, EPISODE_PHASE_RECORDING)
+    _await(inbox, EPISODE_PHASE_ENDED)
+    people[0].web_client.act(room, people[0].arm, "reset")
+    _await(inbox, EPISODE_PHASE_PRACTICE)
+
+
+def _await(inbox: Inbox, phase: EpisodePhase) -> None:
+    while True:
+        told = inbox.get(timeout=LONGEST_SILENCE_S)
+        if isinstance(told, RoomStatus) and told.episode.phase == phase:
+            return
+
+
+def _hear(inbox: Inbox, arms: Sequence[str]) -> Heard:
+    heard = Heard()
+    while min((heard.reports.get(arm, 0) for arm in arms), default=0) < REPORTS:
+        told = inbox.get(timeout=LONGEST_SILENCE_S)
+        if isinstance(told, Event):
+            heard.on_event(told)
+        else:
+            heard.on_status(told)
     return heard
 
 

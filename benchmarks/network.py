@@ -1,6 +1,6 @@
 """What a bad network does to people who share a world: our barrier, request and reply, and a world that never waits.
 
-Each way of advancing the world meets each network, with two and with three people, and with people whose networks
+Each way of advancing the world meets each network, with two, three and four people, and with people whose networks
 differ; scripted people of skill `expert` do the first task. Networks are tools/netrelay's profiles, in simulated time.
 Plots for docs/networks.md are drawn beside.
 """
@@ -24,9 +24,10 @@ from tools.netrelay.impairment import PROFILES
 
 TASK = "two_arm_multi_cube_lifting"
 EPISODES = 3
+PEOPLE = (2, 3, 4)
 SIM_LIMIT_S, WALL_LIMIT_S = 40.0, 240.0
 SAME = ("lan", "wifi", "4g", "intercontinental", "outage")
-MIXED = {"mixed": ("lan", "4g", "intercontinental")}
+MIXED = {"mixed": ("wifi", "lan", "4g", "intercontinental")}  # of fewer people the last
 OUTAGE_PERIOD_S, OUTAGE_S = 20.0, 2.0
 LEAD_S = 1.5  # an episode begins so long before the network goes dark
 PICTURE = Path("docs/images/networks.svg")
@@ -50,7 +51,7 @@ def main() -> None:
     cells: dict[tuple[str, str, int], Cell] = {}
     back_s: list[float] = []
     told_s: list[float] = []
-    for people in (2, 3):
+    for people in PEOPLE:
         world = World.build(TASK, arms=people)
         for network in (*SAME, *MIXED):
             for way in WAYS:
@@ -71,7 +72,7 @@ def main() -> None:
 
 
 def _play(world: World, way: str, network: str, seed: int) -> RoomFigures:
-    names = MIXED.get(network, (network,) * 3)
+    names = MIXED.get(network, (network,) * max(PEOPLE))
     profiles = [PROFILES[name] for name in names[-len(world.arms) :]]
     began_s = OUTAGE_PERIOD_S - OUTAGE_S - LEAD_S if network == "outage" else 0.0
     return NetworkedRoom(world, way, profiles, seed, began_s).play(SIM_LIMIT_S, WALL_LIMIT_S)

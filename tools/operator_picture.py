@@ -29,7 +29,7 @@ def take_picture() -> None:
         platform = stack.enter_context(running_platform(options))
         browser = stack.enter_context(running_browser())
         people = stack.enter_context(EmulatedUsers(platform, skill="average", seed=5).seated(ARMS))
-        page = open_operator_page(browser, people[0].web_client, platform.url, options.room, ARMS[0])
+        page = open_operator_page(browser, people[0].web_client, platform.seat_url(ARMS[0]))
         page.set_viewport_size(SIZE)  # type: ignore[arg-type]
         for person in people:
             person.web_client.act(options.room, person.arm, "ready")

@@ -53,7 +53,7 @@ def take_picture() -> None:
         browser = stack.enter_context(running_browser())
         arms = get_task(TASK).arm_names
         people = stack.enter_context(EmulatedUsers(platform, skill="expert", seed=5).seated(arms))
-        page = open_operator_page(browser, people[0].web_client, platform.url, options.room, arms[0])
+        page = open_operator_page(browser, people[0].web_client, platform.seat_url(arms[0]))
         page.set_viewport_size(_PAGE_PX)  # type: ignore[arg-type]
         _await_partners(page)
         for person in people:

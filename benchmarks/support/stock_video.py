@@ -46,11 +46,11 @@ async def _show(pictures: Sequence[Image], frames_per_s: float, seconds: float) 
     async with watching_page() as page:
         peer = RTCPeerConnection()
         track = _Pictures(pictures, frames_per_s)
+        offer = await offer_of(page, shows_at_once=False)
+        await peer.setRemoteDescription(RTCSessionDescription(sdp=offer, type="offer"))
+        peer.addTrack(track)
         # Then a picture's time stamp is the same at both ends.
         with mock.patch.object(rtcrtpsender, "random32", return_value=0):
-            offer = await offer_of(page, shows_at_once=False)
-            await peer.setRemoteDescription(RTCSessionDescription(sdp=offer, type="offer"))
-            peer.addTrack(track)
             await peer.setLocalDescription(await peer.createAnswer())
             await accept(page, peer.localDescription.sdp)
             await asyncio.sleep(SETTLE_S + seconds)

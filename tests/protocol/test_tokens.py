@@ -15,6 +15,14 @@ TOKEN = SeatToken("room-1", "arm0", 7, Role.PHONE, "h1", float(int(time.time()) 
 
 def test_a_signed_token_verifies_to_itself() -> None:
     assert verify(sign(TOKEN, SECRET), SECRET) == TOKEN
+    named = replace(TOKEN, speaks_as="Ana")
+    assert verify(sign(named, SECRET), SECRET) == named
+
+
+def test_a_token_that_says_nothing_of_it_gives_no_voice() -> None:
+    claims = jwt.decode(sign(replace(TOKEN, speaks_as="Ana"), SECRET), SECRET, algorithms=["HS256"])
+    del claims["speaks_as"]
+    assert verify(jwt.encode(claims, SECRET, "HS256"), SECRET).speaks_as == ""
 
 
 @pytest.mark.parametrize("text", ["", "x", "a.b.c", "x" * 5000])

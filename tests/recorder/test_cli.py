@@ -80,6 +80,10 @@ def test_show_tells_all(mart: Mart, path: Path) -> None:
     assert "waited_for_arm1_s" in mart("episodes", "show", path)
 
 
+def test_show_says_whose_pictures_are_there(mart: Mart, path: Path) -> None:
+    assert mart.json("episodes", "show", path)["pictures"] == "recorded of arm0"
+
+
 def test_show_says_how_the_model_stands(mart: Mart, path: Path) -> None:
     assert "intact" in mart.json("episodes", "show", path)["model"]
     data = bytearray(path.read_bytes())

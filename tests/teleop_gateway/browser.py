@@ -9,7 +9,14 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from typing import Any
 
 import numpy as np
-from aiortc import RTCConfiguration, RTCDataChannel, RTCPeerConnection, RTCRtpReceiver, RTCSessionDescription
+from aiortc import (
+    MediaStreamTrack,
+    RTCConfiguration,
+    RTCDataChannel,
+    RTCPeerConnection,
+    RTCRtpReceiver,
+    RTCSessionDescription,
+)
 from av import VideoFrame
 
 from mart.protocol import clock
@@ -19,6 +26,7 @@ from mart.teleop_gateway.input.phone_frame import Flag, PhoneFrame
 from mart.teleop_gateway.video import tick_code
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.aiortc_hooks import offer_playout_delay
+from mart.teleop_gateway.webrtc.audio_hooks import give_transport
 
 Exchange = Callable[[str], Awaitable[str]]
 
@@ -26,7 +34,10 @@ Exchange = Callable[[str], Awaitable[str]]
 class Browser:
     """One peer of role `browser`, `viewer` or `phone`."""
 
-    def __init__(self, role: Role = Role.BROWSER, codec: str = "H264") -> None:
+    def __init__(
+        self, role: Role = Role.BROWSER, codec: str = "H264", *, says: MediaStreamTrack | None = None
+    ) -> None:
+        """`says`: what it says; without, it has no sound at all, as pages of earlier versions."""
         offer_playout_delay()
         self.connection = RTCPeerConnection(RTCConfiguration([]))
         self.told: list[dict[str, Any]] = []
@@ -44,6 +55,12 @@ class Browser:
             assert capabilities is not None
             transceiver.setCodecPreferences([c for c in capabilities.codecs if c.name in {codec, "rtx"}])
             self.receiver = transceiver.receiver
+        self.lanes: list[RTCRtpReceiver] = []
+        if says is not None:
+            talking = self.connection.addTransceiver(says, direction="sendrecv")
+            hearing = self.connection.addTransceiver("audio", direction="recvonly")
+            give_transport(self.connection, hearing)
+            self.lanes = [talking.receiver, hearing.receiver]
 
     async def connect(self, exchange: Exchange) -> None:
         """Returns when the channels are open; raises what `exchange` raises."""
@@ -132,9 +149,13 @@ class Browser:
 
 @contextlib.asynccontextmanager
 async def connected(
-    exchange: Exchange, role: Role = Role.BROWSER, codec: str = "H264"
+    exchange: Exchange,
+    role: Role = Role.BROWSER,
+    codec: str = "H264",
+    *,
+    says: MediaStreamTrack | None = None,
 ) -> AsyncIterator[Browser]:
-    browser = Browser(role, codec)
+    browser = Browser(role, codec, says=says)
     try:
         await browser.connect(exchange)
         yield browser

@@ -60,10 +60,12 @@ class Room:
             keys.command(self.name, "arm0").key, lambda s: self._keep(codec.decode(Command, s.payload))
         )
 
-    def seat(self, epoch: int, operator: int = OPERATOR_HUMAN) -> None:
-        """Who holds arm0, told to everyone."""
+    def seat(self, epoch: int, operator: int = OPERATOR_HUMAN, arm: str = "arm0") -> None:
+        """Who holds an arm, told to everyone."""
+        others = [seat for seat in self._status.seats if seat.arm != arm]
         del self._status.seats[:]
-        self._status.seats.append(SeatMessage(arm="arm0", operator=Operator.Name(operator), epoch=epoch))
+        self._status.seats.extend(others)
+        self._status.seats.append(SeatMessage(arm=arm, operator=Operator.Name(operator), epoch=epoch))
         self._statuses.put(codec.encode(self._status))
 
     def reset(self, seed: int) -> None:
@@ -99,6 +101,11 @@ class Room:
             arm.sequence = self._used = command.sequence
             arm.arrived_ns = command.stamps.sent_ns
             arm.stamps.CopyFrom(command.stamps)
+        still = [
+            ArmState(arm=seat.arm, tool_in_base=pose_message(self.world.tool_pose_in_base(seat.arm)))
+            for seat in self._status.seats
+            if seat.arm != "arm0"
+        ]
         state = State(
             room=self.name,
             tick=self.tick_number,
@@ -106,7 +113,7 @@ class Room:
             sim_time_s=self.world.sim_time_s,
             real_time_factor=1.0,
             integration_state=self.world.integration_state(),
-            arms=[arm],
+            arms=[arm, *still],
             stamps=TickStamps(due_ns=now_ns, fired_ns=now_ns, stepped_ns=clock.wall_ns()),
         )
         self._states.put(codec.encode(state))
@@ -119,11 +126,12 @@ class SeatUnderTest:
     seat: Seat
     room: Room
     bus: AsyncBus
+    arm: str = "arm0"
 
     def token(self, role: Role, **claims: object) -> str:
         given = {
             "room": self.room.name,
-            "arm": "arm0",
+            "arm": self.arm,
             "epoch": 1,
             "role": role,
             "holder_id": "ana",
@@ -142,7 +150,7 @@ class SeatUnderTest:
         return exchange
 
     async def offer(self, role: Role, payload: bytes) -> Answer:
-        reply = await self.bus.query(keys.signal(self.room.name, "arm0", role), payload, 10.0)
+        reply = await self.bus.query(keys.signal(self.room.name, self.arm, role), payload, 10.0)
         answer = codec.decode(Answer, reply)
         raise_error(answer.error)
         return answer
@@ -167,6 +175,19 @@ async def running_seat(router: str, world: World, model: Model) -> AsyncIterator
             await asyncio.sleep(0)  # both have begun
             room.seat(epoch=1)
             yield SeatUnderTest(seat, room, AsyncBus(mine, loop))
+
+
+@contextlib.asynccontextmanager
+async def beside(first: SeatUnderTest, router: str, arm: str) -> AsyncIterator[SeatUnderTest]:
+    """Another seat of the same room, of epoch 1, with connections to the bus of its own."""
+    loop = asyncio.get_running_loop()
+    with ZenohBus.connect(router) as seats, ZenohBus.connect(router) as video:
+        address = SeatAddress(first.room.name, arm)
+        seat = Seat(AsyncBus(seats, loop), video, GatewaySettings(router=router), address, SECRET)
+        async with in_background(seat.run()):
+            await asyncio.sleep(0)
+            first.room.seat(epoch=1, arm=arm)
+            yield SeatUnderTest(seat, first.room, first.bus, arm)
 
 
 Body = Callable[[SeatUnderTest], Awaitable[None]]

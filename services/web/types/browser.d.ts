@@ -25,3 +25,8 @@ interface HidNavigator {
     requestDevice(options: { filters: HidFilter[] }): Promise<HidDevice[]>;
   };
 }
+
+/** A headset's controller that can be felt (w3.org/TR/webxr-gamepads-module-1). */
+type PulsedGamepad = Gamepad & {
+  readonly hapticActuators?: readonly { pulse(strength: number, ms: number): Promise<unknown> }[];
+};

@@ -49,7 +49,19 @@ declare namespace StatusChannel {
     type: "replaced";
   }
 
-  type FromGateway = Tick | Pong | Replaced;
+  /** `arm` is empty for a host. */
+  interface Speaker {
+    arm: string;
+    name: string;
+  }
+
+  interface Voices {
+    type: "voices";
+    speakers: Speaker[];
+    heard: boolean;
+  }
+
+  type FromGateway = Tick | Pong | Replaced | Voices;
 
   type ToGateway =
     | { type: "ping"; t_us: number }

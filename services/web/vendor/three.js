@@ -1,17 +1,22 @@
 // What the pages use of three.js: tools/page-libraries bundles it, with what it needs, into static/vendor/three.mjs.
 
 export {
+  BoxGeometry,
   BufferAttribute,
   BufferGeometry,
+  CanvasTexture,
   ColorManagement,
   DataTexture,
   Group,
   LinearFilter,
   LinearMipmapNearestFilter,
   LinearSRGBColorSpace,
+  Matrix4,
   Mesh,
+  MeshBasicMaterial,
   NoColorSpace,
   PerspectiveCamera,
+  PlaneGeometry,
   RepeatWrapping,
   Scene,
   ShaderMaterial,

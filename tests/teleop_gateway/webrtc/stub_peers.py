@@ -22,7 +22,9 @@ class StubPeer:
     codec: Codec | None = None
     track = None
 
-    def __init__(self, role: Role, _listener: object, _ice_servers: object, holder_id: str) -> None:
+    def __init__(
+        self, role: Role, _listener: object, _ice_servers: object, holder_id: str, speaks_as: str = ""
+    ) -> None:
         self.role = role
         self.holder_id = holder_id
         self.heard_s = 0.0
@@ -79,6 +81,9 @@ class Leavers:
 
     def on_status(self, peer: Peer, text: str) -> None:
         """Nobody speaks."""
+
+    def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None:
+        """Nobody hears it."""
 
     def on_keyframe_wanted(self, stream: Stream) -> None:
         self.wished.append(stream)

@@ -23,6 +23,9 @@ class Unheard:
     def on_status(self, peer: Peer, text: str) -> None:
         """Nobody speaks."""
 
+    def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None:
+        """Nobody hears it."""
+
     def on_keyframe_wanted(self, peer: Peer) -> None:
         """Nobody watches."""
 

@@ -57,6 +57,9 @@ class Listener:
         with contextlib.suppress(InvalidInput):
             status_channel.parse(text)
 
+    def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None:
+        """Nobody hears it."""
+
     def on_keyframe_wanted(self, stream: Stream) -> None:
         """Nothing to do."""
 

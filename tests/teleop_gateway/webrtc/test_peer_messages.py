@@ -69,6 +69,7 @@ def test_no_message_is_more_than_a_seat_can_take(said: list[dict[str, Any]], now
         latency=MotionToPhoton("arm0"),
         events=nobody,
         broadcaster=nobody,
+        voice=nobody,
     )
     peer = cast("Peer", mock.MagicMock(role=Role.BROWSER, clock_offset_ns=None, limit_bps=3e5))
     for message in said:

@@ -86,12 +86,12 @@ def test_a_page_that_draws_watches_no_video_and_is_told_poses() -> None:
         (True, False, EPISODE_PHASE_PRACTICE, True),
         (True, True, EPISODE_PHASE_PRACTICE, False),
         (False, False, EPISODE_PHASE_PRACTICE, False),
-        (True, False, EPISODE_PHASE_COUNTDOWN, False),
-        (True, False, EPISODE_PHASE_RECORDING, False),
+        (True, False, EPISODE_PHASE_COUNTDOWN, True),
+        (False, False, EPISODE_PHASE_RECORDING, False),
         (True, False, EPISODE_PHASE_ENDED, True),
     ],
 )
-def test_a_view_rests_where_pages_draw_nobody_watches_and_nothing_is_recorded(
+def test_a_view_rests_where_pages_draw_and_nobody_watches(
     draws: bool, watches: bool, phase: EpisodePhase, rests: bool
 ) -> None:
     async def body() -> None:

@@ -15,7 +15,7 @@ from mart.runtime.bus.base import Request
 from mart.runtime.bus.memory import MemoryBus
 from mart.runtime.ice_servers import IceSettings
 from mart.web.api.app_state import AppState
-from tests.web.conftest import Client, Enter
+from tests.web.conftest import HOST_CODE, Client, Enter
 from tests.web.room import Room
 
 pytestmark = pytest.mark.anyio
@@ -73,6 +73,16 @@ async def test_the_holder_drives_and_others_watch(enter: Enter, room: Room, app_
         token = verify(told["token"], app_state.secret)
         assert (told["role"], token.role) == (role.value, role)
         assert told["epoch"] == token.epoch == room.seats["arm0"].epoch
+
+
+async def test_the_holder_and_a_host_may_speak_and_another_guest_only_hears(
+    enter: Enter, room: Room, app_state: AppState
+) -> None:
+    ana, ben, hanna = await seated(enter), await enter("Ben"), await enter("Hanna")
+    assert (await hanna.post("/api/host", json={"code": HOST_CODE})).status_code == 200
+    for person, speaks_as in ((ana, "Ana"), (ben, ""), (hanna, "Hanna")):
+        told = (await person.get(f"{SEAT}/token")).json()
+        assert verify(told["token"], app_state.secret).speaks_as == speaks_as
 
 
 async def test_an_offer_reaches_the_gateway_and_its_answer_comes_back(enter: Enter, gateway: Gateway) -> None:

@@ -43,6 +43,7 @@ async def test_a_spectator_sees_the_rooms_and_gets_a_viewers_token(
     assert [one["room"] for one in (await watcher.get("/api/rooms")).json()["rooms"]] == ["room-1"]
     token = verify((await watcher.get(f"{SEAT}/token")).json()["token"], app_state.secret)
     assert token.role is Role.VIEWER
+    assert token.speaks_as == ""  # a spectator hears
 
 
 async def test_whatever_changes_anything_is_refused(enter: Enter, room: Room, app_state: AppState) -> None:

@@ -63,6 +63,29 @@ async def test_every_name_of_the_site_works_with_its_own_origin(enter: Enter) ->
     assert answer.status_code == 200
 
 
+@pytest.mark.parametrize(
+    ("page", "may"),
+    [
+        ("/rooms/room-1/arms/arm0", True),
+        ("/watch", True),
+        ("/host", True),
+        ("/", False),
+        ("/phone", False),
+        ("/episodes", False),
+        ("/api/rooms", False),
+        ("/watch/../episodes", False),
+    ],
+)
+async def test_only_pages_on_which_people_talk_may_ask_for_a_microphone(
+    enter: Enter, page: str, may: bool
+) -> None:
+    browser = await enter()
+    policy = (await browser.get(page)).headers["Permissions-Policy"]
+    assert ("microphone=(self)" in policy) is may
+    assert ("microphone=()" in policy) is not may
+    assert "camera=()" in policy
+
+
 async def test_a_long_body_is_refused_unread(enter: Enter) -> None:
     browser = await enter()
     answer = await browser.post("/api/join", content=b" " * (MAX_BODY_BYTES + 1))

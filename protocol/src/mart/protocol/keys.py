@@ -123,6 +123,16 @@ def signal(room: str, arm: str, peer: str) -> Topic:
     return Topic(_key(room, "signal", arm, peer), Priority.NORMAL, must_arrive=True)
 
 
+def voice(room: str, arm: str) -> Topic:
+    """Return where a seat's process says what those connected to it say; carries VoicePackets."""
+    return Topic(_key(room, "arm", arm, "voice"), Priority.NORMAL, express=True)
+
+
+def voices(room: str) -> str:
+    """All voice keys of a room, for subscribers."""
+    return f"{ROOT}/{_segment('room', room)}/arm/*/voice"
+
+
 def scene(room: str, arm: str) -> Topic:
     """Queryable: SceneRequest → SceneReply, answered by the process of the arm's seat."""
     return Topic(_key(room, "arm", arm, "scene"), Priority.LOW, must_arrive=True)

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, cast
-
 import numpy as np
 
-from mart.protocol.errors import InvalidInput, MartError, from_wire
+from mart.protocol.enum_words import (
+    barrier_word,
+    cue_from_word,
+    cue_word,
+    ended_by_word,
+    job_state_word,
+    operator_from_word,
+    operator_word,
+    outcome_from_word,
+    outcome_word,
+    phase_word,
+)
+from mart.protocol.errors import MartError, from_wire
 from mart.protocol.pose import Pose
-from mart.protocol.vocabulary import EpisodeEndedBy, EpisodeOutcome, OperatorKind
 from mart.v1.catalogue_pb2 import (
     CatalogueReply,
     CatalogueRequest,
@@ -97,6 +106,7 @@ from mart.v1.trainer_pb2 import (
     TrainerReply,
     TrainerRequest,
 )
+from mart.v1.voice_pb2 import VoicePacket
 
 __all__ = [
     "BARRIER_PHASE_PAUSED",
@@ -192,6 +202,7 @@ __all__ = [
     "Trace",
     "TrainerReply",
     "TrainerRequest",
+    "VoicePacket",
     "Waiting",
     "WorldArrays",
     "barrier_word",
@@ -233,68 +244,3 @@ def raise_error(error: Error) -> None:
     """Raise what the other side reported; do nothing where `error` is empty."""
     if error.code or error.message:
         raise from_wire(error.code, error.message)
-
-
-def operator_word(operator: Operator) -> OperatorKind:
-    """Return the word for a member of the wire's enum: human, policy, script or hold."""
-    return OperatorKind(_word(Operator.Name(operator), "OPERATOR_"))
-
-
-def outcome_word(outcome: Outcome) -> EpisodeOutcome:
-    """Return the word for a member of the wire's enum: success, failure, discarded or unspecified."""
-    return EpisodeOutcome(_word(Outcome.Name(outcome), "OUTCOME_"))
-
-
-def phase_word(phase: EpisodePhase) -> str:
-    """Return the word for a phase: practice, countdown, recording or ended."""
-    return _word(EpisodePhase.Name(phase), "EPISODE_PHASE_")
-
-
-def barrier_word(phase: BarrierPhase) -> str:
-    """Return the word for the barrier's phase: running, stalled, paused or stopped."""
-    return _word(BarrierPhase.Name(phase), "BARRIER_PHASE_")
-
-
-def job_state_word(state: JobState) -> str:
-    """Return the word for a job's state: queued, running, done, failed or cancelled."""
-    return _word(JobState.Name(state), "JOB_STATE_")
-
-
-def cue_word(cue: Cue) -> str:
-    """Return the word for a cue: have_it, go, wait, slower, thanks, let_go or come_closer."""
-    return _word(Cue.Name(cue), "CUE_")
-
-
-def ended_by_word(ended_by: EndedBy) -> EpisodeEndedBy | None:
-    """Return the word for what ended an episode, None where nothing says so."""
-    if ended_by == ENDED_BY_UNSPECIFIED:
-        return None
-    return EpisodeEndedBy(_word(EndedBy.Name(ended_by), "ENDED_BY_"))
-
-
-def operator_from_word(word: str) -> Operator:
-    """Return the wire's member. Raises InvalidInput for anything but human, policy, script or hold."""
-    return cast("Operator", _value(Operator, "OPERATOR_", "Operator", word))
-
-
-def outcome_from_word(word: str) -> Outcome:
-    """Return the wire's member. Raises InvalidInput for anything but success, failure or discarded."""
-    return cast("Outcome", _value(Outcome, "OUTCOME_", "Outcome", word))
-
-
-def cue_from_word(word: str) -> Cue:
-    """Return the wire's member. Raises InvalidInput for any word that `cue_word` does not return."""
-    return cast("Cue", _value(Cue, "CUE_", "Cue", word))
-
-
-def _value(enum: Any, prefix: str, what: str, word: str) -> int:
-    """Of any member but the first, which says nothing."""
-    *words, last = (_word(name, prefix) for name in enum.keys()[1:])
-    if word not in (*words, last):
-        raise InvalidInput(f"{what} {word!r} was given; it must be {', '.join(words)} or {last}.")
-    value: int = enum.Value(prefix + word.upper())
-    return value
-
-
-def _word(name: str, prefix: str) -> str:
-    return name.removeprefix(prefix).lower()

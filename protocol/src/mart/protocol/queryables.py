@@ -35,6 +35,7 @@ from mart.protocol.messages import (
     State,
     TrainerReply,
     TrainerRequest,
+    VoicePacket,
 )
 
 Q = TypeVar("Q", bound=Message, covariant=True)  # noqa: PLC0105 - a question's and an answer's type
@@ -80,6 +81,7 @@ BROADCASTS = (
     Broadcast(keys.status, RoomStatus),
     Broadcast(keys.event, Event),
     Broadcast(keys.recording, RecordingReport),
+    Broadcast(keys.voice, VoicePacket),
     Broadcast(keys.video, None),
     Broadcast(keys.still, None),
 )

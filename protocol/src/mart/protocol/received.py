@@ -38,6 +38,7 @@ _SPOKEN = frozenset(
         "SeatRequest",
         "EpisodeRequest",
         "RoomsRequest",
+        "VoicePacket",
     }
 )
 # Said at every tick: looking at each name would take half of what looking at the numbers takes.

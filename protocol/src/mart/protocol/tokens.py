@@ -1,7 +1,7 @@
 """Seat tokens: signed, short-lived rights, checked wherever they are used.
 
-A token is a JWT (HS256) over {room, arm, epoch, role, holder_id, expiry}. The secret is made at first start, kept
-readable by its owner alone and shared by the web service, which signs, and the gateways, which check.
+A token is a JWT (HS256) over {room, arm, epoch, role, holder_id, expiry, speaks_as}. The secret is made at first start,
+kept readable by its owner alone and shared by the web service, which signs, and the gateways, which check.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ class SeatToken:
     role: Role
     holder_id: str
     expires_s: float  # Unix time
+    speaks_as: str = ""  # the name by which its bearer may speak to the room; empty: they only hear
 
 
 def sign(token: SeatToken, secret: bytes) -> str:
@@ -41,6 +42,7 @@ def sign(token: SeatToken, secret: bytes) -> str:
         "role": token.role.value,
         "sub": token.holder_id,
         "exp": int(token.expires_s),
+        "speaks_as": token.speaks_as,
     }
     return jwt.encode(claims, secret, algorithm=_ALGORITHM)
 
@@ -63,6 +65,7 @@ def verify(text: str, secret: bytes) -> SeatToken:
             role=Role(claims["role"]),
             holder_id=str(claims["sub"]),
             expires_s=float(claims["exp"]),
+            speaks_as=str(claims.get("speaks_as", "")),
         )
     except jwt.ExpiredSignatureError as error:
         raise Forbidden("This seat token has expired; reload the page to get a new one.") from error

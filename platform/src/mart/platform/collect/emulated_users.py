@@ -93,8 +93,7 @@ class EmulatedUsers:
             web_client.take(room, arm)
             stack.callback(_leave, web_client, room, arm)
             if self.browser is not None:
-                address = f"{platform.url}rooms/{room}/arms/{arm}"
-                page = open_operator_page(self.browser, web_client, address, self.page)
+                page = open_operator_page(self.browser, web_client, platform.seat_url(arm), self.page)
                 stack.enter_context(contextlib.closing(page.context))
             seed = str(self.seed + number)
             brain = [

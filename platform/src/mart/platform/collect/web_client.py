@@ -61,6 +61,22 @@ class WebClient:
         """Say one thing about the episode: ready, unready, success, failure, discard or reset."""
         self._request("POST", f"api/rooms/{room}/episode", {"action": action, "arm": arm})
 
+    def offer(self, room: str, arm: str, sdp: str) -> str:
+        """Return the gateway's answer to the offer of a page, both as SDP."""
+        answer: str = self._request("POST", f"api/rooms/{room}/seats/{arm}/offer", {"sdp": sdp})["sdp"]
+        return answer
+
+    def scene(self, room: str, arm: str) -> str:
+        """Have the scene made that a page draws, and return its digest."""
+        digest: str = self._request("GET", f"api/rooms/{room}/seats/{arm}/scene")["sha256"]
+        return digest
+
+    def open_room(self, task: str, control_hz: float) -> str:
+        """Open another room; its name."""
+        body = {"task": task, "control_hz": control_hz}
+        room: str = self._request("POST", "api/rooms", body)["room"]
+        return room
+
     def cookies(self) -> list[dict[str, str]]:
         """The session, for a browser that goes on with it."""
         return [

@@ -63,6 +63,10 @@ class Platform:
     def url(self) -> str:
         return self.options.url
 
+    def seat_url(self, arm: str) -> str:
+        """The address of the operator's page of a seat of the first room."""
+        return f"{self.url}rooms/{self.options.room}/arms/{arm}"
+
     @property
     def join_code(self) -> str:
         return (self.options.data_dir / "join-code").read_text().strip()

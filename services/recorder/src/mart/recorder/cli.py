@@ -79,7 +79,8 @@ def show(path: Path, as_json: bool) -> None:
 
     file = open_episode(path)
     (listed,) = described([path])
-    result = {**formatting.listed(listed), "model": formatting.model(file), "metadata": file.metadata}
+    whole = {"model": formatting.model(file), "pictures": formatting.pictures(file, listed.arms)}
+    result = {**formatting.listed(listed), **whole, "metadata": file.metadata}
     print_result(result, formatting.details(result), as_json)
 
 

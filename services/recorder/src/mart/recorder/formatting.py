@@ -11,7 +11,7 @@ from mart.episodes.datasets import NamedDataSet
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Corrupt, NotFound
-from mart.protocol.recording import VerificationRecord
+from mart.protocol.recording import VerificationRecord, video_topic
 from mart.protocol.vocabulary import EpisodeEndedBy
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.repair.repair import RepairResult
@@ -75,6 +75,12 @@ def model(file: EpisodeFile) -> str:
         return "none"
     except Corrupt as error:
         return str(error)
+
+
+def pictures(file: EpisodeFile, arms: Sequence[str]) -> str:
+    """Say whose view is in a file as it was recorded; whatever is not is drawn from the states when asked for."""
+    kept = [arm for arm in arms if next(iter(file.messages(video_topic(arm))), None) is not None]
+    return f"recorded of {', '.join(kept)}" if kept else "none; they are drawn from the states when asked for"
 
 
 def _shown(text: str) -> str:

@@ -1,4 +1,4 @@
-"""Offer `mart gateway` and `mart phone`. Heavy modules are imported when a command runs."""
+"""Offer `mart gateway`, `mart phone` and `mart ar-phone`. Heavy modules are imported when a command runs."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def phone(
     from mart.runtime.service import AsyncService, announced, run_async
     from mart.teleop_gateway.emulation.emulated_phone import EmulatedPhone
     from mart.teleop_gateway.emulation.network_emulation import LinkProfile
-    from mart.teleop_gateway.emulation.pairing_client import PairingClient, PhonePairing
+    from mart.teleop_gateway.phones.pairing_client import PairingClient, PhonePairing, exchange_of
     from mart.teleop_gateway.settings import GatewaySettings
 
     async def pair() -> PhonePairing:
@@ -52,14 +52,12 @@ def phone(
     async def drive(service: AsyncService) -> None:
         async with PairingClient(url, insecure) as lobby:
 
-            async def exchange(sdp: str) -> str:
-                renewed = await lobby.renew(pairing)
-                emulated.seat_epoch = renewed.epoch
-                return await lobby.offer(renewed, sdp)
+            def on_epoch(epoch: int) -> None:
+                emulated.seat_epoch = epoch
 
             emulated = EmulatedPhone(
                 service.bus,
-                exchange,
+                exchange_of(lobby, pairing, on_epoch),
                 room=pairing.room,
                 arm=pairing.arm,
                 seat_epoch=pairing.epoch,
@@ -72,3 +70,31 @@ def phone(
     settings = GatewaySettings()
     pairing = asyncio.run(pair())
     run_async(settings, ServiceKind.PHONE, f"{pairing.room}-{pairing.arm}", drive)
+
+
+@click.command(name="ar-phone")
+@click.argument("address")
+@click.option("--insecure", is_flag=True, help="Take any certificate: for one that the platform made itself.")
+@click.option(
+    "--host", default="127.0.0.1", show_default=True, help="Where to listen; 0.0.0.0 lets a phone in."
+)
+@click.option(
+    "--port", default=8888, show_default=True, type=click.IntRange(0, 65535), help="0: any free one."
+)
+def ar_phone(address: str, *, insecure: bool, host: str, port: int) -> None:
+    """Drive with an iPhone's full motion: through the app MuJoCo AR, which follows the phone by ARKit.
+
+    ADDRESS is what "Pair a phone" on the operator's page shows: https://…/phone#CODE.
+    """
+    import asyncio
+
+    from mart.runtime.service import configure_logging
+    from mart.teleop_gateway.arkit.drive import drive_by_app
+
+    lobby, _, code = address.partition("/phone#")
+    if not code or not lobby.startswith("https://"):
+        raise click.UsageError(
+            f'{address!r} was given; the address that "Pair a phone" shows is like https://mart.local:8443/phone#CODE.'
+        )
+    configure_logging("info", "ar-phone")
+    asyncio.run(drive_by_app(lobby, code, insecure=insecure, host=host, port=port, say=click.echo))

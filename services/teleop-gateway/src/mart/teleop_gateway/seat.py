@@ -5,6 +5,7 @@ Peers and rooms speak, pictures come out:
 - `input.seat_input` follows the holder and turns frames into commands;
 - `video.view_manager` draws and encodes, `video.picture_relay` hands pictures on;
 - `video.page_drawing` serves pages that draw by themselves;
+- `voice.room_voice` carries what people say;
 - `webrtc.offer_handler` lets peers in, `webrtc.status_broadcaster` tells them how things stand.
 """
 
@@ -31,6 +32,7 @@ from mart.teleop_gateway.video.picture_relay import PictureRelay
 from mart.teleop_gateway.video.quality import QUALITIES
 from mart.teleop_gateway.video.video_publisher import VideoPublisher
 from mart.teleop_gateway.video.view_manager import ViewManager
+from mart.teleop_gateway.voice.room_voice import RoomVoice
 from mart.teleop_gateway.webrtc.ice_watch import IceWatch
 from mart.teleop_gateway.webrtc.offer_handler import OfferHandler
 from mart.teleop_gateway.webrtc.peer_messages import PeerMessages
@@ -74,6 +76,7 @@ class Seat:
             self._latency,
             self._input.on_drawn,
             holder_draws=lambda: self._peers.holder_draws,
+            left_out=lambda: self._broadcaster.recorded_view.is_left_out,
         )
         self._pages = PageDrawing(loop, self._send_poses)
         self._views = ViewManager(
@@ -84,6 +87,7 @@ class Seat:
             quality=QUALITIES[settings.quality],
             pages=self._pages,
         )
+        self._voice = RoomVoice(bus, address, self._peers)
         self._broadcaster = StatusBroadcaster(self._peers, self._input, self._views, self._latency)
         self._peers.attach(
             PeerMessages(
@@ -94,17 +98,10 @@ class Seat:
                 latency=self._latency,
                 events=self._events,
                 broadcaster=self._broadcaster,
+                voice=self._voice,
             )
         )
-        self._feed = RoomFeed(
-            address,
-            seat_input=self._input,
-            views=self._views,
-            pages=self._pages,
-            latency=self._latency,
-            events=self._events,
-            broadcaster=self._broadcaster,
-        )
+        self._feed = self._made_feed()
         self._offers = OfferHandler(address, secret, self._input, self._peers)
 
     async def run(self) -> None:
@@ -119,6 +116,7 @@ class Seat:
                 with contextlib.closing(self._bus.announce(token)):
                     await asyncio.gather(
                         self._broadcaster.run(),
+                        self._voice.run(),
                         report_latency(self._latency, self._events.latency),
                         self._ice.run(),
                         self._report_no_picture(),
@@ -150,12 +148,24 @@ class Seat:
             self._latency.on_picture(message.tick, message.stamps)
             self._input.on_drawn(message.tick)
 
+    def _made_feed(self) -> RoomFeed:
+        return RoomFeed(
+            self._address,
+            seat_input=self._input,
+            views=self._views,
+            pages=self._pages,
+            latency=self._latency,
+            events=self._events,
+            broadcaster=self._broadcaster,
+        )
+
     def _open(self) -> list[Closable]:
         scene = AsyncRequestAnswerer(SCENE, self._pages.answer)
         return [
             self._bus.serve(keys.scene(self._address.room, self._address.arm), scene),
             *self._offers.serve(self._bus),
             *self._feed.subscribe(self._bus),
+            *self._voice.open(),
             self._input,
             self._events,
             self._video,

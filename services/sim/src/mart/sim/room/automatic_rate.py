@@ -20,7 +20,7 @@ from mart.protocol.messages import (
 from mart.sim.room.barrier import STALLED_AFTER_S
 from mart.sim.room.rate_choice import RateChoice, TickCost
 
-# Of one seat without a graphics card, until seats have said what theirs take: 14 to 18 ms were measured.
+# Of one seat without a graphics card, until seats have said what theirs take: 11.5 to 18 ms were measured.
 ASSUMED_PICTURE_S = 0.016
 LONGEST_PICTURE_S = 2.0  # that is believed
 LOOK_EVERY_S = 5.0  # in practice

@@ -32,7 +32,7 @@ from mart.teleop_gateway.video.quality import FAST, Quality
 from mart.teleop_gateway.video.render_queue import RenderQueue, RenderQueueClosed, UndrawnState
 from mart.teleop_gateway.video.seat_renderer import SeatRenderer
 from mart.teleop_gateway.video.stream_encoders import StreamEncoders
-from mart.teleop_gateway.video.thumbnail import Thumbnail, ThumbnailMaker
+from mart.teleop_gateway.video.thumbnail import EVERY_S, Thumbnail, ThumbnailMaker
 
 _log = logging.getLogger(__name__)
 
@@ -159,8 +159,13 @@ class LiveView:
         return (len(times_s) - 1) / (times_s[-1] - times_s[0])
 
     def picture_s(self) -> float:
-        """Return the median of what pictures took of a core, drawn and encoded at full size; 0 where there are none."""
+        """Return what a state's picture takes of a core, drawn and encoded at full size; 0 where there are none.
+
+        The median, or at rest the share of it that thumbnails are.
+        """
         took_s = tuple(self._took_s)
+        if self._resting:
+            return median(took_s) / max(1.0, EVERY_S * self._frames_per_s) if took_s else 0.0
         return median(took_s) if took_s and self.frames_per_s() else 0.0
 
     def _run(self) -> None:
@@ -205,8 +210,7 @@ class LiveView:
                 self._encode(pipeline, drawn, rendered_ns)
             if undrawn is not None:
                 now_s = clock.monotonic_s()
-                if not self._resting:  # else it was not encoded
-                    self._took_s.append(at_full_size(clock.thread_cpu_s() - begun_cpu_s, size))
+                self._took_s.append(at_full_size(clock.thread_cpu_s() - begun_cpu_s, size))
                 resolution.record(now_s - begun_s, now_s)
                 thumbnail = thumbnails.take(pipeline.view_rgb, undrawn.state.stamps.stepped_ns, now_s)
                 if thumbnail is not None:

@@ -24,12 +24,14 @@ class PictureRelay:
         on_drawn: Callable[[int], None],
         *,
         holder_draws: Callable[[], bool],
+        left_out: Callable[[], bool],
     ) -> None:
         """Relay pictures. `to_peers`, and `on_drawn` with the picture's tick, are called on the loop.
 
         Where `holder_draws`, these are not the pictures that the holder sees, and no account of its delays is theirs.
+        Where they are `left_out` of the file that is being recorded, the bus gets none.
         """
-        self._holder_draws = holder_draws
+        self._holder_draws, self._left_out = holder_draws, left_out
         self._loop, self._to_peers, self._publisher, self._latency = loop, to_peers, publisher, latency
         self._on_drawn = on_drawn
 
@@ -37,6 +39,8 @@ class PictureRelay:
         """Hand on what was made. Call it on the view's thread."""
         if isinstance(made, SeatPicture):
             self._loop.call_soon_threadsafe(self._pass_on, made)
+            if self._left_out():
+                return
         self._publisher.put(made)
 
     def _pass_on(self, picture: SeatPicture) -> None:

@@ -14,6 +14,7 @@ from aiortc import (
     RTCIceServer,
     RTCPeerConnection,
     RTCRtpSender,
+    RTCRtpTransceiver,
     RTCSessionDescription,
 )
 
@@ -24,6 +25,7 @@ from mart.protocol.tokens import Role
 from mart.runtime.ice_servers import IceServer
 from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.video.encoder import Audience, Codec, EncodedPicture, Stream
+from mart.teleop_gateway.voice.lanes import LanePacket
 from mart.teleop_gateway.webrtc.aiortc_hooks import (
     close_connection,
     offer_playout_delay,
@@ -34,6 +36,8 @@ from mart.teleop_gateway.webrtc.aiortc_hooks import (
 )
 from mart.teleop_gateway.webrtc.ice_candidates import bounded_candidates
 from mart.teleop_gateway.webrtc.named_candidates import add_named
+from mart.teleop_gateway.webrtc.offered_media import offered_media
+from mart.teleop_gateway.webrtc.peer_audio import PeerAudio
 from mart.teleop_gateway.webrtc.sender_feedback import SenderFeedback
 from mart.teleop_gateway.webrtc.track import EncodedTrack
 
@@ -53,6 +57,9 @@ class PeerListener(Protocol):
     def on_status(self, peer: Peer, text: str) -> None:
         """Take a message of its status channel."""
 
+    def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None:
+        """Take a packet of what it says, of a peer that may speak."""
+
     def on_keyframe_wanted(self, peer: Peer) -> None:
         """Take that it cannot go on without a keyframe."""
 
@@ -67,16 +74,23 @@ class Peer:
     """Hold one connection: answer its offer, then let it run; `close` ends it, also when it is already gone."""
 
     def __init__(
-        self, role: Role, listener: PeerListener, ice_servers: Sequence[IceServer] = (), holder_id: str = ""
+        self,
+        role: Role,
+        listener: PeerListener,
+        ice_servers: Sequence[IceServer] = (),
+        holder_id: str = "",
+        speaks_as: str = "",
     ) -> None:
-        """Make a peer of the person with `holder_id`."""
+        """Make a peer of the person with `holder_id`, who may speak by the name of `speaks_as`, if any."""
         offer_playout_delay()
         self.role = role
         self.holder_id = holder_id
+        self.speaks_as = speaks_as
         self.codec: Codec | None = None
         self.track: EncodedTrack | None = None
         self._audience = Audience.EVERYONE
         self._feedback: SenderFeedback | None = None
+        self._audio: PeerAudio | None = None
         self.clock_offset_ns: int | None = None  # gateway clock minus the peer's, once it has told
         self.heard_s = clock.monotonic_s()
         self.draws = False  # its page draws by itself: it wants poses and no video
@@ -131,6 +145,11 @@ class Peer:
         if self.track is not None and self.stream == encoded.stream:
             self.track.put(encoded)
 
+    def play(self, packet: LanePacket) -> None:
+        """Let it hear a packet, where its page asked for sound."""
+        if self._audio is not None:
+            self._audio.play(packet)
+
     def set_audience(self, audience: Audience) -> None:
         """Show it the stream for these from now on, which begins with a keyframe."""
         if audience is not self._audience:
@@ -151,36 +170,43 @@ class Peer:
             self._looking_up.cancel()
         if self.track is not None:
             self.track.stop()
+        if self._audio is not None:
+            self._audio.close()
         if self._feedback is not None:
             self._feedback.close()
         await close_connection(self._connection)
 
     async def _negotiate(self, offer_sdp: str) -> None:
-        sender = self._add_video() if self.role is not Role.PHONE else None
+        wanted = offered_media(offer_sdp, phone=self.role is Role.PHONE)
+        video = self._add_video() if wanted.video else None
+        audio = self._audio = PeerAudio(self._connection, wanted.audio)
+        if self.speaks_as:
+            audio.listen(lambda timestamp, opus: self._listener.on_speech(self, timestamp, opus))
         sdp, named = bounded_candidates(offer_sdp)
         # The browser knows first that packets come through, so it begins the handshake: a round trip less.
         sdp = sdp.replace("a=setup:actpass", "a=setup:active")
         offer = RTCSessionDescription(sdp, "offer")
         await self._connection.setRemoteDescription(offer)
+        audio.ask_for_voice()
         if self._connection.sctp is not None:
             on_unreadable(self._connection.sctp, self._on_unreadable)
         await self._connection.setLocalDescription(await self._connection.createAnswer())
-        if sender is not None:
-            self.codec = Codec(sent_codec(self._connection.getTransceivers()[0]))
+        if video is not None:
+            self.codec = Codec(sent_codec(video))
         if named:
             self._looking_up = asyncio.create_task(add_named(self._connection, named))
 
-    def _add_video(self) -> RTCRtpSender:
+    def _add_video(self) -> RTCRtpTransceiver:
         self.track = EncodedTrack(self._want_keyframe)
-        sender = self._connection.addTrack(self.track)
+        transceiver = self._connection.addTransceiver(self.track, "sendonly")
+        sender = transceiver.sender
         show_at_once(sender)
         on_keyframe_request(sender, self._want_keyframe)
         self._feedback = SenderFeedback(sender, self._listener.on_limit)
-        (transceiver,) = self._connection.getTransceivers()
         codecs = RTCRtpSender.getCapabilities("video").codecs
         order = {"video/H264": 0, "video/VP8": 1, "video/rtx": 2}
         transceiver.setCodecPreferences(sorted(codecs, key=lambda codec: order[codec.mimeType]))
-        return sender
+        return transceiver
 
     def _want_keyframe(self) -> None:
         self._listener.on_keyframe_wanted(self)

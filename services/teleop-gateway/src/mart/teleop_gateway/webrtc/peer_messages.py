@@ -16,6 +16,7 @@ from mart.teleop_gateway.video.encoder import Stream
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton, PageDraws
 from mart.teleop_gateway.video.page_drawing import PageDrawing
 from mart.teleop_gateway.video.view_manager import ViewManager
+from mart.teleop_gateway.voice.room_voice import RoomVoice
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peers import Peers
@@ -39,8 +40,9 @@ class PeerMessages:
         latency: MotionToPhoton,
         events: SeatEvents,
         broadcaster: StatusBroadcaster,
+        voice: RoomVoice,
     ) -> None:
-        self._peers, self._pages = peers, pages
+        self._peers, self._pages, self._voice = peers, pages, voice
         self._input, self._views, self._latency = seat_input, views, latency
         self._events, self._broadcaster = events, broadcaster
         self._cues = CueFilter()
@@ -71,6 +73,10 @@ class PeerMessages:
         """Drive the arm by a phone frame."""
         self._input.receive(_DEVICES[peer.role], payload)
         self._broadcaster.tell_changes()
+
+    def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None:
+        """Let the room hear what a peer says."""
+        self._voice.say(peer, drives=peer.role is Role.BROWSER, timestamp=timestamp, opus=opus)
 
     def on_status(self, peer: Peer, text: str) -> None:
         """Do what a message on the status channel asks; one that nobody understands is left out."""

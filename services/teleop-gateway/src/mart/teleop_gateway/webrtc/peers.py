@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Protocol
 
 from mart.protocol import clock
@@ -14,6 +14,7 @@ from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.ice_servers import IceServer
 from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.video.encoder import Audience, EncodedPicture, Stream
+from mart.teleop_gateway.voice.lanes import LanePacket, Speaker
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
 
@@ -44,6 +45,9 @@ class PeersListener(Protocol):
     def on_status(self, peer: Peer, text: str) -> None:
         """Take a message of the status channel."""
 
+    def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None:
+        """Take a packet of what a peer says."""
+
     def on_keyframe_wanted(self, stream: Stream) -> None:
         """Take that somebody cannot go on without a keyframe."""
 
@@ -69,13 +73,13 @@ class Peers:
         """Tell `listener` what peers do from now on."""
         self._listener = listener
 
-    async def answer(self, role: Role, offer_sdp: str, holder_id: str) -> str:
-        """Return the answer's SDP for the person with `holder_id`.
+    async def answer(self, role: Role, offer_sdp: str, holder_id: str, speaks_as: str = "") -> str:
+        """Return the answer's SDP for the person with `holder_id`, who may speak by the name of `speaks_as`, if any.
 
         A driving role's earlier peer is replaced once the new one is answered, and so is a person's oldest viewer where
         they watch twice already. Raises InvalidInput where the offer cannot be used, Conflict where too many watch.
         """
-        peer = Peer(role, self, self._ice_servers(), holder_id)
+        peer = Peer(role, self, self._ice_servers(), holder_id, speaks_as)
         if role is Role.VIEWER:
             self._make_room(holder_id)
             self._viewers.append(peer)  # its place is taken before anything is awaited
@@ -148,6 +152,18 @@ class Peers:
             if peer.draws:
                 peer.send_poses(message)
 
+    def play(self, packet: LanePacket, but: object | None) -> None:
+        """Let everybody hear a packet, except for who said it."""
+        for peer in self:
+            if peer is not but:
+                peer.play(packet)
+
+    def tell_voices(self, speakers: Sequence[Speaker], unheard: Collection[object]) -> None:
+        """Tell everybody who speaks, and those who speak and are not heard that it is so."""
+        for peer in self:
+            if peer.role is not Role.PHONE:
+                peer.send_status(status_channel.voices(speakers, is_heard=peer not in unheard))
+
     def tell(self, text: str) -> None:
         """Send a message to all on their status channels."""
         for peer in self:
@@ -181,6 +197,11 @@ class Peers:
         """Pass on a message of the status channel."""
         if self._listener is not None and self._is_present(peer):
             self._listener.on_status(peer, text)
+
+    def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None:
+        """Pass on a packet of what a peer says."""
+        if self._listener is not None and self._is_present(peer):
+            self._listener.on_speech(peer, timestamp, opus)
 
     def on_keyframe_wanted(self, peer: Peer) -> None:
         """Pass on that a keyframe is wanted; of everyone's pictures one a second for all viewers.

@@ -5,19 +5,16 @@ from __future__ import annotations
 import asyncio
 
 from mart.protocol import clock
-from mart.protocol.messages import EPISODE_PHASE_COUNTDOWN, EPISODE_PHASE_RECORDING, RoomStatus, State
+from mart.protocol.messages import RoomStatus, State
 from mart.teleop_gateway.input.driving import Driving
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
+from mart.teleop_gateway.video.recorded_view import RecordedView
 from mart.teleop_gateway.video.view_manager import ViewManager
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peers import Peers
 
 STATUS_EVERY_S = 0.05
-_RECORDED = (
-    EPISODE_PHASE_COUNTDOWN,
-    EPISODE_PHASE_RECORDING,
-)  # a file begins with a key frame from before it
 
 
 class StatusBroadcaster:
@@ -29,12 +26,14 @@ class StatusBroadcaster:
         self.state = State()
         self.status = RoomStatus()
         self._peers, self._input, self._views, self._latency = peers, seat_input, views, latency
+        self.recorded_view = RecordedView()
         self._told: tuple[object, ...] = ()
 
     def rest_where_unneeded(self) -> None:
-        """Let the view rest where all who look draw by themselves, and nobody records what it sees."""
-        recorded = self.status.episode.phase in _RECORDED
-        self._views.set_resting(self._peers.any_draws and not self._peers.streams() and not recorded)
+        """Let the view rest where all who look draw by themselves, and no file has begun with what it sees."""
+        all_draw = self._peers.any_draws and not self._peers.streams()
+        self.recorded_view.see(self.status.episode.phase, all_draw=all_draw)
+        self._views.set_resting(all_draw and not self.recorded_view.is_wanted)
 
     async def run(self) -> None:
         """Tell until cancelled; peers that have been silent for too long are dropped on the way."""

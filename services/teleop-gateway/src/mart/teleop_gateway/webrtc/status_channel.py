@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +22,7 @@ from mart.protocol.messages import (
 )
 from mart.teleop_gateway.input.driving import Driving, InputDevice, PhoneState
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
+from mart.teleop_gateway.voice.lanes import Speaker
 
 MAX_CHARACTERS = 1100  # one SCTP packet
 _LARGEST = 2**63 - 1
@@ -120,6 +122,12 @@ def pong(ping: PingMessage, gateway_ns: int, limit_bps: float = math.inf) -> str
 def replaced() -> str:
     """Return the word to a driving peer whose place a newer one takes: it need not try again by itself."""
     return _text({"type": "replaced"})
+
+
+def voices(speakers: Sequence[Speaker], *, is_heard: bool) -> str:
+    """Return who speaks now, and whether the peer is heard where it does."""
+    told = [{"arm": speaker.arm, "name": speaker.name} for speaker in speakers]
+    return _text({"type": "voices", "speakers": told, "heard": is_heard})
 
 
 def ping(t_us: float) -> str:

@@ -144,10 +144,17 @@ async def offer(
 
 
 def _page_claims(app: AppState, room: str, arm: str, user: User) -> SeatToken:
-    """Return what a page of this user may do at a seat: its holder's drives, anybody else's watches."""
+    """Return what a page of this user may do at a seat: its holder's drives, anybody else's watches.
+
+    Whoever holds it or hosts may speak, everybody else hears.
+    """
     seat = _seat(app, room, arm)
     role = Role.BROWSER if is_held_by(seat, user.holder_id) else Role.VIEWER
-    return SeatToken(room, arm, seat.epoch, role, user.holder_id, now_unix_s() + _BROWSER_TOKEN_S)
+    speaks = role is Role.BROWSER or user.hosts
+    expires_s = now_unix_s() + _BROWSER_TOKEN_S
+    return SeatToken(
+        room, arm, seat.epoch, role, user.holder_id, expires_s, speaks_as=user.name if speaks else ""
+    )
 
 
 def _told_with(app: AppState, claims: SeatToken) -> Json:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from collections import deque
 from urllib.parse import unquote_plus
 
@@ -23,15 +24,19 @@ _CONTENT_POLICY = (
     "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; img-src 'self' data:; "
     "media-src 'self' blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
+_PERMISSIONS = "camera=(), microphone=(), geolocation=(), payment=(), usb=()"
 _HEADERS = {
     "Content-Security-Policy": _CONTENT_POLICY,
     "Cross-Origin-Opener-Policy": "same-origin",  # with the next one: a finer performance.now() in the pages
     "Cross-Origin-Embedder-Policy": "require-corp",
     "Cross-Origin-Resource-Policy": "same-origin",
-    "Permissions-Policy": "camera=(), microphone=(), geolocation=(), payment=(), usb=()",
+    "Permissions-Policy": _PERMISSIONS,
     "Referrer-Policy": "no-referrer",
     "X-Content-Type-Options": "nosniff",
 }
+
+
+_TALKING_PAGES = re.compile(r"/rooms/[^/]+/arms/[^/]+|/watch|/host")
 
 
 class SecurityMiddleware:
@@ -103,6 +108,8 @@ def _with_headers(scope: Scope, send: Send) -> Send:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
             headers.update(_HEADERS)
+            if _TALKING_PAGES.fullmatch(scope["path"]):
+                headers["Permissions-Policy"] = _PERMISSIONS.replace("microphone=()", "microphone=(self)")
             headers.setdefault("Cache-Control", _caching(scope["path"], message["status"]))
         await send(message)
 

@@ -60,6 +60,9 @@ export function courseRoom(rooms) {
 export const freeArm = (seats) =>
   (seats.find(({ operator }) => operator === "hold") ?? seats.find(({ operator }) => operator !== "human"))?.arm;
 
+/** Where one goes to do it; the lobby where no room has it. @param {Api.Room | null} course */
+export const coursePath = (course) => (course ? `/rooms/${course.room}/arms/${freeArm(course.seats) ?? "arm0"}` : "/");
+
 /** What a room lets people do, where that is not everything. @param {Api.Room} room */
 export function rulesText({ practice, course_required: required }) {
   if (practice) return "Practice room: nothing is recorded";

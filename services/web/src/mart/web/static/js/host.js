@@ -17,6 +17,7 @@ const nameInput = byId("name", HTMLInputElement);
 /** @type {Map<string, Part<[Api.Room, boolean]>>} */
 const cards = new Map();
 let opensRooms = false;
+let me = "";
 
 begin();
 
@@ -41,6 +42,7 @@ function ask(person) {
 /** @param {Api.Person} person */
 function host({ name }) {
   setShown(form, false);
+  me = name;
   localStorage.setItem(NAME_KEY, name);
   setText(byId("me"), `${name}, host`);
   api.tasks().then(
@@ -54,7 +56,7 @@ function host({ name }) {
 function show(rooms) {
   setText(byId("page-title"), rooms.length > 1 ? `Host of ${rooms.length} rooms` : "Host");
   setShown(byId("no-room"), rooms.length === 0);
-  keepChildren(byId("rooms"), rooms.map(({ room }) => room), cards, (room) => hostedRoom(room, attempt));
+  keepChildren(byId("rooms"), rooms.map(({ room }) => room), cards, (room) => hostedRoom(room, attempt, me));
   for (const room of rooms) cards.get(room.room)?.update(room, opensRooms);
 }
 

@@ -2,18 +2,21 @@
 
 import * as api from "./api.js";
 import { hasPicture } from "./arms.js";
-import { courseRoom, freeArm } from "./course.js";
-import { byId, letGoOfButton, letGoOnEscape, setShown, setText } from "./dom.js";
+import { coursePath, courseRoom } from "./course.js";
+import { byId, letGoOfButton, letGoOnEscape } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
+import { Headset } from "./headset/headset.js";
 import { isCue, isOffered } from "./hud/command-kinds.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
+import { onDeviceButtons } from "./hud/device-buttons.js";
 import { DisplayedTicks } from "./hud/displayed-ticks.js";
-import { InputPanel } from "./hud/input-panel.js";
 import { showHealth } from "./hud/health-figure.js";
-import { showNotice } from "./hud/notice.js";
+import { showHolder } from "./hud/holder.js";
+import { InputPanel } from "./hud/input-panel.js";
 import { keepDiscarded } from "./hud/keep-discarded.js";
+import { showNotice } from "./hud/notice.js";
 import { showPartners } from "./hud/partners.js";
 import { showPicture } from "./hud/picture.js";
 import { showSeatTitle } from "./hud/seat-title.js";
@@ -27,6 +30,7 @@ import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
 import { toLobby } from "./member.js";
 import { inPlainWords } from "./plain-words.js";
+import { VoicePanel } from "./voice/voice-panel.js";
 
 /** @import { Command } from "./drive/keys.js" */
 /** @import { ActionCommand } from "./hud/view-parts.js" */
@@ -52,7 +56,7 @@ let beganMs = -Infinity; // when the gateway first told of this holder's seat
 const displayed = new DisplayedTicks();
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
-const panel = new InputPanel(roomName, armId, (error) => showNotice(api.messageOf(error)));
+const panel = new InputPanel(roomName, armId, fail);
 const input = new KeyboardMouseInput(byId("picture"), (command, hasMoved) => {
   if (!hasMoved || room?.episode.phase !== "recording") onKey(command); // a key that has just moved is still meant to
 }, () => confirm.withdraw());
@@ -63,7 +67,9 @@ const link = new SeatLink({
   onStatus,
   onTrack: (stream) => (video.srcObject = stream),
   onPoses: (message) => drawn.onPoses(message),
+  voice: { onTrack: (track) => voice.onTrack(track), onVoices: (told) => voice.onVoices(told) },
 });
+const voice = new VoicePanel(link, ({ arm }) => arm === armId && link.role === "browser");
 const drawn = new DrawnPicture({
   host: byId("picture"),
   room: roomName,
@@ -74,6 +80,7 @@ const drawn = new DrawnPicture({
   onChange: () => render(),
   commanded: () => input.commandedSince(status),
 });
+const headset = new Headset({ room: roomName, arm: armId, picture: drawn, input, onCommand: onKey, onFailure: fail });
 const stop = emergencyStop({
   label: roomName,
   id: "stop",
@@ -87,15 +94,14 @@ begin();
 
 function begin() {
   showSeatTitle(roomName, armId);
+  byId("edge").prepend(voice.node);
   for (const command of /** @type {const} */ (["gripper", "leave"])) {
     byId(command).addEventListener("click", () => run(command));
   }
-  byId("spacemouse").addEventListener("click", () => attempt(() => input.askForDevice()));
-  byId("toggle").addEventListener("click", () => {
-    byId("toggle").setAttribute("aria-pressed", String(input.toggleHold()));
-  });
-  byId("switch").addEventListener("click", () => {
-    link.send({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" });
+  onDeviceButtons({
+    spaceMouse: () => attempt(() => input.askForDevice()),
+    hold: () => input.toggleHold(),
+    other: () => link.send({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" }),
   });
   byId("emergency").append(stop.node);
   byId("health").addEventListener("toggle", () => render());
@@ -169,6 +175,7 @@ function onShown(tick, nowMs) {
 function onStatus(tick) {
   drawn.onTick(tick.tick);
   input.adoptGripper(tick, status);
+  headset.onStatus(tick, status);
   if (status === null) beganMs = performance.now();
   status = tick;
   if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
@@ -193,18 +200,11 @@ function render() {
   stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
+  voice.update();
   if (room) showRoom({ ...room, stale: !told });
   showPicture(seat, status, isLive(), drawn.isShown);
-  showHolder(mine);
-}
-
-/** @param {boolean} mine */
-function showHolder(mine) {
-  document.body.classList.toggle("engaged", status?.engaged ?? false);
-  document.body.classList.toggle("can-drive", mine);
-  setShown(byId("hand"), mine && link.state !== LinkState.REPLACED);
-  const leave = mine ? "Leave" : "Lobby";
-  setText(byId("leave"), confirm.pending === "leave" ? "Press Q again" : leave);
+  showHolder(mine, status, link.state, confirm.pending);
+  headset.update(mine && drives(), room);
 }
 
 /** @param {Api.Room} shown */
@@ -247,7 +247,7 @@ const ACTIONS = {
   keep: () => keepDiscarded(room),
   take: () => api.takeSeat(roomName, armId),
   back: () => api.handBack(roomName, armId),
-  course: () => leaveFor(course ? `/rooms/${course.room}/arms/${freeArm(course.seats) ?? "arm0"}` : "/"),
+  course: () => leaveFor(coursePath(course)),
   leave: () => leaveFor("/"),
 };
 
@@ -280,17 +280,19 @@ function perform(command) {
   return api.actOnEpisode(roomName, command, armId);
 }
 
-/**
- * @param {string} command
- * @returns {command is PageCommand}
- */
+/** @param {string} command @returns {command is PageCommand} */
 const isPageCommand = (command) => command in ACTIONS;
+
+/** @param {unknown} error */
+function fail(error) {
+  showNotice(api.messageOf(error));
+}
 
 /** @param {() => unknown} action */
 async function attempt(action) {
   try {
     await action();
   } catch (error) {
-    showNotice(api.messageOf(error));
+    fail(error);
   }
 }

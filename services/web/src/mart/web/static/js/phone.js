@@ -1,12 +1,13 @@
 // The phone: a hand that is usable without looking.
 
-import { actByPhone, letGoByPhone, messageOf, phoneToken, sendOffer, stopByPhone } from "./api.js";
+import { actByPhone, letGoByPhone, messageOf, stopByPhone } from "./api.js";
 import { armName, theArm } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
 import { letGoText } from "./drive/let-go.js";
 import { IDENTITY } from "./drive/quaternion.js";
 import { everyFrame } from "./drive/ticker.js";
+import { approachAsPhone } from "./link/phone-approach.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { ClutchPad, GripperBar, StopButton } from "./phone/controls.js";
 import { EpisodeButton, episodeText } from "./phone/episode-button.js";
@@ -98,17 +99,11 @@ const HOW = {
 /** @param {Api.PairedPhone} pairing */
 function connect(pairing) {
   const link = new SeatLink({
-    approach: async () => {
-      const { room, arm: seat } = pairing;
-      const renewed = await phoneToken(room, seat, pairing.token);
-      const { token, epoch, ice_servers: iceServers } = renewed;
-      if (epoch !== link.epoch) status = null; // somebody else drove meanwhile: the gripper is as they left it
-      paired = { ...pairing, ...renewed };
-      return {
-        iceServers,
-        exchange: async (sdp) => ({ ...(await sendOffer(room, seat, token, sdp)), role: "phone", epoch }),
-      };
-    },
+    approach: () =>
+      approachAsPhone(pairing, (renewed) => {
+        if (renewed.epoch !== link.epoch) status = null; // somebody else drove: the gripper is as they left it
+        paired = { ...pairing, ...renewed };
+      }),
     wantsVideo: false,
     onState: () => onLinkState(link),
     onStatus: (tick) => onStatus(tick, link),

@@ -12,6 +12,7 @@ import { DrawnPicture } from "./scene/drawn-picture.js";
 import { FreeCamera } from "./scene/free-camera.js";
 import { pictureChoice } from "./scene/picture-choice.js";
 import { ToolLabels } from "./scene/tool-labels.js";
+import { VoicePanel } from "./voice/voice-panel.js";
 
 /** @import { SceneView } from "./scene/scene-view.js" */
 
@@ -25,6 +26,7 @@ let known = [];
 /** What each arm of the room said last. @type {Map<string, { cue: Messages.Cue, untilMs: number }>} */
 const said = new Map();
 let watched = "";
+let ownName = "";
 /** The picture of the view that is watched. @type {DrawnPicture | null} */
 let drawn = null;
 
@@ -35,7 +37,9 @@ const link = new SeatLink({
   onStatus: ({ tick }) => drawn?.onTick(tick),
   onTrack: (stream) => (video.srcObject = stream),
   onPoses: (message) => drawn?.onPoses(message),
+  voice: { onTrack: (track) => voice.onTrack(track), onVoices: (told) => voice.onVoices(told) },
 });
+const voice = new VoicePanel(link, ({ arm, name }) => arm === "" && name === ownName);
 const camera = new FreeCamera(byId("watched"), () => drawn?.look());
 const labels = new ToolLabels(byId("labels"));
 
@@ -44,7 +48,7 @@ begin();
 async function begin() {
   const code = new URLSearchParams(location.hash.slice(1)).get("code") ?? "";
   try {
-    await (code ? api.watch(code) : api.me());
+    ({ name: ownName } = await (code ? api.watch(code) : api.me()));
   } catch (error) {
     setText(byId("page-message"), `${api.messageOf(error)} Ask the host for a link to watch.`);
     setShown(byId("choice"), false);
@@ -55,6 +59,7 @@ async function begin() {
     show(known);
   });
   views.addEventListener("change", () => show(known));
+  byId("voice").append(voice.node);
   video.addEventListener("resize", () => showPicture());
   byId("free").addEventListener("click", () => {
     camera.isOn = !camera.isOn;
@@ -107,6 +112,7 @@ function offer(select, options) {
 
 function onLinkState() {
   if (link.state === LinkState.LIVE) drawn?.onLive();
+  voice.update();
   showPicture();
 }
 

@@ -151,10 +151,13 @@ export function drawingRow(drawing) {
  */
 export function xrRow({ ar, vr }, handheld) {
   const name = "WebXR";
-  const can = [ar && "follows the device through the room", vr && "shows the scene in a headset"];
+  const can = [
+    ar && "follows the device through the room",
+    vr && "shows the scene in a headset (Enter VR on the operator's page)",
+  ];
   const found = can.filter(Boolean).join(", ");
   if (found) return other("well", name, found);
-  if (!handheld) return other("idle", name, "none; a phone's is what drives with full motion");
+  if (!handheld) return other("idle", name, "none; a phone's or a headset's is what drives with full motion");
   return other("idle", name, "none: a touch pad moves the arm, and tilting turns it");
 }
 

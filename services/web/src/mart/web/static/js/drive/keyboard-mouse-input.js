@@ -1,4 +1,4 @@
-// Keyboard and mouse as a full operator: sixty frames a second of a phone that is not there.
+// The page as a full operator: sixty frames a second of a phone that is not there, or of a headset's controllers.
 
 import { encodeFrame, Flag } from "./frame.js";
 import { HandheldDevices } from "./handheld-devices.js";
@@ -10,6 +10,7 @@ import { VirtualPhone } from "./virtual-phone.js";
 
 /** @import { Motion } from "./gamepad-hand.js" */
 /** @import { Command } from "./keys.js" */
+/** @import { HandReading } from "../headset/controller-hand.js" */
 /** @import { Vector } from "./quaternion.js" */
 
 /** @typedef {{ gripper: number, engaged: boolean, letGo: StatusChannel.LetGo, devices: string[] }} HandView */
@@ -18,9 +19,14 @@ const LONGEST_STEP_S = 0.1;
 const STOP_TOLD_MS = 1000;
 const CLOSED_ABOVE = 0.15; // a gripper that holds something is neither open nor shut
 
-/** Turns keys and pointer into phone frames. `seenTick`: the newest tick that was seen in the picture. */
+/**
+ * Turns keys and pointer into phone frames. `seenTick`: the newest tick that was seen in the picture; `headset`: leads
+ * instead of them while it is there.
+ */
 export class KeyboardMouseInput {
   seenTick = 0;
+  /** @type {{ reading: (nowMs: number) => HandReading } | null} */
+  headset = null;
   #phone = new VirtualPhone();
   #keyboard;
   #pointer;
@@ -57,8 +63,10 @@ export class KeyboardMouseInput {
       const dtS = Math.min((nowMs - this.#lastMs) / 1000, LONGEST_STEP_S);
       this.#phone.step({ slow: keys.slow, engaged, move, turn }, dtS);
       this.#lastMs = nowMs;
+      const { position, quaternionWxyz } = this.#phone;
+      const hand = { position, quaternionWxyz, tracking: true, engaged, gripper: null };
       const { epoch, drives, nowUs } = situation();
-      if (drives) send(this.#frame(engaged, epoch, nowUs));
+      if (drives) send(this.#frame(this.headset?.reading(nowMs) ?? hand, epoch, nowUs));
     });
   }
 
@@ -70,6 +78,11 @@ export class KeyboardMouseInput {
   adoptGripper(status, before) {
     const set = before === null || before.gripper_set !== status.gripper_set;
     if (set || status.input !== "keyboard") this.#gripper = status.gripper > CLOSED_ABOVE ? 1 : 0;
+  }
+
+  /** What the gripper was asked for last: 0 open … 1 closed. */
+  get gripper() {
+    return this.#gripper;
   }
 
   /** Closes an open gripper and opens a closed one. */
@@ -112,22 +125,23 @@ export class KeyboardMouseInput {
    */
   view(status) {
     const { engaged = false, let_go: letGo = "" } = status ?? {};
-    return { gripper: this.#gripper, engaged, letGo, devices: this.#devices.names };
+    const devices = [...this.#devices.names, ...(this.headset ? ["headset"] : [])];
+    return { gripper: this.#gripper, engaged, letGo, devices };
   }
 
   /**
-   * @param {boolean} engaged
+   * @param {HandReading} hand
    * @param {number} seatEpoch
    * @param {number} sentUs
    */
-  #frame(engaged, seatEpoch, sentUs) {
+  #frame({ position, quaternionWxyz, tracking, engaged, gripper: asked }, seatEpoch, sentUs) {
     const flags =
-      Flag.TRACKING |
       Flag.SCREEN_ALIGNED |
+      (tracking ? Flag.TRACKING : 0) |
       (engaged ? Flag.CLUTCH : 0) |
       (performance.now() - this.#stopPressedMs < STOP_TOLD_MS ? Flag.EMERGENCY_STOP : 0);
     this.#sequence += 1;
-    const { position, quaternionWxyz } = this.#phone;
+    this.#gripper = asked ?? this.#gripper;
     this.#sent.add(this.#sequence, position, engaged);
     const [sequence, seenTick, gripper] = [this.#sequence, this.seenTick, this.#gripper];
     return encodeFrame({ seatEpoch, sequence, seenTick, sentUs, position, quaternionWxyz, gripper, flags });

@@ -6,6 +6,7 @@ import { asSentence, planText, plural } from "../formatting.js";
 import { pressedTwice } from "../pressed-twice.js";
 import * as hosting from "./host-api.js";
 import { planForm } from "./plan-form.js";
+import { roomVoice } from "./room-voice.js";
 import { roomNow } from "./room-words.js";
 import { sessionStatistics } from "./session-statistics.js";
 import { seatView } from "./seat-view.js";
@@ -16,15 +17,17 @@ import { seatView } from "./seat-view.js";
 /**
  * @param {string} name
  * @param {Attempt} attempt
+ * @param {string} me the host's name
  * @returns {Part<[Api.Room, boolean]>}
  */
-export function hostedRoom(name, attempt) {
+export function hostedRoom(name, attempt, me) {
   const title = element("h2");
   const now = element("p", { class: "next figures" });
   const counted = element("p", { class: "soft figures" });
   const views = element("ul", { class: "views", "aria-label": `Seats of ${name}` });
   const actions = roomActions(name, attempt);
   const plan = planForm(name, attempt);
+  const voice = roomVoice(name, me);
   const statistics = sessionStatistics(name, attempt);
   const node = element(
     "article",
@@ -32,6 +35,7 @@ export function hostedRoom(name, attempt) {
     element("header", {}, title, element("span", { class: "soft" }, name)),
     now,
     views,
+    voice.node,
     element("div", { class: "host-actions" }, ...Object.values(actions)),
     counted,
     plan.node,
@@ -50,6 +54,7 @@ export function hostedRoom(name, attempt) {
     node.classList.toggle("paused", room.stop !== null);
     setText(counted, countedText(room));
     plan.update(room);
+    voice.update(room.seats);
     statistics.update(room);
     setShown(statistics.node, !room.practice);
     keepChildren(views, room.seats.map(({ arm }) => arm), seats, (arm) => seatView(name, arm, attempt));

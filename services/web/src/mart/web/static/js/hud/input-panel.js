@@ -31,15 +31,18 @@ const KEYS = [
   ["P", "Stop everything; once it is stopped, twice: go on"],
   ["Q", "With space let go, twice: leave the seat"],
   [CUES.map((_, index) => index + 1).join(" "), `To your partners, scripts too: ${CUES.map(cueText).join(", ")}`],
+  ["V", "Hold to talk to everybody in the room"],
   ["?", "These keys"],
   ["Gamepad", "Left stick and triggers: move. Right stick and LB RB: turn. A: gripper. Start: next. Back: stop"],
 ];
 
-const FINGERS = matchMedia("(hover: none) and (pointer: coarse)");
-const HAND_HERE = FINGERS.matches ? "Fingers on the picture" : "Keyboard and mouse";
+const HERE = matchMedia("(hover: none) and (pointer: coarse)").matches ? "touch" : "mouse";
+const HAND_HERE = HERE === "touch" ? "Fingers on the picture" : "Keyboard and mouse";
 const HOW_TO_MOVE = {
   mouse: "Hold space, or drag the picture; the wheel goes away and back.",
   touch: "Drag the picture; with two fingers up and down: away and towards you, sideways: turn.",
+  headset: "Hold a controller's squeeze button, and the arm follows it.",
+  phone: "Hold the phone's lower part to move.",
 };
 
 const PHONE_GONE_MS = 1000; // it speaks 60 times a second
@@ -161,9 +164,9 @@ function showInput(phone, byPhone, devices) {
  * @param {HandView} hand
  * @param {boolean} byPhone
  */
-function showHand({ gripper, engaged, letGo }, byPhone) {
-  const how = byPhone ? "Hold the phone's lower part to move." : HOW_TO_MOVE[FINGERS.matches ? "touch" : "mouse"];
-  setText(byId("clutch"), engaged ? "Moving" : letGoText(letGo) || how);
+function showHand({ gripper, engaged, letGo, devices }, byPhone) {
+  const here = devices.includes("headset") ? "headset" : HERE;
+  setText(byId("clutch"), engaged ? "Moving" : letGoText(letGo) || HOW_TO_MOVE[byPhone ? "phone" : here]);
   setText(byId("gripper"), `${gripper > 0.5 ? "Open" : "Close"} gripper`);
 }
 

@@ -1,4 +1,6 @@
-// One WebRTC connection to a seat's gateway: video in, two data channels that may lose messages.
+// One WebRTC connection to a seat's gateway: video in, voices in and out, data channels that may lose messages.
+
+import { addVoiceLanes } from "./voice-lanes.js";
 
 /**
  * @typedef {object} PeerOptions
@@ -6,6 +8,7 @@
  * @property {RTCIceServer[]} iceServers STUN and TURN servers; none on one network
  * @property {(sdp: string) => Promise<string>} exchange takes the offer to the gateway and returns its answer
  * @property {(stream: MediaStream) => void} onTrack
+ * @property {((track: MediaStreamTrack) => void) | undefined} onVoice told of each lane; without it, there is no sound
  * @property {() => void} onOpen messages can be sent from now on
  * @property {(message: StatusChannel.FromGateway) => void} onMessage
  * @property {(message: ArrayBuffer) => void} onPoses where the bodies are, for a page that draws
@@ -35,6 +38,8 @@ export class Peer {
 
   #connection;
   #status;
+  /** The lane on which one may speak, where the answer says so. @type {RTCRtpTransceiver | undefined} */
+  #talking;
   #pose; // of a viewer nobody listens to it: whether it drives is known only when the offer is answered
 
   /** @param {RTCIceServer[]} iceServers */
@@ -45,14 +50,18 @@ export class Peer {
   }
 
   /** @param {PeerOptions} options */
-  async #connect({ wantsVideo, exchange, onTrack, onOpen, onMessage, onPoses, onClosed }) {
+  async #connect({ wantsVideo, exchange, onTrack, onVoice, onOpen, onMessage, onPoses, onClosed }) {
     const connection = this.#connection;
     this.#status.addEventListener("message", ({ data }) => onMessage(JSON.parse(data)));
     if (wantsVideo) {
       receivePoses(connection.createDataChannel("bodies", CHANNEL), onPoses);
       receiveVideo(connection);
-      connection.addEventListener("track", ({ track }) => onTrack(new MediaStream([track])));
     }
+    if (onVoice) this.#talking = addVoiceLanes(connection);
+    connection.addEventListener("track", ({ track }) => {
+      if (track.kind === "video") onTrack(new MediaStream([track]));
+      else onVoice?.(track);
+    });
     connection.addEventListener("connectionstatechange", () => {
       if (["failed", "closed"].includes(connection.connectionState)) onClosed();
     });
@@ -78,6 +87,16 @@ export class Peer {
   sendFrame(frame) {
     const channel = this.#pose;
     if (channel.readyState === "open" && channel.bufferedAmount < MOST_BUFFERED_BYTES) channel.send(frame);
+  }
+
+  /** Whether what one says is heard by the room. */
+  get maySpeak() {
+    return this.#talking?.currentDirection === "sendrecv";
+  }
+
+  /** Says what a microphone hears from now on, or nothing. @param {MediaStreamTrack | null} track */
+  say(track) {
+    if (this.maySpeak) void this.#talking?.sender.replaceTrack(track);
   }
 
   /** Ends the connection. */

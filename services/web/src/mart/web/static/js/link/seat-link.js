@@ -31,6 +31,12 @@ export const LinkState = Object.freeze({
  */
 
 /**
+ * @typedef {object} VoiceListener
+ * @property {(track: MediaStreamTrack) => void} onTrack
+ * @property {(told: StatusChannel.Voices) => void} onVoices
+ */
+
+/**
  * @typedef {object} LinkOptions
  * @property {() => Promise<Approach>} approach called for every connection
  * @property {boolean} wantsVideo
@@ -38,6 +44,7 @@ export const LinkState = Object.freeze({
  * @property {(status: StatusChannel.Tick) => void} onStatus
  * @property {(stream: MediaStream) => void} [onTrack]
  * @property {(message: ArrayBuffer) => void} [onPoses]
+ * @property {VoiceListener} [voice] whoever hears the room; nobody: there is no sound
  */
 
 /**
@@ -55,6 +62,8 @@ export class SeatLink {
   #options;
   /** @type {Peer | null} */
   #peer = null;
+  /** What is said, on this connection and those after it. @type {MediaStreamTrack | null} */
+  #said = null;
   #clock = new ClockOffset();
   #patience = new Patience();
   #retryMs = FIRST_RETRY_MS;
@@ -98,6 +107,17 @@ export class SeatLink {
     this.#peer?.sendFrame(frame);
   }
 
+  /** Whether whoever looks at this page may speak to the room. */
+  get maySpeak() {
+    return this.#peer?.maySpeak ?? false;
+  }
+
+  /** Lets the room hear a microphone, or nothing. @param {MediaStreamTrack | null} track */
+  say(track) {
+    this.#said = track;
+    this.#peer?.say(track);
+  }
+
   /**
    * Ends the connection until `connect` is called.
    * @param {State} [state] what it is then
@@ -124,6 +144,7 @@ export class SeatLink {
       }
       this.problem = "";
       this.#peer = peer;
+      peer.say(this.#said);
       this.#options.onState();
     } catch (error) {
       if (attempt !== this.#attempt) return;
@@ -138,7 +159,7 @@ export class SeatLink {
    * @param {number} attempt
    */
   #reach({ iceServers, exchange }, attempt) {
-    const { wantsVideo, onTrack = () => {}, onPoses = () => {} } = this.#options;
+    const { wantsVideo, voice, onTrack = () => {}, onPoses = () => {} } = this.#options;
     return Peer.connect({
       wantsVideo,
       iceServers,
@@ -148,6 +169,7 @@ export class SeatLink {
         return sdp;
       },
       onTrack,
+      onVoice: voice && ((track) => attempt === this.#attempt && voice.onTrack(track)),
       onOpen: () => attempt === this.#attempt && this.#ping(),
       onPoses: (message) => attempt === this.#attempt && onPoses(message),
       onMessage: (message) => attempt === this.#attempt && this.#onMessage(message),
@@ -157,6 +179,10 @@ export class SeatLink {
 
   /** @param {StatusChannel.FromGateway} message */
   #onMessage(message) {
+    if (message.type === "voices") {
+      this.#options.voice?.onVoices(message);
+      return;
+    }
     if (message.type === "replaced") {
       this.close(LinkState.REPLACED);
       return;

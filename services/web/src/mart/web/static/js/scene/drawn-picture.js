@@ -1,24 +1,23 @@
 // The picture, drawn in the page where the device draws fast enough; video is shown wherever it is not.
 
-import { fetchScene, messageOf, statusOf } from "../api.js";
-import { setShown } from "../dom.js";
-import { DrawTimes, drawn, timeDraws } from "./draw-times.js";
+import { messageOf, statusOf } from "../api.js";
+import { DrawMeter } from "./draw-meter.js";
+import { timeDraws } from "./draw-times.js";
 import { rememberSlow, wasSlow } from "./picture-choice.js";
 import { parsePoses } from "./pose-message.js";
-import { parseScene } from "./scene-file.js";
+import { SceneCanvas } from "./scene-canvas.js";
 import { isSoftware, WebGLMissing, webglRenderer } from "./webgl.js";
 
+/** @import { ImmersiveOptions, ImmersiveView } from "../headset/immersive-view.js" */
 /** @import { SceneView } from "./scene-view.js" */
 
 const FAST_MS = 12; // a draw: with the wait for the display it is 10 ms more, and video takes 26 to 41
 const SLOW_MS = 2 * FAST_MS; // while it drives, more of it is seen than in the trial
-const ENOUGH_DRAWS = 50;
-const MEASURE_EVERY_MS = 200; // asking the graphics card costs a little
+const MOST_OVERTAKEN = 50; // ticks; from further back it is another run of the sim
 const REPORT_EVERY_MS = 1000;
 const QUIET_MS = 1000; // poses come with every tick; where they stop, the room has another model
 const RETRY_MS = 3000;
 const MOST_LOST = 3;
-const LARGEST_RATIO = 1.5; // pixels for each of the page's; more costs phones more than it shows
 const BAD_REQUEST = 400; // this room cannot be drawn in a page
 
 /**
@@ -38,23 +37,17 @@ const BAD_REQUEST = 400; // this room cannot be drawn in a page
 export class DrawnPicture {
   why = "";
   #options;
-  /** @type {HTMLCanvasElement | null} */
-  #canvas = null;
-  /** @type {SceneView | null} */
-  #view = null;
-  #sha256 = "";
+  #scene;
+  /** While a headset shows it. @type {ImmersiveView | null} */
+  #immersive = null;
   #wanted = false; // poses are asked for
   /** @type {SceneFile.Poses | null} */
   #poses = null;
   #heardMs = 0;
   #triedMs = -Infinity;
-  #measuredMs = -Infinity;
   #isDue = false; // a draw, with the next picture of the display
   #lost = 0;
-  #draws = 0;
-  #times = new DrawTimes();
-  #perS = 0;
-  #drawsThen = 0;
+  #meter = new DrawMeter();
   #busy = false;
   #ended = false; // no trial any more
   #telling;
@@ -63,6 +56,7 @@ export class DrawnPicture {
   /** @param {DrawnPictureOptions} options */
   constructor(options) {
     this.#options = options;
+    this.#scene = new SceneCanvas(options.host, () => this.#onLost());
     if (options.choice === "video") this.#end("This page was asked for video.");
     else if (options.choice === "auto" && wasSlow()) this.#end("This device draws too slowly.");
     this.#telling = setInterval(() => this.#tell(), REPORT_EVERY_MS);
@@ -77,12 +71,12 @@ export class DrawnPicture {
 
   /** Typical and long milliseconds of a draw, and draws a second; 0 where none was measured. */
   get figures() {
-    return { p50Ms: this.#times.quantile(0.5), p95Ms: this.#times.quantile(0.95), perS: this.#perS };
+    return this.#meter.figures;
   }
 
   /** The canvas's size in words. */
   get size() {
-    return this.#canvas ? `${this.#canvas.width} × ${this.#canvas.height}` : "–";
+    return this.#scene.size;
   }
 
   /**
@@ -101,7 +95,7 @@ export class DrawnPicture {
    * @param {Api.Subtask[]} subtasks
    */
   onProgress(subtasks) {
-    this.#view?.showGhost(this.#options.arm, subtasks);
+    this.#scene.view?.showGhost(this.#options.arm, subtasks);
   }
 
   /**
@@ -110,10 +104,14 @@ export class DrawnPicture {
    */
   onPoses(bytes) {
     const poses = parsePoses(bytes);
-    if (!poses || !this.#wanted || !this.#sha256.startsWith(poses.scene)) return;
+    if (!poses || !this.#wanted) return;
+    if (!this.#scene.isOf(poses)) {
+      void this.#immersive?.end(); // of another world, which is drawn from the page
+      return;
+    }
     this.#heardMs = performance.now();
     const before = this.#poses;
-    if (before && poses.tick < before.tick && before.tick - poses.tick < ENOUGH_DRAWS) return; // overtaken
+    if (before && poses.tick < before.tick && before.tick - poses.tick < MOST_OVERTAKEN) return; // overtaken
     this.#poses = poses;
     if (!before) this.#show();
     this.#drawSoon();
@@ -135,9 +133,36 @@ export class DrawnPicture {
     this.#ended = true;
     clearInterval(this.#telling);
     this.#sizes.disconnect();
-    this.#canvas?.remove();
-    this.#view?.dispose();
-    this.#canvas = this.#view = null;
+    this.#scene.dispose();
+  }
+
+  /**
+   * Draws for a headset until its session ends, whatever the device is good for otherwise. Raises an Error where it
+   * cannot.
+   * @param {XRSession} session
+   * @param {Omit<ImmersiveOptions, "onDraw">} options
+   */
+  async immerse(session, options) {
+    const { ImmersiveView: Immersive } = await import("../headset/immersive-view.js");
+    const wasShown = this.isShown;
+    this.#busy = true;
+    try {
+      const view = await this.#scene.load(this.#options.room, this.#options.arm);
+      this.#immersive = await Immersive.start(view, session, { ...options, onDraw: () => this.#draw() });
+    } finally {
+      this.#busy = false;
+    }
+    session.addEventListener("end", () => this.#emerge(wasShown));
+    this.#want(true);
+    return this.#immersive;
+  }
+
+  /** @param {boolean} wasShown the page drew before */
+  #emerge(wasShown) {
+    this.#immersive?.stop();
+    this.#immersive = null;
+    if (wasShown) this.#resize();
+    else this.rest();
   }
 
   /** The gateway is heard, perhaps on a new connection: it is told again. */
@@ -152,7 +177,7 @@ export class DrawnPicture {
     this.#triedMs = nowMs;
     try {
       const ms = await this.#prepare();
-      this.#times.add(ms);
+      this.#meter.add(ms);
       if (this.#ended) this.dispose();
       else if (this.#options.choice === "auto" && ms > FAST_MS) this.#endSlow(ms);
       else this.#want(true);
@@ -167,100 +192,64 @@ export class DrawnPicture {
 
   /** Fetches the scene and draws it twenty times; resolves with the milliseconds of a draw. */
   async #prepare() {
-    const renderer = webglRenderer();
-    if (!renderer) throw new WebGLMissing("this browser has no WebGL 2.");
-    if (isSoftware(renderer) && this.#options.choice === "auto") { // twenty draws would take two seconds
+    if (isSoftware(webglRenderer()) && this.#options.choice === "auto") { // twenty draws would take two seconds
       throw new WebGLMissing("this browser draws without a graphics card, which is slower than video.");
     }
-    const { sha256, bytes } = await fetchScene(this.#options.room, this.#options.arm);
-    if (sha256 !== this.#sha256 || !this.#view) {
-      const { SceneView: View } = await import("./scene-view.js");
-      const [view, canvas] = [this.#view, this.#canvas];
-      this.#view = null;
-      this.#canvas = this.#madeCanvas();
-      canvas?.remove();
-      view?.dispose();
-      try {
-        this.#view = new View(this.#canvas, parseScene(bytes));
-      } catch (error) {
-        throw new WebGLMissing(messageOf(error));
-      }
-      this.#sha256 = sha256;
-      this.#view.lookThrough(this.#options.arm);
-      this.#resize();
-    }
-    const view = this.#view;
+    const view = await this.#scene.load(this.#options.room, this.#options.arm);
     return timeDraws(view.context, () => view.draw());
-  }
-
-  #madeCanvas() {
-    const canvas = document.createElement("canvas");
-    canvas.hidden = true;
-    canvas.id = "drawn";
-    canvas.addEventListener("webglcontextlost", () => canvas === this.#canvas && this.#onLost());
-    this.#options.host.prepend(canvas);
-    return canvas;
   }
 
   /** Video comes meanwhile, and then a new canvas. */
   #onLost() {
     this.#lost += 1;
+    void this.#immersive?.end();
     this.#leave();
-    this.#view = null;
     if (this.#lost >= MOST_LOST) this.#end("The graphics card was lost several times.");
     else this.why = "The graphics card was lost; video is shown until it is back.";
     this.#options.onChange();
   }
 
   #drawSoon() {
-    if (this.#isDue) return;
+    if (this.#isDue || this.#immersive) return;
     this.#isDue = true;
     requestAnimationFrame(() => this.#draw());
   }
 
   #draw() {
     this.#isDue = false;
-    const [view, poses] = [this.#view, this.#poses];
-    if (!view || !poses || !this.isShown) return;
+    const [{ view }, poses] = [this.#scene, this.#poses];
+    if (!view || !(this.isShown || this.#immersive)) return;
     const startMs = performance.now();
-    view.setPoses(poses);
+    if (poses) view.setPoses(poses);
     view.showCommanded(this.#options.arm, this.#options.commanded?.() ?? null);
     this.#options.onDraw?.(view);
-    view.draw();
-    this.#draws += 1;
-    if (startMs - this.#measuredMs >= MEASURE_EVERY_MS) this.#measure(view, poses.tick, startMs);
+    view.draw(this.#immersive?.camera);
+    this.#meter.drew(view.context, startMs).then((nowMs) => nowMs !== null && this.#onDrawn(poses?.tick ?? 0, nowMs));
   }
 
   /**
-   * @param {SceneView} view
    * @param {number} tick
-   * @param {number} startMs
+   * @param {number} nowMs
    */
-  async #measure(view, tick, startMs) {
-    this.#measuredMs = startMs;
-    await drawn(view.context);
-    const nowMs = performance.now();
-    if (view.context.isContextLost() || !this.isShown) return;
-    this.#times.add(nowMs - startMs);
+  #onDrawn(tick, nowMs) {
+    if (!this.isShown) return;
     this.#options.onShown(tick, nowMs);
-    const slow = this.#draws > ENOUGH_DRAWS && this.#times.quantile(0.5) > SLOW_MS;
-    if (slow && this.#options.choice === "auto") {
-      this.#leave();
-      this.#endSlow(this.#times.quantile(0.5));
-      this.#options.onChange();
-    }
+    if (this.#options.choice !== "auto" || this.#immersive || this.#meter.usualMs <= SLOW_MS) return;
+    this.#leave();
+    this.#endSlow(this.#meter.usualMs);
+    this.#options.onChange();
   }
 
   #show() {
     this.why = "";
-    if (this.#canvas) setShown(this.#canvas, true);
+    this.#scene.show(true);
     this.#options.onChange();
   }
 
   #leave() {
     this.#want(false);
     this.#poses = null;
-    if (this.#canvas) setShown(this.#canvas, false);
+    this.#scene.show(false);
     this.#options.onChange();
   }
 
@@ -284,17 +273,14 @@ export class DrawnPicture {
   }
 
   #tell() {
-    this.#perS = this.#draws - this.#drawsThen;
-    this.#drawsThen = this.#draws;
+    this.#meter.endSecond();
     const { p50Ms, p95Ms, perS } = this.figures;
     this.#options.send({ type: "drawing", on: this.#wanted, p50_ms: p50Ms, p95_ms: p95Ms, per_s: perS });
   }
 
   #resize() {
-    const { clientWidth: width, clientHeight: height } = this.#options.host;
-    const ratio = Math.min(devicePixelRatio, LARGEST_RATIO);
-    if (!this.#view || !width || !height) return;
-    this.#view.resize(Math.round(width * ratio), Math.round(height * ratio));
+    if (this.#immersive) return; // its size is the headset's
+    this.#scene.resize();
     this.look();
   }
 }

@@ -20,6 +20,7 @@ import { PlumbLines } from "./plumb-lines.js";
 import { QUATERNION_STEP } from "./pose-message.js";
 import { meshArrays } from "./scene-file.js";
 
+/** @import { Place } from "../headset/stand.js" */
 /** @import { Point } from "./orbit.js" */
 
 /** A place in the picture, of its width and height from its upper left; not seen: behind, or beside it.
@@ -42,6 +43,7 @@ export class SceneView {
   /** @type {Group[]} */
   #bodies;
   #cameras;
+  #floorM;
   #names;
   #plumbed;
   #plumbLines;
@@ -62,6 +64,7 @@ export class SceneView {
     this.#renderer.outputColorSpace = LinearSRGBColorSpace;
     this.#renderer.setClearColor(0, 1);
     this.#cameras = description.cameras;
+    this.#floorM = floorOf(description.geoms);
     this.#names = description.bodies;
     this.#plumbed = description.plumb_lines;
     this.camera = new PerspectiveCamera(45, ASPECT, description.near_m, description.far_m);
@@ -76,6 +79,11 @@ export class SceneView {
     this.#scene.add(world, ...this.#bodies, ...lines, ...this.#ghosts.values());
     for (const geom of description.geoms) (this.#bodies[geom.body] ?? world).add(this.#made(geom));
     this.showGhost("", []);
+  }
+
+  /** What a headset draws with, and how high the scene's floor is, metres. */
+  get stage() {
+    return { renderer: this.#renderer, scene: this.#scene, floorM: this.#floorM };
   }
 
   /** The drawing context, for whoever watches over it; three.js makes no other than of WebGL 2. */
@@ -93,6 +101,19 @@ export class SceneView {
     place(this.camera, found);
     this.camera.fov = found.fov_y_deg;
     this.camera.updateProjectionMatrix();
+  }
+
+  /**
+   * Where a camera of the scene hangs, metres and wxyz; null where there is none of that name.
+   * @param {string} name
+   * @returns {Place | null}
+   */
+  cameraPlace(name) {
+    const found = this.#cameras.find((one) => one.name === name);
+    if (!found) return null;
+    const [x = 0, y = 0, z = 0] = found.position_m;
+    const [qw = 1, qx = 0, qy = 0, qz = 0] = found.quaternion;
+    return { position: [x, y, z], quaternionWxyz: [qw, qx, qy, qz] };
   }
 
   /** Where the camera stands, metres. @returns {Point} */
@@ -175,10 +196,13 @@ export class SceneView {
     this.#commanded.show(arm, moved && inWorld(this.camera, moved));
   }
 
-  /** Draws what is there now. */
-  draw() {
+  /**
+   * Draws what is there now; the headlight stays with the seat's camera, whoever looks.
+   * @param {PerspectiveCamera} [eyes]
+   */
+  draw(eyes = this.camera) {
     this.camera.getWorldDirection(this.#materials.headlightDirection);
-    this.#renderer.render(this.#scene, this.camera);
+    this.#renderer.render(this.#scene, eyes);
   }
 
   /** Gives back what this holds of the graphics card. */
@@ -208,6 +232,10 @@ export class SceneView {
     return mesh;
   }
 }
+
+/** How high the lowest plane of the world is, metres. @param {SceneFile.Geom[]} geoms */
+const floorOf = (geoms) =>
+  Math.min(0, ...geoms.filter(({ plane, body }) => plane && body < 0).map(({ position_m: [, , z = 0] }) => z));
 
 /** What a projected point is in the picture. @type {(projected: Vector3) => ToolPlace} */
 const placeOf = ({ x, y, z }) => ({

@@ -10,7 +10,7 @@ import httpx
 import pytest
 
 from mart.protocol.errors import Forbidden, MartError, Unavailable
-from mart.teleop_gateway.emulation.pairing_client import PairingClient, PhonePairing
+from mart.teleop_gateway.phones.pairing_client import PairingClient, PhonePairing
 
 URL = "https://127.0.0.1:8443"
 PAIRING = PhonePairing(token="t0ken", room="room-1", arm="arm0", epoch=3, name="Ana")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ssl
-from collections.abc import Iterator
+from collections.abc import Awaitable, Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
@@ -83,6 +83,19 @@ class PairingClient:
             raise Unavailable(
                 f"{self._url} does not answer as a lobby: {error!r}. Is `mart web` running?"
             ) from error
+
+
+def exchange_of(
+    lobby: PairingClient, pairing: PhonePairing, on_epoch: Callable[[int], None]
+) -> Callable[[str], Awaitable[str]]:
+    """Return how a paired phone connects: by a token for the seat as it is then, whose epoch `on_epoch` is told."""
+
+    async def exchange(sdp: str) -> str:
+        renewed = await lobby.renew(pairing)
+        on_epoch(renewed.epoch)
+        return await lobby.offer(renewed, sdp)
+
+    return exchange
 
 
 def _seat(pairing: PhonePairing) -> str:

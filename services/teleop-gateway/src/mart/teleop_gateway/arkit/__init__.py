@@ -1,0 +1,1 @@
+"""Drive with a phone whose own app follows it through the room."""

@@ -1,0 +1,1 @@
+"""Speak to a gateway as a phone does."""

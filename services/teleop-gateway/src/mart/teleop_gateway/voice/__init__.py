@@ -1,0 +1,1 @@
+"""Carry what people of a room say to each other, as the packets that their browsers encoded."""

@@ -1,0 +1,119 @@
+// Another arm of whoever wears a headset: the other controller leads it, as a phone of theirs does.
+
+import { actOnEpisode, leaveSeat, pairPhone, redeemPairing, takeSeat } from "../api.js";
+import { encodeFrame, Flag } from "../drive/frame.js";
+import { everyFrame } from "../drive/ticker.js";
+import { approachAsPhone } from "../link/phone-approach.js";
+import { nowUs, SeatLink } from "../link/seat-link.js";
+import { ControllerHand } from "./controller-hand.js";
+import { turned } from "./stand.js";
+
+/** @import { Quaternion } from "../drive/quaternion.js" */
+
+const CLOSED_ABOVE = 0.15; // a gripper that holds something is neither open nor shut
+
+/** Holds the seat from `take` to `leave`, and sends frames for it. */
+export class SecondArm {
+  hand = new ControllerHand();
+  gripper = 0;
+  #room;
+  #ownArm;
+  #arm;
+  #turn;
+  #onStatus;
+  #sequence = 0;
+  #saying = false; // whether one is ready
+  /** @type {StatusChannel.Tick | null} */
+  #status = null;
+  /** @type {Api.PairedPhone | null} */
+  #pairing = null;
+  #link;
+  #rest = () => {}; // sends no frames any more
+
+  /**
+   * @param {{ room: string, arm: string }} own the seat of the page
+   * @param {string} arm
+   * @param {Quaternion} turn from the axes of the hand to those of this seat's operator
+   * @param {(hand: ControllerHand, tick: StatusChannel.Tick, before: StatusChannel.Tick | null) => void} onStatus
+   */
+  constructor(own, arm, turn, onStatus) {
+    this.#room = own.room;
+    this.#ownArm = own.arm;
+    this.#arm = arm;
+    this.#turn = turn;
+    this.#onStatus = onStatus;
+    this.#link = new SeatLink({
+      approach: () => this.#approach(),
+      wantsVideo: false,
+      onState: () => {},
+      onStatus: (tick) => this.#hear(tick),
+    });
+  }
+
+  get arm() {
+    return this.#arm;
+  }
+
+  /** Takes the seat, where it is not one's own yet, and begins to drive. */
+  async take() {
+    await takeSeat(this.#room, this.#arm);
+    this.#pairing = await redeemPairing((await pairPhone(this.#room, this.#arm)).code);
+    this.#link.connect();
+    this.#rest = everyFrame((nowMs) => this.#send(nowMs));
+  }
+
+  /** Leaves the seat: with no headset there is no hand for it. */
+  async leave() {
+    this.#rest();
+    this.#link.close();
+    this.hand.lose();
+    this.#status = null;
+    if (this.#pairing) await leaveSeat(this.#room, this.#arm);
+    this.#pairing = null;
+  }
+
+  /** Is ready where its person is, at their own seat. @param {Api.Room | null} room */
+  async follow(room) {
+    const [seat, own] = [this.#arm, this.#ownArm].map((arm) => room?.seats.find((one) => one.arm === arm));
+    if (!seat?.mine || !own || seat.ready === own.ready || this.#saying) return;
+    this.#saying = true;
+    try {
+      await actOnEpisode(this.#room, own.ready ? "ready" : "unready", this.#arm);
+    } finally {
+      this.#saying = false;
+    }
+  }
+
+  /** @param {StatusChannel.Tick} tick */
+  #hear(tick) {
+    const set = this.#status?.gripper_set !== tick.gripper_set;
+    if (set || tick.input !== "phone") this.gripper = tick.gripper > CLOSED_ABOVE ? 1 : 0;
+    this.#onStatus(this.hand, tick, this.#status);
+    this.#status = tick;
+  }
+
+  async #approach() {
+    if (!this.#pairing) throw new Error("This seat is not taken.");
+    return approachAsPhone(this.#pairing, () => {});
+  }
+
+  /** @param {number} nowMs */
+  #send(nowMs) {
+    const { position, quaternionWxyz, tracking, engaged, gripper } = turned(this.hand.reading(nowMs), this.#turn);
+    this.gripper = gripper ?? this.gripper;
+    this.#sequence += 1;
+    const flags = Flag.SCREEN_ALIGNED | (tracking ? Flag.TRACKING : 0) | (engaged ? Flag.CLUTCH : 0);
+    this.#link.sendFrame(
+      encodeFrame({
+        seatEpoch: this.#link.epoch,
+        sequence: this.#sequence,
+        seenTick: this.#status?.tick ?? 0,
+        sentUs: nowUs(),
+        position,
+        quaternionWxyz,
+        gripper: this.gripper,
+        flags,
+      }),
+    );
+  }
+}
