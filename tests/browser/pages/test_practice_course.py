@@ -13,7 +13,7 @@ from mart.protocol import codec, keys
 from mart.protocol.messages import EpisodeRequest
 from tests.browser.pages.conftest import Run
 from tests.browser.pages.test_status_bar import room, seat, view
-from tests.browser.pages.visits import visit
+from tests.browser.pages.visits import SIZES, Visit, visit
 
 MINE = seat(mine=True, passed_course=False)
 
@@ -110,34 +110,36 @@ def test_a_host_is_told_how_far_people_are(run: Run) -> None:
     )
 
 
-@pytest.mark.parametrize(("size", "scheme"), [("wide", "light"), ("narrow", "dark")])
-def test_the_course_is_opened_from_the_lobby_and_guides(
-    browser: Browser, platform: Platform, size: str, scheme: str
-) -> None:
-    with visit(browser, platform, size, scheme) as lobby:
-        lobby.join("Ana", "Join and choose a seat")
-        lobby.page.get_by_text("New room", exact=True).click()
-        lobby.page.locator("#new-task").select_option("practice_course")
-        expect(lobby.page.locator("#new-rules")).to_have_value("practice")
-        expect(lobby.page.locator("#new-episodes")).to_be_disabled()
-        lobby.page.locator("#new-name").fill(f"course-{size}")
-        lobby.page.locator("#new-arms").select_option("1")
-        lobby.page.get_by_role("button", name="Open room").click()
-        card = lobby.page.locator(".room", has_text=f"course-{size}")
-        expect(card).to_contain_text("Practice room: nothing is recorded")
-        lobby.is_fine(f"lobby-course-{size}")
+def is_fine_at_every_size(visited: Visit, what: str) -> None:
+    for size in ("wide", "narrow"):
+        width, height = SIZES[size]
+        visited.page.set_viewport_size({"width": width, "height": height})
+        visited.is_fine(f"{what}-{size}")
+
+
+def test_the_course_is_opened_from_the_lobby_and_guides(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform, scheme="dark") as ana:
+        page = ana.page
+        ana.join("Ana", "Join and choose a seat")
+        page.get_by_text("New room", exact=True).click()
+        page.locator("#new-task").select_option("practice_course")
+        expect(page.locator("#new-rules")).to_have_value("practice")
+        expect(page.locator("#new-episodes")).to_be_disabled()
+        page.locator("#new-name").fill("course")
+        page.locator("#new-arms").select_option("1")
+        page.get_by_role("button", name="Open room").click()
+        card = page.locator("article.room").filter(has_text="Practice room: nothing is recorded")
+        expect(card).to_be_visible()
+        is_fine_at_every_size(ana, "lobby-course")
         card.get_by_role("button", name="Take seat").click()
-        expect(lobby.page.locator("#picture.live")).to_be_visible()
-        expect(lobby.page.locator("#state-label")).to_have_text("Practice room")
-        expect(lobby.page.locator("#state-now")).to_contain_text("Reach: bring your fingertips")
-        expect(lobby.page.get_by_role("button", name="Ready")).to_have_count(0)
-        lobby.is_fine(f"operator-course-{size}")
-        lobby.page.keyboard.press("q")
-        lobby.page.keyboard.press("q")
-        card = lobby.page.locator(".room", has_text=f"course-{size}")
-        close = card.get_by_role("button", name="Close")
-        close.click()
-        close.click()
+        expect(page.locator("#picture.live")).to_be_visible()
+        expect(page.locator("#state-label")).to_have_text("Practice room")
+        expect(page.locator("#state-now")).to_contain_text("Reach: bring your fingertips")
+        expect(page.get_by_role("button", name="Ready")).to_have_count(0)
+        is_fine_at_every_size(ana, "operator-course")
+        page.get_by_role("button", name="Leave").click()
+        for _ in range(2):
+            card.get_by_role("button", name="Close").click()
         expect(card).to_have_count(0)
 
 

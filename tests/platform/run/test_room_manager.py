@@ -99,6 +99,26 @@ def test_a_plan_travels_to_the_sim(rooms: RoomManager, supervisor: Supervisor) -
     assert sim(supervisor, "room-2").command[-2:] == ("--episodes", "50")
 
 
+def test_what_a_room_lets_people_record_travels_to_the_sim_and_comes_back(
+    rooms: RoomManager, supervisor: Supervisor, options: PlatformOptions, statuses: HeardStatuses
+) -> None:
+    opened(rooms, task="practice_course", practice=True)
+    opened(rooms, course_required=True)
+    again = RoomManager(options, Noted(options, processes(options), options.data_dir / "other"), statuses)
+    again.reopen()
+    for manager, supervised in ((rooms, supervisor), (again, again._supervisor)):
+        assert manager.names == ["room-1", "room-2", "room-3"]
+        assert sim(supervised, "room-2").command[-1] == "--practice"
+        assert sim(supervised, "room-3").command[-1] == "--course-required"
+
+
+def test_a_practice_room_counts_nothing(rooms: RoomManager) -> None:
+    for asked in ({"episodes": 5}, {"course_required": True}):
+        with pytest.raises(InvalidInput):
+            opened(rooms, practice=True, **asked)
+    assert rooms.names == ["room-1"]
+
+
 def test_a_free_name_is_that_of_no_room_that_ever_was(rooms: RoomManager, options: PlatformOptions) -> None:
     """Or it would go on counting the episodes of somebody else's session."""
     (options.data_dir / "rooms").mkdir()

@@ -74,6 +74,7 @@ export function roomCard(attempt, onClosed) {
     setText(facts.plan, planText(room.plan));
     setShown(facts.plan, room.plan !== null);
     setText(facts.saved, savedText(room));
+    setShown(facts.saved, !room.practice);
     const arms = room.seats.map((seat) => seat.arm);
     keepChildren(seats, arms, rows, (arm) => seatRow(room.room, arm, attempt));
     const holdsOne = room.seats.some((seat) => seat.mine);

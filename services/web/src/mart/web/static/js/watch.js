@@ -81,7 +81,7 @@ function onEvent(event) {
 /** @param {Api.Room[]} latest */
 function show(latest) {
   known = latest;
-  offer(rooms, latest.map(({ room, title }) => [room, `${room}, ${title}`]));
+  offer(rooms, latest.map((one) => [one.room, nameOf(one)]));
   const seats = chosen()?.seats ?? [];
   offer(views, seats.map((seat) => [seat.arm, `${armName(seat.arm)}, ${holderName(seat)}`]));
   showSeats(seats);
@@ -89,6 +89,9 @@ function show(latest) {
   follow(seats.find(({ arm }) => arm === views.value));
   showPicture();
 }
+
+/** @param {Api.Room} room */
+const nameOf = ({ room, title, practice }) => `${room}, ${title}${practice ? ", for practice" : ""}`;
 
 const chosen = () => known.find(({ room }) => room === rooms.value);
 

@@ -19,7 +19,7 @@ export function sessionStatistics(room, attempt) {
   const node = element(
     "details",
     { class: "session", on: { toggle: () => attempt(load) } },
-    element("summary", { "aria-label": `Today in ${room}` }, "Today in this room"),
+    element("summary", {}, `Today in ${room}`),
     said,
     table,
   );
