@@ -95,6 +95,20 @@ def test_a_flood_ends_the_connection() -> None:
     asyncio.run(run())
 
 
+def test_bytes_that_are_no_websocket_end_their_connection_and_bring_no_traceback(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def run() -> None:
+        async with listening(ARReceiver()) as port:
+            reader, writer = await asyncio.open_connection(HERE, port)
+            writer.write(b"hello?\r\n\r\n")
+            assert await asyncio.wait_for(reader.read(), 20) == b""
+            writer.close()
+
+    asyncio.run(run())
+    assert [record for record in caplog.records if record.exc_info] == []
+
+
 def test_a_port_that_is_taken_is_said_so() -> None:
     async def run() -> None:
         async with listening(ARReceiver()) as port:

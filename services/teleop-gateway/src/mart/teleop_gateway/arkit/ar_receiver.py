@@ -30,6 +30,10 @@ _CLOSE_S = 1.0  # so long a phone that floods is waited for to say good-bye
 _POLICY_VIOLATION = 1008
 
 
+_wire_log = logging.getLogger(f"{__name__}.wire")
+_wire_log.setLevel(logging.WARNING)  # who comes and goes is said here, once
+
+
 class ARReceiver:
     """Keep the newest sample, and when it came (monotonic seconds; minus infinity before the first)."""
 
@@ -54,6 +58,7 @@ class ARReceiver:
                 close_timeout=_CLOSE_S,
                 ping_interval=None,  # the app answers none while nothing is sent to it
                 server_header=None,
+                logger=_wire_log,
             )
         except OSError as error:
             raise Unavailable(

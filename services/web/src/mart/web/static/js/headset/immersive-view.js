@@ -58,7 +58,7 @@ export class ImmersiveView {
    * @param {ImmersiveOptions} options
    */
   constructor(view, base, floors, options) {
-    const { renderer, scene, floorM } = view.stage;
+    const { renderer, floorM } = view.stage;
     this.#view = view;
     this.#renderer = renderer;
     this.#options = options;
@@ -68,7 +68,6 @@ export class ImmersiveView {
     this.#rig.add(this.camera);
     this.#placeRig(floorM);
     renderer.setClearColor(BEYOND, 1);
-    scene.add(this.#rig);
     base.addEventListener("reset", () => this.#reset());
     renderer.setAnimationLoop((_, frame) => frame && this.#draw(frame));
   }
@@ -123,6 +122,8 @@ export class ImmersiveView {
   #draw(frame) {
     this.#space ??= this.#stand(frame); // three.js has taken the eyes' places already: the next picture is right
     if (this.#space) this.#options.onFrame(frame, this.#space);
+    const { scene } = this.#view.stage;
+    if (this.#rig.parent !== scene) scene.add(this.#rig); // the room may have another one meanwhile
     this.#options.onDraw();
   }
 

@@ -22,7 +22,8 @@ export class SecondArm {
   #turn;
   #onStatus;
   #sequence = 0;
-  #saying = false; // whether one is ready
+  /** Whether one is ready, as was said and is not told yet. @type {boolean | null} */
+  #said = null;
   /** @type {StatusChannel.Tick | null} */
   #status = null;
   /** @type {Api.PairedPhone | null} */
@@ -75,12 +76,11 @@ export class SecondArm {
   /** Is ready where its person is, at their own seat. @param {Api.Room | null} room */
   async follow(room) {
     const [seat, own] = [this.#arm, this.#ownArm].map((arm) => room?.seats.find((one) => one.arm === arm));
-    if (!seat?.mine || !own || seat.ready === own.ready || this.#saying) return;
-    this.#saying = true;
-    try {
+    if (!seat?.mine || !own || room?.episode.phase !== "practice" || seat.ready === own.ready) {
+      this.#said = null;
+    } else if (this.#said !== own.ready) {
+      this.#said = own.ready;
       await actOnEpisode(this.#room, own.ready ? "ready" : "unready", this.#arm);
-    } finally {
-      this.#saying = false;
     }
   }
 

@@ -85,15 +85,12 @@ export class DrawnPicture {
    */
   onTick(tick) {
     const nowMs = performance.now();
-    const stale = this.#wanted && nowMs - this.#heardMs > QUIET_MS && tick > (this.#poses?.tick ?? 0);
-    if (stale) this.#leave();
+    if (this.#immersive) return; // what is worn stays
+    if (this.#isStale(tick, nowMs)) this.#leave();
     if (!this.#wanted && !this.#busy && !this.#ended && nowMs - this.#triedMs > RETRY_MS) this.#try(nowMs);
   }
 
-  /**
-   * Takes how far the task is: a step may have to show something.
-   * @param {Api.Subtask[]} subtasks
-   */
+  /** Takes how far the task is: a step may have to show something. @param {Api.Subtask[]} subtasks */
   onProgress(subtasks) {
     this.#scene.view?.showGhost(this.#options.arm, subtasks);
   }
@@ -106,7 +103,7 @@ export class DrawnPicture {
     const poses = parsePoses(bytes);
     if (!poses || !this.#wanted) return;
     if (!this.#scene.isOf(poses)) {
-      void this.#immersive?.end(); // of another world, which is drawn from the page
+      if (this.#immersive && !this.#busy) this.#change(performance.now());
       return;
     }
     this.#heardMs = performance.now();
@@ -157,6 +154,16 @@ export class DrawnPicture {
     return this.#immersive;
   }
 
+  /** The room has another model, around whoever wears a headset. @param {number} nowMs */
+  async #change(nowMs) {
+    if (nowMs - this.#triedMs < QUIET_MS) return;
+    this.#triedMs = nowMs;
+    this.#busy = true;
+    await this.#scene.load(this.#options.room, this.#options.arm).catch(() => {}); // poses come on: it is tried again
+    this.#poses = null;
+    this.#busy = false;
+  }
+
   /** @param {boolean} wasShown the page drew before */
   #emerge(wasShown) {
     this.#immersive?.stop();
@@ -169,6 +176,11 @@ export class DrawnPicture {
   onLive() {
     this.#heardMs = performance.now();
     if (this.#wanted) this.#tell();
+  }
+
+  /** Poses have stopped coming while the world goes on. @param {number} tick @param {number} nowMs */
+  #isStale(tick, nowMs) {
+    return this.#wanted && nowMs - this.#heardMs > QUIET_MS && tick > (this.#poses?.tick ?? 0);
   }
 
   /** @param {number} nowMs */

@@ -9,7 +9,7 @@ import { WebGLMissing, webglRenderer } from "./webgl.js";
 
 const LARGEST_RATIO = 1.5; // pixels for each of the page's; more costs phones more than it shows
 
-/** Another scene, or a graphics card that was lost, takes another canvas. `view`: null while there is none. */
+/** A graphics card that was lost takes another canvas. `view`: null while there is none. */
 export class SceneCanvas {
   /** @type {SceneView | null} */
   view = null;
@@ -48,13 +48,8 @@ export class SceneCanvas {
     const { sha256, bytes } = await fetchScene(room, arm);
     if (sha256 === this.#sha256 && this.view) return this.view;
     const { SceneView: View } = await import("./scene-view.js");
-    this.dispose();
-    this.#canvas = this.#madeCanvas();
-    try {
-      this.view = new View(this.#canvas, parseScene(bytes));
-    } catch (error) {
-      throw new WebGLMissing(messageOf(error));
-    }
+    if (this.view) this.view.change(parseScene(bytes));
+    else this.view = this.#made(View, parseScene(bytes));
     this.#sha256 = sha256;
     this.view.lookThrough(arm);
     this.resize();
@@ -79,6 +74,21 @@ export class SceneCanvas {
     this.view = this.#canvas = null;
     canvas?.remove();
     view?.dispose();
+  }
+
+  /**
+   * A view in a new canvas: a graphics card that was lost comes back to no old one.
+   * @param {typeof SceneView} View
+   * @param {SceneFile.Parsed} scene
+   */
+  #made(View, scene) {
+    this.#canvas?.remove();
+    this.#canvas = this.#madeCanvas();
+    try {
+      return new View(this.#canvas, scene);
+    } catch (error) {
+      throw new WebGLMissing(messageOf(error));
+    }
   }
 
   #madeCanvas() {

@@ -1,24 +1,14 @@
 // Draws a scene into a canvas, like the server's renderer.
 
 import {
-  BufferAttribute,
-  BufferGeometry,
   ColorManagement,
-  Group,
   LinearSRGBColorSpace,
-  Mesh,
   PerspectiveCamera,
-  Scene,
   Vector3,
   WebGLRenderer,
 } from "../../vendor/three.mjs";
-import { CommandedTool, inWorld } from "./commanded-tool.js";
-import { ghostOf } from "./ghost.js";
-import { Materials } from "./materials.js";
-import { placedOn } from "./on-body.js";
-import { PlumbLines } from "./plumb-lines.js";
-import { QUATERNION_STEP } from "./pose-message.js";
-import { meshArrays } from "./scene-file.js";
+import { inWorld } from "./commanded-tool.js";
+import { place, SceneObjects } from "./scene-objects.js";
 
 /** @import { Place } from "../headset/stand.js" */
 /** @import { Point } from "./orbit.js" */
@@ -27,29 +17,14 @@ import { meshArrays } from "./scene-file.js";
  * @typedef {{ x: number, y: number, isSeen: boolean }} ToolPlace */
 
 const ASPECT = 4 / 3;
-const FIRST_DRAWN = 0; // planes, then whatever else is transparent
-const THEN_DRAWN = 1;
 
 ColorManagement.enabled = false; // MuJoCo computes in gamma space throughout
 
-/** One scene in one canvas. `camera` may be moved by whoever has it. */
+/** A scene in one canvas. `camera` may be moved by whoever has it. */
 export class SceneView {
   camera;
   #renderer;
-  #scene = new Scene();
-  #materials;
-  /** @type {BufferGeometry[]} */
-  #geometries;
-  /** @type {Group[]} */
-  #bodies;
-  #cameras;
-  #floorM;
-  #names;
-  #plumbed;
-  #plumbLines;
-  #commanded;
-  /** @type {Map<SceneFile.Ghost, Group>} */
-  #ghosts;
+  #objects;
 
   /**
    * Raises an Error where there is no WebGL.
@@ -58,32 +33,29 @@ export class SceneView {
    * @param {{ smooth?: boolean }} [options] smooth: edges are
    */
   constructor(canvas, scene, { smooth = true } = {}) {
-    const { description } = scene;
+    const { near_m: nearM, far_m: farM } = scene.description;
     const powerPreference = "high-performance";
     this.#renderer = new WebGLRenderer({ canvas, alpha: false, antialias: smooth, powerPreference });
     this.#renderer.outputColorSpace = LinearSRGBColorSpace;
     this.#renderer.setClearColor(0, 1);
-    this.#cameras = description.cameras;
-    this.#floorM = floorOf(description.geoms);
-    this.#names = description.bodies;
-    this.#plumbed = description.plumb_lines;
-    this.camera = new PerspectiveCamera(45, ASPECT, description.near_m, description.far_m);
-    this.#materials = new Materials(scene);
-    this.#geometries = description.meshes.map((mesh) => madeGeometry(scene, mesh));
-    this.#bodies = description.bodies.map(() => new Group());
-    const world = new Group();
-    this.#plumbLines = new PlumbLines(description.plumb_lines, this.#bodies, (geom) => this.#made(geom));
-    this.#commanded = new CommandedTool(description, this.#bodies, (geom) => this.#made(geom));
-    this.#ghosts = new Map(description.ghosts.map((ghost) => [ghost, this.#grouped(ghost.geoms)]));
-    const lines = [...this.#plumbLines.meshes, ...this.#commanded.meshes];
-    this.#scene.add(world, ...this.#bodies, ...lines, ...this.#ghosts.values());
-    for (const geom of description.geoms) (this.#bodies[geom.body] ?? world).add(this.#made(geom));
-    this.showGhost("", []);
+    this.camera = new PerspectiveCamera(45, ASPECT, nearM, farM);
+    this.#objects = new SceneObjects(scene);
+  }
+
+  /**
+   * Shows another scene in its place.
+   * @param {SceneFile.Parsed} scene
+   */
+  change(scene) {
+    this.#objects.dispose();
+    this.#objects = new SceneObjects(scene);
+    this.camera.near = scene.description.near_m;
+    this.camera.far = scene.description.far_m;
   }
 
   /** What a headset draws with, and how high the scene's floor is, metres. */
   get stage() {
-    return { renderer: this.#renderer, scene: this.#scene, floorM: this.#floorM };
+    return { renderer: this.#renderer, scene: this.#objects.root, floorM: this.#objects.floorM };
   }
 
   /** The drawing context, for whoever watches over it; three.js makes no other than of WebGL 2. */
@@ -96,7 +68,7 @@ export class SceneView {
    * @param {string} name
    */
   lookThrough(name) {
-    const found = this.#cameras.find((one) => one.name === name) ?? this.#cameras[0];
+    const found = this.#objects.cameras.find((one) => one.name === name) ?? this.#objects.cameras[0];
     if (!found) return;
     place(this.camera, found);
     this.camera.fov = found.fov_y_deg;
@@ -109,7 +81,7 @@ export class SceneView {
    * @returns {Place | null}
    */
   cameraPlace(name) {
-    const found = this.#cameras.find((one) => one.name === name);
+    const found = this.#objects.cameras.find((one) => one.name === name);
     if (!found) return null;
     const [x = 0, y = 0, z = 0] = found.position_m;
     const [qw = 1, qx = 0, qy = 0, qz = 0] = found.quaternion;
@@ -134,22 +106,16 @@ export class SceneView {
 
   /** The middle of all tools as the newest poses have put them, metres. @returns {Point} */
   middleOfTools() {
+    const tools = this.#objects.tools();
     const sum = new Vector3();
-    for (const { at } of this.#tools()) sum.add(at);
-    return sum.divideScalar(Math.max(1, this.#plumbed.length)).toArray();
+    for (const { at } of tools) sum.add(at);
+    return sum.divideScalar(Math.max(1, tools.length)).toArray();
   }
 
   /** Where each arm's tool is in the picture as the camera stands now, by arm. @returns {Map<string, ToolPlace>} */
   toolPlaces() {
     this.camera.updateMatrixWorld();
-    return new Map(this.#tools().map(({ arm, at }) => [arm, placeOf(at.project(this.camera))]));
-  }
-
-  #tools() {
-    return this.#plumbed.map(({ body, position_m: onBody }) => ({
-      arm: (this.#names[body] ?? "").split("/")[0] ?? "",
-      at: placedOn(new Vector3(), this.#bodies[body], onBody),
-    }));
+    return new Map(this.#objects.tools().map(({ arm, at }) => [arm, placeOf(at.project(this.camera))]));
   }
 
   /**
@@ -167,14 +133,8 @@ export class SceneView {
    * Puts the bodies where a message says.
    * @param {SceneFile.Poses} poses
    */
-  setPoses({ numbers, stepM }) {
-    for (const [index, body] of this.#bodies.entries()) {
-      const [x = 0, y = 0, z = 0, qw = 1, qx = 0, qy = 0, qz = 0] = numbers.subarray(7 * index, 7 * index + 7);
-      body.position.set(x * stepM, y * stepM, z * stepM);
-      const step = QUATERNION_STEP;
-      body.quaternion.set(qx * step, qy * step, qz * step, qw * step).normalize();
-    }
-    this.#plumbLines.hang();
+  setPoses(poses) {
+    this.#objects.setPoses(poses);
   }
 
   /**
@@ -183,8 +143,7 @@ export class SceneView {
    * @param {Api.Subtask[]} subtasks
    */
   showGhost(arm, subtasks) {
-    const shown = ghostOf([...this.#ghosts.keys()], arm, subtasks);
-    for (const [ghost, group] of this.#ghosts) group.visible = ghost === shown;
+    this.#objects.showGhost(arm, subtasks);
   }
 
   /**
@@ -193,7 +152,7 @@ export class SceneView {
    * @param {readonly [number, number, number] | null} moved
    */
   showCommanded(arm, moved) {
-    this.#commanded.show(arm, moved && inWorld(this.camera, moved));
+    this.#objects.commanded.show(arm, moved && inWorld(this.camera, moved));
   }
 
   /**
@@ -201,41 +160,17 @@ export class SceneView {
    * @param {PerspectiveCamera} [eyes]
    */
   draw(eyes = this.camera) {
-    this.camera.getWorldDirection(this.#materials.headlightDirection);
-    this.#renderer.render(this.#scene, eyes);
+    this.camera.getWorldDirection(this.#objects.materials.headlightDirection);
+    this.#renderer.render(this.#objects.root, eyes);
   }
 
   /** Gives back what this holds of the graphics card. */
   dispose() {
-    this.#materials.dispose();
-    for (const geometry of this.#geometries) geometry.dispose();
+    this.#objects.dispose();
     this.#renderer.dispose();
     this.#renderer.forceContextLoss();
   }
-
-  /** @param {SceneFile.Geom[]} geoms */
-  #grouped(geoms) {
-    const group = new Group();
-    group.add(...geoms.map((geom) => this.#made(geom)));
-    return group;
-  }
-
-  /** @param {SceneFile.Geom} geom */
-  #made(geom) {
-    const mesh = new Mesh(this.#geometries[geom.mesh], this.#materials.of(geom));
-    place(mesh, geom);
-    const [x = 1, y = 1, z = 1] = geom.scale;
-    mesh.scale.set(x, y, z);
-    mesh.renderOrder = geom.plane ? FIRST_DRAWN : THEN_DRAWN;
-    mesh.updateMatrix();
-    mesh.matrixAutoUpdate = false; // it stays where it is on its body
-    return mesh;
-  }
 }
-
-/** How high the lowest plane of the world is, metres. @param {SceneFile.Geom[]} geoms */
-const floorOf = (geoms) =>
-  Math.min(0, ...geoms.filter(({ plane, body }) => plane && body < 0).map(({ position_m: [, , z = 0] }) => z));
 
 /** What a projected point is in the picture. @type {(projected: Vector3) => ToolPlace} */
 const placeOf = ({ x, y, z }) => ({
@@ -243,26 +178,3 @@ const placeOf = ({ x, y, z }) => ({
   y: (1 - y) / 2,
   isSeen: Math.abs(x) <= 1 && Math.abs(y) <= 1 && Math.abs(z) <= 1,
 });
-
-/**
- * MuJoCo's quaternions are wxyz, three's xyzw.
- * @param {Mesh | PerspectiveCamera} object
- * @param {{ position_m: SceneFile.Numbers, quaternion: SceneFile.Numbers }} where
- */
-function place(object, { position_m: [x = 0, y = 0, z = 0], quaternion: [qw = 1, qx = 0, qy = 0, qz = 0] }) {
-  object.position.set(x, y, z);
-  object.quaternion.set(qx, qy, qz, qw);
-}
-
-/**
- * @param {SceneFile.Parsed} scene
- * @param {SceneFile.MeshEntry} mesh
- */
-function madeGeometry(scene, mesh) {
-  const { positions, normals, index } = meshArrays(scene, mesh);
-  const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(positions, 3));
-  geometry.setAttribute("normal", new BufferAttribute(normals, 4, true));
-  geometry.setIndex(new BufferAttribute(index, 1));
-  return geometry;
-}
