@@ -7,7 +7,6 @@ picture builds on the one before; see `track`. Pictures that take too long are d
 from __future__ import annotations
 
 import logging
-import os
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -39,7 +38,6 @@ _log = logging.getLogger(__name__)
 _REPEAT_AFTER_S = 0.5  # a resting world is sent again: whoever lost the last picture gets it
 _KEYFRAME_WITHIN_S = 0.05
 _RATE_WINDOW = 40
-_NICENESS = 5  # ticks and commands go first: a picture can be left out
 
 
 @dataclass(frozen=True)
@@ -169,7 +167,6 @@ class LiveView:
         return median(took_s) if took_s and self.frames_per_s() else 0.0
 
     def _run(self) -> None:
-        os.nice(_NICENESS)  # of this thread alone, on Linux, and of those that OpenGL starts for it
         cv2.setNumThreads(1)
         try:
             renderer = SeatRenderer(self._model, self._camera, self._quality)
