@@ -180,6 +180,7 @@ def test_a_word_is_said_to_the_partners_by_the_phone(
         phone.page.get_by_role("button", name="Say…").click()
         expect(phone.page.get_by_role("button", name="Come closer")).to_be_visible()
         phone.is_fine(f"phone-say-{width}x{height}")
+        expect(phone.operator.locator("#cues .said")).to_have_count(0)  # two words a second count, not three
         phone.page.get_by_role("button", name="Slower").click()
         expect(phone.page.locator("#say")).to_be_hidden()
         said = phone.operator.locator("#cues .said")
