@@ -1,7 +1,7 @@
 // The way to the server, tried: a connection whose only channel sends back what it gets.
 
 import { messageOf, sendCheckOffer, serverTime } from "../api.js";
-import { gathered } from "../link/peer.js";
+import { gathered, missingWebRtc } from "../link/peer.js";
 import { roundTrips } from "./round-trips.js";
 
 /** @import { Admission } from "../api.js" */
@@ -26,6 +26,7 @@ const FETCHES = 10;
  * @returns {Promise<Connection>}
  */
 export async function tryConnection(admission, iceServers, relay) {
+  if (missingWebRtc()) return { way: "none", trips: null, problem: missingWebRtc() };
   const connection = new RTCPeerConnection({ iceServers, iceTransportPolicy: relay ? "relay" : "all" });
   try {
     const channel = connection.createDataChannel("echo", { ordered: false, maxRetransmits: 0 });

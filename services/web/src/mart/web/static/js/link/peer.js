@@ -19,13 +19,18 @@ const CHANNEL = { ordered: false, maxRetransmits: 0 };
 const GATHERING_MS = 1000;
 const MOST_BUFFERED_BYTES = 300; // five frames: what waits longer is older than what comes next
 
+/** What is said where a browser has no WebRTC; nothing where it has. */
+export const missingWebRtc = () =>
+  "RTCPeerConnection" in globalThis ? "" : "This browser has no WebRTC. Use a current Chrome, Edge, Firefox or Safari.";
+
 /** A connection, from its making until `close`. */
 export class Peer {
   /**
-   * Raises what the exchange raises.
+   * Raises what the exchange raises, and an Error where the browser has no WebRTC.
    * @param {PeerOptions} options
    */
   static async connect(options) {
+    if (missingWebRtc()) throw new Error(missingWebRtc());
     const peer = new Peer(options.iceServers);
     try {
       await peer.#connect(options);
