@@ -18,7 +18,7 @@ from mart.protocol.messages import State, pose_from_message
 from mart.render import viewpoint_id
 from mart.runtime.bus.base import Sample
 from mart.sim.world import World
-from tests.browser.pages.visits import HERE, INSPECT, SCREENSHOTS, driving, visit
+from tests.browser.pages.visits import HERE, SCREENSHOTS, driving, visit
 
 IWER = Path("node_modules/iwer/build/iwer.min.js")
 SMALL = {"width": 320, "height": 240}  # this is drawn without a graphics card, twice
@@ -60,7 +60,7 @@ def wearing(browser: Browser, platform: Platform, button: str = "headset") -> It
         with driving(at) as page:
             page.evaluate(HOLD_ARM1)
             expect(page.locator(f"#{button}")).to_be_visible()
-            assert page.evaluate(INSPECT) == []
+            assert faults(page) == []
             page.set_viewport_size(SMALL)  # type: ignore[arg-type]
             page.evaluate(f"document.getElementById('{button}').click()")
             expect(page.locator("#input")).to_have_text("Keyboard and mouse, headset")
