@@ -18,6 +18,7 @@ from mart.protocol.messages import State, pose_from_message
 from mart.render import viewpoint_id
 from mart.runtime.bus.base import Sample
 from mart.sim.world import World
+from tests.browser.pages.legibility import faults
 from tests.browser.pages.visits import HERE, SCREENSHOTS, driving, visit
 
 IWER = Path("node_modules/iwer/build/iwer.min.js")
