@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import struct
 import threading
 from collections.abc import Callable, Coroutine, Iterator, Sequence
 from typing import Any, TypeVar
@@ -19,6 +20,7 @@ from mart.teleop_gateway.webrtc import status_channel
 
 _PING_EVERY_S = 1.0
 _OPEN_TIMEOUT_S = 30.0
+_TICK_AT = 8  # in a message with poses: docs/protocol.md, "Body poses"
 _OFFER_EVERY_S = 0.25  # a seat takes five a second
 T = TypeVar("T")
 
@@ -42,8 +44,10 @@ class Watcher:
         answer = await asyncio.to_thread(exchange, self._connection.localDescription.sdp)
         await self._connection.setRemoteDescription(RTCSessionDescription(answer, "answer"))
         await asyncio.wait_for(self._opened.wait(), _OPEN_TIMEOUT_S)
-        drawing = {"type": "drawing", "on": draws, "p50_ms": 1.0, "p95_ms": 1.0, "per_s": 60.0}
+        drawing = {"type": "drawing", "on": draws, "p50_ms": 0.0, "p95_ms": 0.0, "per_s": 60.0}
         self._status.send(json.dumps(drawing))
+        # Both ends are on this machine: the clocks differ by this, and by nothing else.
+        self._status.send(status_channel.clock_offset(clock.wall_ns() - clock.monotonic_ns()))
         self._pinging = asyncio.ensure_future(self._ping())
 
     async def received(self) -> tuple[int, int]:
@@ -63,8 +67,11 @@ class Watcher:
             self._status.send(status_channel.ping(clock.monotonic_ns() // 1000))
             await asyncio.sleep(_PING_EVERY_S)
 
-    def _on_poses(self, _: bytes) -> None:
+    def _on_poses(self, message: bytes) -> None:
+        """Tell that the tick is here, as a page does once it has drawn it."""
         self._poses += 1
+        (tick,) = struct.unpack_from("<Q", message, _TICK_AT)
+        self._status.send(json.dumps({"type": "seen", "tick": tick, "t_us": clock.monotonic_ns() / 1000}))
 
     def _channel(self, label: str) -> RTCDataChannel:
         return self._connection.createDataChannel(label, ordered=False, maxRetransmits=0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import shutil
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mart.platform.collect.web_client import WebClient
@@ -49,27 +48,11 @@ def running_browser() -> Iterator[Browser]:
             yield browser
 
 
-@dataclass(frozen=True)
-class OperatorPage:
-    """Say how an operator's page is opened. query: of its address, for example `picture=drawn`."""
-
-    query: str = ""
-    width_px: int = 960
-    height_px: int = 720
-
-
-USUAL_PAGE = OperatorPage()
-
-
-def open_operator_page(
-    browser: Browser, web_client: WebClient, address: str, opened: OperatorPage = USUAL_PAGE
-) -> Page:
+def open_operator_page(browser: Browser, web_client: WebClient, address: str) -> Page:
     """The operator's page at the address of a seat that `web_client` holds, once its picture runs."""
-    context = browser.new_context(
-        viewport={"width": opened.width_px, "height": opened.height_px}, ignore_https_errors=True
-    )
+    context = browser.new_context(viewport={"width": 960, "height": 720}, ignore_https_errors=True)
     context.add_cookies(web_client.cookies())  # type: ignore[arg-type]
     page = context.new_page()
-    page.goto(f"{address}?{opened.query}")
+    page.goto(address)
     page.wait_for_selector("#picture.live")
     return page

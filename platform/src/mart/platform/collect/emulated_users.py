@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mart.operators.room_watch import RoomWatch
-from mart.platform.collect.browser import USUAL_PAGE, OperatorPage, open_operator_page
+from mart.platform.collect.browser import open_operator_page
 from mart.platform.collect.web_client import WebClient
 from mart.platform.run.plan import environment
 from mart.platform.run.running import Platform
@@ -40,16 +40,12 @@ class EmulatedUser:
 
 @dataclass(frozen=True)
 class EmulatedUsers:
-    """Seat emulated people. `skill` and `seed` are the scripts'; each one's seed is this plus the seat's number.
-
-    page: how each one's page is opened.
-    """
+    """Seat emulated people. `skill` and `seed` are the scripts'; each one's seed is this plus the seat's number."""
 
     platform: Platform
     skill: str
     seed: int
     browser: Browser | None = None
-    page: OperatorPage = USUAL_PAGE
 
     @contextlib.contextmanager
     def seated(self, arms: Sequence[str]) -> Iterator[list[EmulatedUser]]:
@@ -93,7 +89,7 @@ class EmulatedUsers:
             web_client.take(room, arm)
             stack.callback(_leave, web_client, room, arm)
             if self.browser is not None:
-                page = open_operator_page(self.browser, web_client, platform.seat_url(arm), self.page)
+                page = open_operator_page(self.browser, web_client, platform.seat_url(arm))
                 stack.enter_context(contextlib.closing(page.context))
             seed = str(self.seed + number)
             brain = [
