@@ -147,7 +147,7 @@ def test_a_hosts_plan_counts_from_then_on_and_outlives_a_restart(world: World) -
     assert harness.ask(planned(0)) == ""
     assert not harness.status().HasField("plan")
     assert harness.kept[-1].for_task(task).planned(task, 50).plan is None
-    assert harness.ask(planned(10_001)) == "InvalidInput"
+    assert [harness.ask(planned(many)) for many in (10_001, 2**32 - 1)] == ["InvalidInput", "InvalidInput"]
     assert notices(harness) == [
         "Hanna, the host, set the plan: 3 good episodes are wanted.",
         "Hanna, the host, set the plan: none is wanted.",

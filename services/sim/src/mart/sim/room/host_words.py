@@ -22,8 +22,10 @@ def hear_host(request: EpisodeRequest, record: SavedRoom, *, practice: bool) -> 
             "This is a practice room: nothing is recorded here, so there is nothing to plan or to require."
         )
     if request.HasField("set_plan"):
-        return record.with_host_plan(request.set_plan.episodes), _planned(request.set_plan)
-    return record.with_course_required(request.require_course.required), _required(request.require_course)
+        said = _planned(request.set_plan)  # first: it refuses what no record can hold
+        return record.with_host_plan(request.set_plan.episodes), said
+    said = _required(request.require_course)
+    return record.with_course_required(request.require_course.required), said
 
 
 def _planned(wanted: EpisodeRequest.SetPlan) -> Event:
