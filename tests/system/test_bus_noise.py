@@ -86,10 +86,12 @@ class _Stand:
     def goes_on(self) -> bool:
         """Whether its world ticks, at the latest when every seat that noise has taken is free again.
 
-        An emergency stop that noise has pressed stands until somebody lets it go, as any other.
+        An emergency stop that noise has pressed stands until somebody lets it go, as any other, and a host's pause until
+        a host does.
         """
-        let_go = EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Ana"))
-        self.bus.query(keys.episode(ROOM), codec.encode(let_go), 1.0)
+        for by_host in (True, False):
+            let_go = EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Ana", by_host=by_host))
+            self.bus.query(keys.episode(ROOM), codec.encode(let_go), 1.0)
         before = len(self.harness.publisher.states)
         until_s = self.harness.now_s + _FREED_S
         while self.harness.now_s < until_s:
