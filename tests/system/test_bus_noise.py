@@ -86,8 +86,8 @@ class _Stand:
     def goes_on(self) -> bool:
         """Whether its world ticks, at the latest when every seat that noise has taken is free again.
 
-        An emergency stop that noise has pressed stands until somebody lets it go, as any other, and a host's pause until
-        a host does.
+        An emergency stop that noise has pressed stands until somebody lets it go, as any other, and a host's pause
+        until a host does.
         """
         for by_host in (True, False):
             let_go = EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Ana", by_host=by_host))
