@@ -15,12 +15,15 @@ const RULES = [
   ["practice", "Nothing is recorded: a practice room"],
 ];
 
+/** What newcomers do first, and nobody opens a room for by default. @param {Api.TaskOption} task */
+const isCourse = ({ name }) => name === COURSE;
+
 /**
  * Fills the card `new-room` with a form.
  * @param {Api.TaskOption[]} tasks
  */
 export function newRoom(tasks) {
-  const fields = inputs(tasks);
+  const fields = inputs(tasks.toSorted((one, other) => Number(isCourse(one)) - Number(isCourse(other))));
   const { task, arms, name, rate, episodes, rules } = fields;
   const picture = element("img", { alt: "", width: 384, height: 288 });
   const about = element("p", { class: "soft" });
@@ -37,7 +40,7 @@ export function newRoom(tasks) {
     arms.replaceChildren(...counts);
     arms.value = String(chosen.arms);
     arms.disabled = counts.length < 2;
-    rules.value = chosen.name === COURSE ? "practice" : "everybody";
+    rules.value = isCourse(chosen) ? "practice" : "everybody";
     showRules();
   }
 
