@@ -71,10 +71,14 @@ def visit(browser: Browser, platform: Platform, size: str = "wide", scheme: str 
         yield visit
 
 
+# What is no fault of a page: the driver's remark on software WebGL, when a screenshot is taken of it, and the browser's
+# own on a service that was not there for a moment on a busy machine. Pages ask again, and show it where it lasts.
+_NO_FAULTS = ("GL Driver Message", "status of 503")
+
+
 def listen(page: Page, noise: list[str]) -> None:
     def on_console(message: ConsoleMessage) -> None:
-        # The driver's remark on software WebGL, when a screenshot is taken of it, is not the page's.
-        if message.type in ("error", "warning") and "GL Driver Message" not in message.text:
+        if message.type in ("error", "warning") and not any(text in message.text for text in _NO_FAULTS):
             noise.append(message.text)
 
     page.on("console", on_console)
