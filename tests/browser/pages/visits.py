@@ -71,14 +71,18 @@ def visit(browser: Browser, platform: Platform, size: str = "wide", scheme: str 
         yield visit
 
 
-# What is no fault of a page: the driver's remark on software WebGL, when a screenshot is taken of it, and the browser's
-# own on a service that was not there for a moment on a busy machine. Pages ask again, and show it where it lasts.
-_NO_FAULTS = ("GL Driver Message", "status of 503")
+def _is_no_fault(message: ConsoleMessage) -> bool:
+    """The driver's remark on software WebGL, or the browser's on an offer that pages make again.
+
+    The first comes when a screenshot is taken, the second where a gateway was not there for a moment.
+    """
+    retried = "status of 503" in message.text and message.location["url"].endswith("/offer")
+    return retried or "GL Driver Message" in message.text
 
 
 def listen(page: Page, noise: list[str]) -> None:
     def on_console(message: ConsoleMessage) -> None:
-        if message.type in ("error", "warning") and not any(text in message.text for text in _NO_FAULTS):
+        if message.type in ("error", "warning") and not _is_no_fault(message):
             noise.append(message.text)
 
     page.on("console", on_console)

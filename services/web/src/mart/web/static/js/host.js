@@ -5,11 +5,12 @@ import { byId, keepChildren, setShown, setText } from "./dom.js";
 import { becomeHost } from "./host/host-api.js";
 import { hostedRoom } from "./host/hosted-room.js";
 import { followRooms } from "./live.js";
+import { pageMessage } from "./page-message.js";
 
 /** @import { Part } from "./dom.js" */
 
 const NAME_KEY = "mart.name";
-const LOST = "The connection to the server is lost; it comes back by itself.";
+const { say, attempt, showConnection } = pageMessage("page-message");
 
 const form = byId("enter", HTMLFormElement);
 const codeInput = byId("code", HTMLInputElement);
@@ -56,30 +57,4 @@ function show(rooms) {
   setShown(byId("no-room"), rooms.length === 0);
   keepChildren(byId("rooms"), rooms.map(({ room }) => room), cards, (room) => hostedRoom(room, attempt));
   for (const room of rooms) cards.get(room.room)?.update(room, opensRooms);
-}
-
-/**
- * Runs what a press asked for and shows its failure; true where it worked.
- * @param {() => unknown} action
- */
-async function attempt(action) {
-  say("");
-  try {
-    await action();
-    return true;
-  } catch (error) {
-    say(api.messageOf(error));
-    return false;
-  }
-}
-
-/** @param {boolean} connected */
-function showConnection(connected) {
-  if (!connected) say(LOST);
-  else if (byId("page-message").textContent === LOST) say("");
-}
-
-/** @param {string} text */
-function say(text) {
-  setText(byId("page-message"), text);
 }

@@ -7,6 +7,7 @@ import { keptText } from "./formatting.js";
 import { offerInvitation } from "./invite.js";
 import { followRooms } from "./live.js";
 import { newRoom } from "./new-room.js";
+import { pageMessage } from "./page-message.js";
 import { roomCard } from "./room-card.js";
 import { TryOffer } from "./try-offer.js";
 
@@ -17,7 +18,7 @@ const POLICIES_MS = 5000;
 const PATIENCE_MS = 4000;
 const ASK_AGAIN_MS = 300;
 const ENDED = "Your visit has ended. Join again to go on.";
-const LOST = "The connection to the server is lost; it comes back by itself.";
+const { say, attempt, showConnection } = pageMessage("lobby-message");
 
 const form = byId("join", HTMLFormElement);
 const nameInput = byId("name", HTMLInputElement);
@@ -199,33 +200,4 @@ async function tryIt() {
     for (const other of idle) await api.takeSeat(room.room, other.arm, "script");
   }
   location.assign(`/rooms/${room.room}/arms/${seat.arm}`);
-}
-
-/**
- * Runs what a press asked for and shows its failure; true where it worked.
- * @param {() => unknown} action
- */
-async function attempt(action) {
-  say("");
-  try {
-    await action();
-    return true;
-  } catch (error) {
-    say(api.messageOf(error));
-    return false;
-  }
-}
-
-/**
- * Called with every news of the rooms: what a press has failed at stays until the next press.
- * @param {boolean} connected
- */
-function showConnection(connected) {
-  if (!connected) say(LOST);
-  else if (byId("lobby-message").textContent === LOST) say("");
-}
-
-/** @param {string} text */
-function say(text) {
-  setText(byId("lobby-message"), text);
 }
