@@ -155,6 +155,12 @@ def test_time_that_was_not_kept_in_an_episode_makes_it_slower_after_it() -> None
     assert rate.change(end_s + FIRST_WAIT_S) is not None
 
 
+def test_some_seconds_in_which_something_else_was_started_say_nothing_about_the_machine() -> None:
+    rate = fast_rate()
+    end_s = tick(rate, tick(rate, 0.0, seconds=4.0, factor=0.5), seconds=10.0)
+    assert rate.change(end_s) is None
+
+
 def test_a_room_that_is_to_be_slow_keeps_its_rate() -> None:
     rate = AutomaticRate(CHEAP, 2, 0.0, pace=0.5, picture_s=0.002)
     rate.see_status(status(), 0.0)

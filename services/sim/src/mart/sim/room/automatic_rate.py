@@ -19,13 +19,13 @@ from mart.protocol.messages import (
 )
 from mart.sim.room.barrier import STALLED_AFTER_S
 from mart.sim.room.rate_choice import RateChoice, TickCost
+from mart.sim.room.time_kept import TimeKept
 
 # Of one seat without a graphics card, until seats have said what theirs take: 11.5 to 18 ms were measured.
 ASSUMED_PICTURE_S = 0.016
 LONGEST_PICTURE_S = 2.0  # that is believed
 LOOK_EVERY_S = 5.0  # in practice
 IDLE_S = 3.0  # with no arm in any hand; who lets go only to reach farther goes on at once
-_LEAST_S = 2.0  # of ticks, to say how well time was kept
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,7 @@ class AutomaticRate:
         self._is_fresh, self._held_s = False, float("-inf")
         self._look_s = now_s + LOOK_EVERY_S
         self._choice = RateChoice(self._cost(), self._own_rates_hz())
-        self._ticked_s: float | None = None
-        self._took_s, self._ticks = 0.0, 0
+        self._kept = TimeKept(STALLED_AFTER_S)
 
     @property
     def control_hz(self) -> float:
@@ -80,13 +79,10 @@ class AutomaticRate:
     def see_state(self, state: State, now_s: float) -> None:
         """Take that the room told a state now: after a tick, or after a reset, where nothing was due."""
         if not state.stamps.due_ns:
-            self._ticked_s = None
+            self._kept.interrupt()
             return
         self._is_fresh = False
-        if self._ticked_s is not None and now_s - self._ticked_s <= STALLED_AFTER_S:
-            self._took_s += now_s - self._ticked_s
-            self._ticks += 1
-        self._ticked_s = now_s
+        self._kept.ticked(now_s)
 
     def see_status(self, status: RoomStatus, now_s: float) -> None:
         """Take how the room stands now."""
@@ -125,7 +121,7 @@ class AutomaticRate:
         after_hz = self._choice.between_episodes(self._cost(), held, now_s, self._own_rates_hz())
         self._look_s = now_s + LOOK_EVERY_S
         self._is_fresh = False
-        self._forget_ticks()
+        self._kept.forget()
         if after_hz == before_hz:
             return None
         return f"The room now ticks {after_hz:g} times a second: {self._choice.why}."
@@ -145,12 +141,8 @@ class AutomaticRate:
 
     def _held_factor(self) -> float:
         """Return how much of its pace the room kept since it was looked at last; 1 where there is little to tell."""
-        if self._took_s < _LEAST_S:
-            return 1.0
-        return min(1.0, self._ticks / self.control_hz / self._pace / self._took_s)
-
-    def _forget_ticks(self) -> None:
-        self._ticked_s, self._took_s, self._ticks = None, 0.0, 0
+        ticks_per_s = self._kept.ticks_per_s()
+        return 1.0 if ticks_per_s is None else min(1.0, ticks_per_s / self.control_hz / self._pace)
 
     def _own_rates_hz(self) -> tuple[float, ...]:
         return (LEARNING_CONTROL_HZ,) if self._policies else ()
