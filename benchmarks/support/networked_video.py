@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
+import numpy as np
 from aiortc import rtcrtpsender
 from support.watching_page import SETTLE_S, Displayed, accept, offer_of, shown, watching_page
 
@@ -65,18 +66,24 @@ class _Orders:
 
 
 def show(
-    pictures: Sequence[Image], frames_per_s: float, network: Sequence[str], seconds: float, *, follows: bool
+    pictures: Sequence[Image],
+    frames_per_s: float,
+    network: Sequence[str],
+    seconds: float,
+    *,
+    follows: bool,
+    executable: Path | None = None,
 ) -> Displayed:
     """Show a browser these pictures again and again over a network, options of `netrelay run`, for so long.
 
-    Without options nothing is between. Where it does not follow, the receiver's reports change nothing. Raises
-    Unavailable where there is no TUN device.
+    Without options nothing is between. executable: what starts the browser there. Where it does not follow, the
+    receiver's reports change nothing. Raises Unavailable where there is no TUN device.
     """
     with contextlib.ExitStack() as stack:
         if not follows:
             for deaf in ("on_report", "on_estimate"):
                 stack.enter_context(mock.patch.object(RateControl, deaf))
-        inside = None
+        inside = executable
         if network:
             stack.enter_context(_network(network))
             inside = stack.enter_context(_chromium_inside())
@@ -120,9 +127,11 @@ async def _show(
             drawn_ms, (kbit_s, memory_mb) = await _send(
                 pictures, frames_per_s, SETTLE_S + seconds, peers, orders
             )
-        at_ms, delay_ms = await shown(page, drawn_ms)
+        pts = np.array(list(drawn_ms))
+        at_ms, delay_ms, shown_pts = await shown(page, drawn_ms)
         await peers.close()
-    return Displayed(at_ms, delay_ms, kbit_s, memory_mb)
+    ticks = (np.searchsorted(pts, shown_pts) % len(pictures)).tolist()
+    return Displayed(at_ms, delay_ms, kbit_s, memory_mb, ticks)
 
 
 async def _send(

@@ -6,6 +6,7 @@ async (showsAtOnce) => {
   peer.createDataChannel("status", { ordered: false, maxRetransmits: 0 });
   const video = document.createElement("video");
   Object.assign(video, { muted: true, autoplay: true });
+  Object.assign(video.style, { position: "fixed", top: 0, left: 0 });
   document.body.append(video);
   peer.ontrack = ({ track }) => (video.srcObject = new MediaStream([track]));
   window.shown = [];

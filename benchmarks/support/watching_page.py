@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,13 +21,15 @@ _WATCH = (Path(__file__).parent / "watch_video.js").read_text()
 class Displayed:
     """Hold when pictures were displayed, Unix time in ms, and how long after they were drawn.
 
-    kbit_s: that were encoded. memory_mb: of the sender at most, until the begin and until the end.
+    kbit_s: that were encoded. memory_mb: of the sender at most, until the begin and until the end. ticks: of each
+    picture, where that was looked for.
     """
 
     at_ms: np.ndarray[Any, np.dtype[np.float64]]
     delay_ms: np.ndarray[Any, np.dtype[np.float64]]
     kbit_s: float = 0.0
     memory_mb: tuple[float, float] = (0.0, 0.0)
+    ticks: Sequence[int] = ()
 
     def freezes(self, longer_ms: float = 200.0) -> int:
         """Count the gaps that are so much longer than the usual one."""
@@ -59,8 +61,10 @@ async def accept(page: Page, answer: str) -> None:
 
 async def shown(
     page: Page, drawn_ms: Mapping[int, float]
-) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
-    """Return when pictures were displayed and how long after they were drawn, in ms, the beginning left out.
+) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """Return when pictures were displayed, how long after they were drawn, in ms, and their time stamps.
+
+    The beginning is left out.
 
     drawn_ms: when each was drawn, by its RTP time stamp.
     """
@@ -68,4 +72,4 @@ async def shown(
     at_ms = np.array([at_ms for at_ms, _ in rows])
     delay_ms = np.array([at_ms - drawn_ms[pts] for at_ms, pts in rows])
     settled = at_ms > at_ms[0] + 1e3 * SETTLE_S if len(at_ms) else np.zeros(0, bool)
-    return at_ms[settled], delay_ms[settled]
+    return at_ms[settled], delay_ms[settled], np.array([pts for _, pts in rows], np.int64)[settled]
