@@ -45,7 +45,7 @@ def screen() -> Iterator[tuple[str, Path]]:
 
 @contextlib.contextmanager
 def chromium_on(display: str) -> Iterator[Path]:
-    """Yield what starts a Chromium whose page fills this display, whatever it is told of being headless."""
+    """Yield what starts a Chromium at the left of this display, whatever it is told of being headless."""
     with tempfile.TemporaryDirectory() as folder:
         starter = Path(folder) / "chromium"
         starter.write_text(
@@ -53,14 +53,14 @@ def chromium_on(display: str) -> Iterator[Path]:
             f"export DISPLAY={display}\n"
             "args=()\n"
             'for one in "$@"; do [[ $one == --headless* ]] || args+=("$one"); done\n'
-            f'exec {chromium_path()} --kiosk --window-position=0,0 --force-device-scale-factor=1 "${{args[@]}}"\n'
+            f'exec {chromium_path()} --window-position=0,0 --force-device-scale-factor=1 "${{args[@]}}"\n'
         )
         starter.chmod(0o755)
         yield starter
 
 
 class PixelWatch:
-    """Note when another tick's picture stands at the top left of a framebuffer, on a thread of its own."""
+    """Note when another tick's picture stands at the left of a framebuffer, on a thread of its own."""
 
     def __init__(self, pixels: Path) -> None:
         self._pixels = pixels
@@ -79,15 +79,20 @@ class PixelWatch:
     def _watch(self) -> None:
         with self._pixels.open("rb") as file, mmap.mmap(file.fileno(), 0, prot=mmap.PROT_READ) as dump:
             header_size, *fields = struct.unpack(">25I", dump[:100])
-            bytes_per_line, colors = fields[11], fields[18]
+            height_px, bytes_per_line, colors = fields[4], fields[11], fields[18]
             begin = header_size + _COLOR_BYTES * colors
-            row = begin + (tick_code.HEIGHT_PX - tick_code.SQUARE_PX // 2) * bytes_per_line
-            tick: int | None = None
+            rows = range(begin, begin + height_px * bytes_per_line, bytes_per_line)
+            row, tick = None, None
             while not self._ended.is_set():
-                line = np.frombuffer(dump, np.uint8, 4 * tick_code.WIDTH_PX, row).reshape(1, -1, 4)[..., 1]
-                now = tick_code.read(np.repeat(line, tick_code.HEIGHT_PX, axis=0))
-                if now is not None and now != tick:
+                if row is None:  # the page is somewhere below the browser's own bars
+                    row = next((one for one in rows[:: tick_code.SQUARE_PX // 2] if _tick(dump, one)), None)
+                elif (now := _tick(dump, row)) is not None and now != tick:
                     tick = now
                     self.seen.append((clock.wall_ns() * 1e-6, tick))
-                del line
                 time.sleep(_LOOK_EVERY_S)
+
+
+def _tick(dump: mmap.mmap, at: int) -> int | None:
+    """Return the tick of the strip that this row of pixels is in; None where it is in none."""
+    green = np.frombuffer(dump[at : at + 4 * tick_code.WIDTH_PX], np.uint8).reshape(1, -1, 4)[..., 1]
+    return tick_code.read(np.broadcast_to(green, (tick_code.HEIGHT_PX, tick_code.WIDTH_PX)))
