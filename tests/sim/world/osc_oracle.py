@@ -6,12 +6,13 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.protocol.arms.robot_file import Gains
 from mart.sim.world import osc
 
 Array = NDArray[np.float64]
 
 
-def torques(model: mujoco.MjModel, data: mujoco.MjData, arm: str, block: Array, gains: osc.Gains) -> Array:
+def torques(model: mujoco.MjModel, data: mujoco.MjData, arm: str, block: Array, gains: Gains) -> Array:
     """Joint torques, shape (7,), for an arm whose goal is in `block`, its part of userdata; before clipping.
 
     `data` must be complete up to qfrc_bias and qfrc_passive (mj_forward).
@@ -47,7 +48,7 @@ def mass_matrix(model: mujoco.MjModel, data: mujoco.MjData) -> Array:
     return full
 
 
-def pose_error(data: mujoco.MjData, site: int, block: Array, gains: osc.Gains) -> Array:
+def pose_error(data: mujoco.MjData, site: int, block: Array, gains: Gains) -> Array:
     turn = block[osc.GOAL_ROTATION].reshape(3, 3) @ data.site_xmat[site].reshape(3, 3).T
     quaternion, rotation = np.zeros(4), np.zeros(3)
     mujoco.mju_mat2Quat(quaternion, turn.flatten())
@@ -64,7 +65,7 @@ def pivots(mobility: Array) -> Array:
     return np.diag(np.linalg.cholesky(mobility[np.ix_(order, order)])) ** 2
 
 
-def _damping(mobility: Array, gains: osc.Gains) -> Array:
+def _damping(mobility: Array, gains: Gains) -> Array:
     regular = np.repeat([gains.regular_mobility_position, gains.regular_mobility_orientation], 3)
     lost = max(0.0, float(np.max(1 - pivots(mobility) / np.roll(regular, 3))))
     return lost**2 * regular

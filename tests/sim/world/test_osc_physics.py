@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from mart.protocol.arms.robot_file import Gains
 from mart.protocol.pose import Pose
 from mart.sim.experts.hand_motion import difference
 from mart.sim.world import World, osc
@@ -16,7 +17,7 @@ from tests.sim.world import osc_oracle
 
 ARM = "arm0"
 STEP = np.array([0.05, 0.05, 0.05, 0.2, 0.2, 0.2])  # metres, radians
-GAINS = osc.Gains()
+GAINS = Gains()
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import contextlib
 import json
 import logging
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ import click
 from mart.platform.run.plan import DEFAULT_TASK
 from mart.protocol import clock
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
+from mart.runtime.arm_option import arm_kinds_option
 from mart.runtime.cli import cli, json_option, print_result
 from mart.runtime.progress import counted, progress
 from mart.runtime.rate_option import room_rate_option
@@ -41,6 +42,7 @@ _CONTROL_HZ_OPTION = click.option(
 @click.command()
 @_TASK_OPTION
 @click.option("--room", default="room-1", show_default=True, help="Id of the room.")
+@arm_kinds_option
 @room_rate_option
 @click.option(
     "--episodes",
@@ -64,6 +66,7 @@ def run(
     *,
     task: str,
     room: str,
+    arm_kinds: Mapping[str, str],
     control_hz: float | str | None,
     episodes: int | None,
     practice: bool,
@@ -84,11 +87,11 @@ def run(
     from mart.platform.run.running import running_platform
     from mart.platform.run.turn_server import relay_beside, with_relay
     from mart.protocol.practice import require_practice_alone
-    from mart.protocol.tasks import get_task
+    from mart.protocol.tasks import arm_kinds_of
     from mart.runtime.service import stop_requested
     from mart.runtime.settings import Settings
 
-    get_task(task)
+    arm_kinds_of(task, None, arm_kinds)
     require_practice_alone(practice=practice, course_required=course_required, episodes=episodes or 0)
     settings = Settings()
     given_hz = control_hz if isinstance(control_hz, float) else None
@@ -104,6 +107,7 @@ def run(
         episodes=episodes,
         practice=practice,
         course_required=course_required,
+        arm_kinds=arm_kinds,
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)
@@ -176,6 +180,7 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
 
 @click.command()
 @_TASK_OPTION
+@arm_kinds_option
 @click.option("--episodes", default=1, show_default=True, type=click.IntRange(1, 100_000))
 @click.option(
     "--operators",
@@ -194,6 +199,7 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
 def collect(
     *,
     task: str,
+    arm_kinds: Mapping[str, str],
     episodes: int,
     operators: str | None,
     skill: str,
@@ -217,9 +223,13 @@ def collect(
         collect_in_lockstep,
     )
     from mart.platform.collect.operators import parse_operators
+    from mart.protocol.tasks import arm_kinds_of
 
+    arm_kinds_of(task, None, arm_kinds)
     seated = parse_operators(task, operators)
-    spec = CollectionSpec(task, episodes, skill, seed, control_hz, out, seated, time_limit)
+    spec = CollectionSpec(
+        task, episodes, skill, seed, control_hz, out, seated, time_limit, arm_kinds=arm_kinds
+    )
     _print_collected(spec, (collect_in_lockstep if lockstep else collect_episodes)(spec), as_json)
 
 

@@ -13,6 +13,7 @@ from mart.protocol import clock, keys
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.messages import Event, RoomStatus
 from mart.protocol.practice import require_practice_alone
+from mart.protocol.tasks import arm_kinds_of
 from mart.protocol.vocabulary import OperatorKind, ServiceKind
 from mart.runtime.bus import Bus, Closable
 from mart.runtime.decoding_subscriber import DecodingSubscriber
@@ -56,7 +57,9 @@ def serve_room(settings: SimSettings) -> None:
         lockstep=settings.lockstep,
     )
     skill = get_skill(settings.skill) if settings.skill else None
-    world = World.build(settings.task, settings.control_hz or DEFAULT_CONTROL_HZ, settings.arms)
+    world = World.build(
+        settings.task, settings.control_hz or DEFAULT_CONTROL_HZ, settings.arms, kinds=_arm_kinds(settings)
+    )
     if settings.lockstep:
         serve_unpaced(settings, world, skill or get_skill(DEFAULT_SKILL))
     else:
@@ -203,7 +206,11 @@ def _looks(settings: SimSettings) -> World | None:
     if settings.quality == "fast":
         return None
     hz = settings.control_hz or DEFAULT_CONTROL_HZ  # shown, never stepped
-    return World.build(settings.task, hz, settings.arms, detail="detailed")
+    return World.build(settings.task, hz, settings.arms, "detailed", _arm_kinds(settings))
+
+
+def _arm_kinds(settings: SimSettings) -> tuple[str, ...]:
+    return arm_kinds_of(settings.task, settings.arms, settings.arm_kinds)
 
 
 def _archive(settings: SimSettings) -> DivergenceArchive:
