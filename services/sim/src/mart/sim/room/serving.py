@@ -38,6 +38,7 @@ from mart.sim.room.work_queue import WorkQueue
 from mart.sim.settings import SimSettings
 from mart.sim.world import World
 from mart.sim.world.divergence import DivergenceArchive
+from mart.sim.world.reach import require_reach
 
 _log = logging.getLogger(__name__)
 
@@ -48,7 +49,7 @@ def serve_room(settings: SimSettings) -> None:
     """Build the world of `settings` and serve its room.
 
     Raises what building a world raises, NotFound for an unknown skill, and InvalidInput for a practice room that is to
-    count or to run by itself.
+    count or to run by itself, or for arms that do not reach what the task asks of them.
     """
     require_practice_alone(
         practice=settings.practice,
@@ -60,6 +61,7 @@ def serve_room(settings: SimSettings) -> None:
     world = World.build(
         settings.task, settings.control_hz or DEFAULT_CONTROL_HZ, settings.arms, kinds=_arm_kinds(settings)
     )
+    require_reach(world)
     if settings.lockstep:
         serve_unpaced(settings, world, skill or get_skill(DEFAULT_SKILL))
     else:

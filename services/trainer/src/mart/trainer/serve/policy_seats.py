@@ -90,6 +90,11 @@ def require_fit(policy: Policy, task: Task) -> None:
     """Raise InvalidInput where the policy was not made for such a room, whatever its rate."""
     if policy.task != task.name:
         raise InvalidInput(f"It was trained for {policy.task} and the room's task is {task.name}.")
+    if policy.arm_kinds != task.arm_kinds:
+        raise InvalidInput(
+            f"It was trained with {', '.join(policy.arm_kinds) or 'Pandas'} (arm_kinds) and the room has "
+            f"{', '.join(task.arm_kinds) or 'Pandas'}: open a room with those arms, or train on episodes of these."
+        )
     unknown = sorted(set(policy.needs) - {observation.name for observation in task.observations})
     if unknown:
         raise InvalidInput(
