@@ -46,8 +46,8 @@ def show(name: str, as_json: bool) -> None:
             f"joint {number}  {link.range_rad[0]:7.3f} to {link.range_rad[1]:6.3f} rad  {link.torque_nm:5.0f} Nm"
             for number, link in enumerate(kind.links, start=1)
         ),
-        f"workspace  {space.radius_min_m:.2f} m from the axis … {space.reach_m:.2f} m from {space.reach_center_z_m:.2f} m up",
-        f"           {space.z_min_m:.2f} to {space.z_max_m:.2f} m high, tilted by {space.tilt_max_rad:.2f} rad at most",
+        f"workspace  {space.radius_min_m:.2f} m from the axis … {space.reach_m:.2f} m from a point on it,",
+        f"           {space.reach_center_z_m:.2f} m up; {space.z_min_m:.2f} to {space.z_max_m:.2f} m high",
         f"a tick     {100 * kind.limits.step_m:.0f} cm, {kind.limits.step_rad:.2f} rad ahead at most",
         f"base       {100 * kind.placement.forward_m:+.0f} cm forward, {100 * kind.placement.up_m:+.0f} cm up",
     ]
