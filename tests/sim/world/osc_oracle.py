@@ -19,7 +19,8 @@ def torques(model: mujoco.MjModel, data: mujoco.MjData, arm: str, block: Array, 
     Of a scene of Pandas alone. `data` must be complete up to qfrc_bias and qfrc_passive (mj_forward).
     """
     mobility = _mobility(model, data, arm, 7)
-    return _torques(model, data, arm, block, gains, mobility + np.diag(_damping(mobility, gains)), 7)
+    inertia = np.linalg.inv(mobility + np.diag(_damping(mobility, gains)))
+    return _torques(model, data, arm, block, gains=gains, inertia=inertia, count=7)
 
 
 def torques_of_any_arm(
@@ -32,7 +33,10 @@ def torques_of_any_arm(
     values, vectors = np.linalg.eigh(mobility / np.outer(scale, scale))
     lost = np.maximum(1.0 - values, 0.0)
     damped = mobility + np.outer(scale, scale) * (vectors * lost**2 @ vectors.T)
-    return _torques(model, data, arm.name, block, gains, damped, joints), bool(lost.any())
+    inertia = np.linalg.inv(damped)
+    return _torques(model, data, arm.name, block, gains=gains, inertia=inertia, count=joints), bool(
+        lost.any()
+    )
 
 
 def _mobility(model: mujoco.MjModel, data: mujoco.MjData, arm: str, joints: int) -> Array:
@@ -48,8 +52,9 @@ def _torques(
     data: mujoco.MjData,
     arm: str,
     block: Array,
+    *,
     gains: Gains,
-    damped_mobility: Array,
+    inertia: Array,
     count: int,
 ) -> Array:
     joint = model.joint(f"{arm}/joint1")
@@ -57,7 +62,6 @@ def _torques(
     joints = data.qpos[int(joint.qposadr[0]) :][:count]
     speeds = data.qvel[dofs]
     jacobian, mass = tool_jacobian(model, data, arm)[:, dofs], mass_matrix(model, data)[dofs, dofs]
-    inertia = np.linalg.inv(damped_mobility)
     kp = np.repeat([gains.kp_position, gains.kp_orientation], 3)
     posture_kp = gains.kp_posture
     pull = posture_kp * (block[osc.POSTURE][:count] - joints) - 2 * np.sqrt(posture_kp) * speeds
