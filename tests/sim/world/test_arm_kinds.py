@@ -63,7 +63,7 @@ def test_uneven_rows_follow_the_data() -> None:
     for chosen in ([0, 2, 5], [0, 2, 4], [3], []):
         view = ChosenRows(rows, chosen)
         rows += 1.0
-        assert np.array_equal(view.now(), rows[:, chosen, :])
+        assert np.array_equal(view.read(), rows[:, chosen, :])
 
 
 @pytest.mark.parametrize("spread_rad", [0.1, 1.5], ids=["at work", "near singularities"])

@@ -22,18 +22,18 @@ _GRIPPERS = get_args(GripperKind)
 
 
 def arms_folder() -> Path:
-    """Where people's own robot files are: MART_ARMS_DIR, or data/arms."""
+    """Return where people's own robot files are: MART_ARMS_DIR, or data/arms."""
     return Path(os.environ.get("MART_ARMS_DIR") or Path("data", "arms"))
 
 
 def arm_kind_names() -> tuple[str, ...]:
-    """The kinds that there are: those that come with MART, the Panda first, then people's own."""
+    """Return the kinds that there are: those that come with MART, the Panda first, then people's own."""
     shipped = sorted(_names_in(_SHIPPED), key=lambda name: (name != "panda", name))
     return (*shipped, *sorted(_names_in(arms_folder()) - set(shipped)))
 
 
 def arm_kind(name: str) -> ArmKind:
-    """The kind called `name`; "ur5e+pad" is the kind ur5e with that gripper.
+    """Return the kind called `name`; "ur5e+pad" is the kind ur5e with that gripper.
 
     Raises NotFound for an unknown name, InvalidInput where its file cannot be used.
     """

@@ -41,7 +41,7 @@ class ChosenRows:
         self._views = [array[..., row, :] for row in rows]
         self._none = array[..., :0, :]
 
-    def now(self) -> Array:
+    def read(self) -> Array:
         """Return the rows as they are now, shape (..., chosen, n)."""
         if self._view is not None:
             return self._view

@@ -41,13 +41,13 @@ class MeasuredArms:
 
     def tools_in_base(self) -> tuple[Array, Array]:
         """Return positions, shape (..., arms, 3), and quaternions wxyz, shape (..., arms, 4), w >= 0."""
-        positions = into_frame(self._axes, self._tool_positions.now() - self._positions_base_in_world)
-        quaternions = into_frame(self._hands_to_tools, self._hand_quaternions.now())
+        positions = into_frame(self._axes, self._tool_positions.read() - self._positions_base_in_world)
+        quaternions = into_frame(self._hands_to_tools, self._hand_quaternions.read())
         return positions, quaternions * np.copysign(1.0, quaternions[..., :1])
 
     def grippers(self) -> Array:
         """Return how far each is closed, 0 open … 1 closed, shape (..., arms); 0 of a tool without fingers."""
-        left, right = (fingers.now()[..., 0] for fingers in self._fingers)
+        left, right = (fingers.read()[..., 0] for fingers in self._fingers)
         closed: Array = np.minimum(np.maximum(1.0 - (left + right) / (2 * STROKE_M), 0.0), 1.0)
         if self._with_fingers.all():
             return closed
