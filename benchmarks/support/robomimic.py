@@ -55,7 +55,7 @@ class RobomimicPolicy:
 
     def __init__(self, peer: Peer, task: Task) -> None:
         self._peer = peer
-        self.task, self.arms = task.name, task.arm_names
+        self.task, self.arms, self.arm_kinds = task.name, task.arm_names, task.arm_kinds
         self.needs = tuple(observation.name for observation in task.observations)
         self.version: str = peer.answer()["version"]
 

@@ -27,6 +27,7 @@ setup(
         Extension(
             "mart.sim.world._osc",
             sources=["src/mart/sim/world/osc.c"],
+            depends=["src/mart/sim/world/small_matrices.h"],
             include_dirs=[str(Path(mujoco.origin).parent / "include")],
             libraries=["m"],
             extra_compile_args=FLAGS,

@@ -88,6 +88,7 @@ class ComparableEpisode:
     task: str | None = "lift"
     control_hz: float | None = 20.0
     arms: tuple[str, ...] = ("arm0", "arm1")
+    arm_kinds: tuple[str, ...] = ()
 
 
 @pytest.mark.parametrize(
@@ -96,6 +97,10 @@ class ComparableEpisode:
         (ComparableEpisode(task="wipe"), "several tasks were given: lift, wipe; split them"),
         (ComparableEpisode(control_hz=30.0), "several control rates were given: 20 Hz, 30 Hz"),
         (ComparableEpisode(arms=("arm0",)), "several sets of arms were given: arm0, arm0 and arm1"),
+        (
+            ComparableEpisode(arm_kinds=("panda", "ur5e")),
+            r"kinds of arms \(arm_kinds\) were given: panda and panda, panda and ur5e; split them",
+        ),
     ],
 )
 def test_what_is_learned_from_together_is_alike(other: ComparableEpisode, words: str) -> None:

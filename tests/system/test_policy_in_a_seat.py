@@ -49,7 +49,7 @@ from tests.trainer import recorded
 ROOM, MINE, OTHER = "room-1", "arm0", "arm1"
 TASK = recorded.TASK
 WAIT_S = 40.0
-LIMIT_M = get_task(TASK).limits.step_m
+LIMIT_M = get_task(TASK).arms[0].kind.limits.step_m
 
 
 @pytest.fixture(scope="module")

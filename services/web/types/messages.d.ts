@@ -150,6 +150,7 @@ declare namespace Messages {
     job: string;
     evaluation?: Evaluation;
     promoted_ns: string;
+    arm_kinds: string[];
   }
 
   interface RecordedEpisode {

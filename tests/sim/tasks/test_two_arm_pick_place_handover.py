@@ -171,7 +171,7 @@ def test_arm_0_reaches_no_bin_and_arm_1_no_container(world: World) -> None:
     world.reset(0)
     for arm, box, nearest_m in (("arm0", "bin", -0.165), ("arm1", "container", 0.155)):
         near = tool_over(world, arm, pose_of(world, box).transform_points((nearest_m, 0.0, 0.05)))
-        assert world.task.workspace.clamp(near).distance_to(near)[0] > 0.1
+        assert world.task.arm(arm).kind.workspace.clamp(near).distance_to(near)[0] > 0.1
 
 
 @pytest.mark.slow

@@ -184,7 +184,7 @@ def test_neither_arm_reaches_the_other_s_knob_or_socket(world: World) -> None:
     world.reset(0)
     for arm, other in (("arm0", "arm1"), ("arm1", "arm0")):
         knob = tool_over(world, arm, pose_of(world, "tabletop").transform_points(KNOBS[other]))
-        assert world.task.workspace.clamp(knob).distance_to(knob)[0] > 0.1
+        assert world.task.arm(arm).kind.workspace.clamp(knob).distance_to(knob)[0] > 0.1
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from mart.protocol.arms.robot_file import Gains
 from mart.protocol.errors import Unavailable
 from mart.protocol.pose import Pose
 from mart.sim.world import World, osc
@@ -44,7 +45,7 @@ def test_c_and_numpy_agree(world: World, spread_rad: float) -> None:
         shaken(world, random, spread_rad)
         mujoco.mj_forward(world.model, world.data)
         for arm, block in zip(world.arms, blocks(world), strict=True):
-            wanted = osc_oracle.torques(world.model, world.data, arm, block, osc.Gains())
+            wanted = osc_oracle.torques(world.model, world.data, arm, block, Gains())
             first = world.model.actuator(f"{arm}/torque1").id
             got = world.data.ctrl[first : first + 7]
             assert np.abs(got - wanted).max() <= 1e-9 * np.abs(wanted).max()
@@ -69,7 +70,7 @@ def test_a_new_goal_is_the_measured_pose_moved_along_the_base_axes(world: World)
 
 
 def test_the_work_space_is_free_of_extra_damping(world: World) -> None:
-    gains = osc.Gains()
+    gains = Gains()
     for seed in range(30):
         world.reset(seed)
         for arm in world.arms:

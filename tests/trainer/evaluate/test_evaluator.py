@@ -45,6 +45,7 @@ class Scripted:
 
     actions: Sequence[Array]
     arms: tuple[str, ...] = ("arm0", "arm1")
+    arm_kinds: tuple[str, ...] = ()
     control_hz: float = 20.0
     task: str = TASK
     needs: tuple[str, ...] = ("arm0/gripper",)

@@ -75,6 +75,7 @@ class Copies(Policy):
     task = TASK
     control_hz = 20.0
     arms = ("arm0", "arm1")
+    arm_kinds = ()
     needs = ("arm1/gripper",)
 
     def begin(self, worlds: int, seed: int) -> None:

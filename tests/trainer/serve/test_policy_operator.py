@@ -93,7 +93,9 @@ def applied(state: State, arm: str) -> list[float]:
 def test_an_action_comes_out_of_the_sim_as_it_went_in(world: World, seed: int) -> None:
     world.reset(seed)
     action = one_action(np.random.default_rng(seed))
-    target, gripper = target_from_action(world.tool_pose_in_base("arm1"), action, world.task.limits)
+    target, gripper = target_from_action(
+        world.tool_pose_in_base("arm1"), action, world.task.arm("arm1").kind.limits
+    )
     np.testing.assert_allclose(world.action_for("arm1", target, gripper), action, atol=1e-9)
 
 

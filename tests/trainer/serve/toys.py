@@ -26,6 +26,7 @@ class Wanderer:
         hz: float = 20.0,
     ) -> None:
         self.task, self.control_hz, self.arms, self._joint = task, hz, arms, joint
+        self.arm_kinds: tuple[str, ...] = ()
         self.needs = tuple(f"{arm}/tool_position_in_base" for arm in arms)
         self.given: list[Array] = []
         self.seeds: list[int] = []

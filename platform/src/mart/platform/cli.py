@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 import contextlib
-import json
-import logging
 import sys
-from collections.abc import Iterator
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from mart.platform.run.plan import DEFAULT_TASK
-from mart.protocol import clock
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
+from mart.runtime.arm_option import arm_kinds_option
 from mart.runtime.cli import cli, json_option, print_result
-from mart.runtime.progress import counted, progress
 from mart.runtime.rate_option import room_rate_option
 
 if TYPE_CHECKING:
-    from mart.platform.collect.collection import CollectionSpec
-    from mart.platform.collect.saved_episodes import CollectedEpisode
     from mart.platform.run.running import Platform
 
 _SKILLS = click.Choice(["expert", "average", "novice"])
@@ -41,6 +36,7 @@ _CONTROL_HZ_OPTION = click.option(
 @click.command()
 @_TASK_OPTION
 @click.option("--room", default="room-1", show_default=True, help="Id of the room.")
+@arm_kinds_option
 @room_rate_option
 @click.option(
     "--episodes",
@@ -64,6 +60,7 @@ def run(
     *,
     task: str,
     room: str,
+    arm_kinds: Mapping[str, str],
     control_hz: float | str | None,
     episodes: int | None,
     practice: bool,
@@ -84,11 +81,11 @@ def run(
     from mart.platform.run.running import running_platform
     from mart.platform.run.turn_server import relay_beside, with_relay
     from mart.protocol.practice import require_practice_alone
-    from mart.protocol.tasks import get_task
+    from mart.protocol.tasks import arm_kinds_of
     from mart.runtime.service import stop_requested
     from mart.runtime.settings import Settings
 
-    get_task(task)
+    arm_kinds_of(task, None, arm_kinds)
     require_practice_alone(practice=practice, course_required=course_required, episodes=episodes or 0)
     settings = Settings()
     given_hz = control_hz if isinstance(control_hz, float) else None
@@ -104,6 +101,7 @@ def run(
         episodes=episodes,
         practice=practice,
         course_required=course_required,
+        arm_kinds=arm_kinds,
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)
@@ -168,14 +166,16 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
         collect_episodes,
     )
     from mart.platform.collect.operators import parse_operators
+    from mart.platform.collect.printing import print_collected
 
     seated = parse_operators(task, None)
     spec = CollectionSpec(task, episodes, "expert", seed, control_hz, out, seated, browsers=True)
-    _print_collected(spec, collect_episodes(spec), as_json)
+    print_collected(spec, collect_episodes(spec), as_json)
 
 
 @click.command()
 @_TASK_OPTION
+@arm_kinds_option
 @click.option("--episodes", default=1, show_default=True, type=click.IntRange(1, 100_000))
 @click.option(
     "--operators",
@@ -194,6 +194,7 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
 def collect(
     *,
     task: str,
+    arm_kinds: Mapping[str, str],
     episodes: int,
     operators: str | None,
     skill: str,
@@ -217,10 +218,15 @@ def collect(
         collect_in_lockstep,
     )
     from mart.platform.collect.operators import parse_operators
+    from mart.platform.collect.printing import print_collected
+    from mart.protocol.tasks import arm_kinds_of
 
+    arm_kinds_of(task, None, arm_kinds)
     seated = parse_operators(task, operators)
-    spec = CollectionSpec(task, episodes, skill, seed, control_hz, out, seated, time_limit)
-    _print_collected(spec, (collect_in_lockstep if lockstep else collect_episodes)(spec), as_json)
+    spec = CollectionSpec(
+        task, episodes, skill, seed, control_hz, out, seated, time_limit, arm_kinds=arm_kinds
+    )
+    print_collected(spec, (collect_in_lockstep if lockstep else collect_episodes)(spec), as_json)
 
 
 @click.command()
@@ -273,27 +279,3 @@ def doctor(as_json: bool) -> None:
     ok = all(finding.ok for finding in findings)
     print_result({"ok": ok, "layers": [finding.as_json() for finding in findings]}, "\n".join(lines), as_json)
     click.get_current_context().exit(0 if ok else 1)
-
-
-def _print_collected(spec: CollectionSpec, episodes: Iterator[CollectedEpisode], as_json: bool) -> None:
-    """Each episode as it is saved, then the summary: for people on standard error, with --json as the last line.
-
-    An episode is a line of JSON, and on a terminal without --json a line for people, with a bar below.
-    """
-    from mart.platform.collect.summary import CollectionSummary
-
-    logging.getLogger("httpx").setLevel(logging.WARNING)
-    summary = CollectionSummary(clock.monotonic_s())
-    for_people = sys.stdout.isatty() and not as_json
-    with progress("Episodes", spec.episodes, as_json=as_json) as shown:
-        for episode in counted(episodes, shown):
-            summary.add(episode)
-            path = str(spec.out / episode.path)
-            shown.say(
-                episode.in_words(path) if for_people else json.dumps({**episode.as_json(), "path": path})
-            )
-    told = summary.as_json(clock.monotonic_s())
-    if as_json:
-        click.echo(json.dumps(told))
-    else:
-        click.echo(f"{summary.in_words(told)} They are in {spec.out / 'episodes'}.", err=True)

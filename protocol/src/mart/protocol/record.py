@@ -45,10 +45,15 @@ class Record(BaseModel):
     ] = {}  # fields that are maps → the key of an entry, {} for what it is of
 
     def to_strings(self) -> dict[str, str]:
-        plain = {n: _text(value) for n, value in self if value is not None and n not in self._MAPS}
+        plain = {n: _text(value) for n, value in self if self._says(n, value) and n not in self._MAPS}
         for name, key in self._MAPS.items():
             plain |= {key.format(of): _text(value) for of, value in getattr(self, name).items()}
         return plain
+
+    @classmethod
+    def _says(cls, name: str, value: object) -> bool:
+        """Whether a value is written; no names are as good as an absent field that says so."""
+        return value is not None and not (value == () == cls.model_fields[name].default)
 
     @model_validator(mode="before")
     @classmethod

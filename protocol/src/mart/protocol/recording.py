@@ -12,10 +12,11 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import (
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     field_validator,
@@ -56,6 +57,13 @@ def video_topic(camera: str) -> str:
     return f"/view/{camera}/video"
 
 
+def _split(value: object) -> object:
+    return tuple(filter(None, value.split(","))) if isinstance(value, str) else value
+
+
+Names = Annotated[tuple[str, ...], BeforeValidator(_split)]  # in the file with commas between them
+
+
 class EpisodeRecord(Record):
     """What was recorded. `ticks` counts the recorded states after the first one."""
 
@@ -65,7 +73,8 @@ class EpisodeRecord(Record):
     number: Count
     task: str | None = None
     control_hz: ControlHz | None = None
-    arms: tuple[str, ...]
+    arms: Names
+    arm_kinds: Names = ()  # one for each arm; none: all are Pandas
     seed: Seed | None = None
     mode: str | None = None  # live (paced) or lockstep (as fast as the machine allowed; no video)
     skill: str | None = None  # of the scripts that drove
@@ -91,11 +100,6 @@ class EpisodeRecord(Record):
     def _known(cls, outcome: str) -> str:
         return EpisodeOutcome(outcome).value
 
-    @field_validator("arms", mode="before")
-    @classmethod
-    def _split(cls, value: object) -> object:
-        return tuple(filter(None, value.split(","))) if isinstance(value, str) else value
-
 
 class RoomRecord(Record):
     """Tell of what room the file is: written when it is opened, so that a file that was cut short still says it.
@@ -111,6 +115,7 @@ class RoomRecord(Record):
     control_hz: ControlHz | None = None
     model_sha256: str | None = None
     mujoco_version: str | None = None
+    arm_kinds: Names = ()
     processor: str | None = None
     libm: str | None = None
     mujoco_build: str | None = None

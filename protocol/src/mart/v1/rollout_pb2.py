@@ -26,7 +26,7 @@ from mart.v1 import room_pb2 as mart_dot_v1_dot_room__pb2
 from mart.v1 import state_pb2 as mart_dot_v1_dot_state__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x15mart/v1/rollout.proto\x12\x07mart.v1\x1a\x12mart/v1/room.proto\x1a\x13mart/v1/state.proto\"\xed\x06\n\x0eRolloutRequest\x12.\n\x05reset\x18\x01 \x01(\x0b\x32\x1d.mart.v1.RolloutRequest.ResetH\x00\x12,\n\x04step\x18\x02 \x01(\x0b\x32\x1c.mart.v1.RolloutRequest.StepH\x00\x12.\n\x05\x63lose\x18\x03 \x01(\x0b\x32\x1d.mart.v1.RolloutRequest.CloseH\x00\x12\x38\n\nresimulate\x18\x04 \x01(\x0b\x32\".mart.v1.RolloutRequest.ResimulateH\x00\x12\x34\n\x08\x64\x65scribe\x18\x05 \x01(\x0b\x32 .mart.v1.RolloutRequest.DescribeH\x00\x12=\n\rcompare_ticks\x18\x06 \x01(\x0b\x32$.mart.v1.RolloutRequest.CompareTicksH\x00\x1a\x62\n\x05Reset\x12\x0c\n\x04task\x18\x01 \x01(\t\x12\x12\n\ncontrol_hz\x18\x02 \x01(\x01\x12\x0c\n\x04\x61rms\x18\x03 \x01(\r\x12\r\n\x05seeds\x18\x04 \x03(\x04\x12\x1a\n\x12integration_states\x18\x05 \x01(\x08\x1aI\n\x04Step\x12\x0f\n\x07session\x18\x01 \x01(\t\x12\x0f\n\x07\x61\x63tions\x18\x02 \x01(\x0c\x12\x0f\n\x07running\x18\x03 \x01(\x0c\x12\x0e\n\x06number\x18\x04 \x01(\r\x1a\x18\n\x05\x43lose\x12\x0f\n\x07session\x18\x01 \x01(\t\x1a\x88\x01\n\nResimulate\x12\x14\n\x0cmodel_sha256\x18\x01 \x01(\t\x12\x0c\n\x04task\x18\x02 \x01(\t\x12\x12\n\ncontrol_hz\x18\x03 \x01(\x01\x12\x0c\n\x04\x61rms\x18\x04 \x01(\r\x12\x13\n\x0b\x66irst_state\x18\x05 \x01(\x0c\x12\x0f\n\x07\x61\x63tions\x18\x06 \x01(\x0c\x12\x0e\n\x06native\x18\x07 \x01(\x08\x1a\x85\x01\n\x0c\x43ompareTicks\x12\x14\n\x0cmodel_sha256\x18\x01 \x01(\t\x12\x0c\n\x04task\x18\x02 \x01(\t\x12\x12\n\ncontrol_hz\x18\x03 \x01(\x01\x12\x0c\n\x04\x61rms\x18\x04 \x01(\r\x12\x0e\n\x06states\x18\x05 \x01(\x0c\x12\x0f\n\x07\x61\x63tions\x18\x06 \x01(\x0c\x12\x0e\n\x06native\x18\x07 \x01(\x08\x1a:\n\x08\x44\x65scribe\x12\x0c\n\x04task\x18\x01 \x01(\t\x12\x12\n\ncontrol_hz\x18\x02 \x01(\x01\x12\x0c\n\x04\x61rms\x18\x03 \x01(\rB\x06\n\x04what\"E\n\x0fStateDifference\x12\r\n\x05group\x18\x01 \x01(\t\x12\x0f\n\x07largest\x18\x02 \x01(\x01\x12\x12\n\ntransition\x18\x03 \x01(\r\"\x9d\x01\n\x0bWorldArrays\x12\x14\n\x0cobservations\x18\x01 \x01(\x0c\x12\x10\n\x08subtasks\x18\x02 \x01(\x0c\x12\x15\n\rsuccess_ticks\x18\x03 \x01(\x0c\x12\x0f\n\x07success\x18\x04 \x01(\x0c\x12\x0e\n\x06\x66\x61iled\x18\x05 \x03(\t\x12\x12\n\nsim_time_s\x18\x06 \x01(\x0c\x12\x1a\n\x12integration_states\x18\x07 \x01(\x0c\"\xee\x01\n\x0cRolloutReply\x12\x1d\n\x05\x65rror\x18\x01 \x01(\x0b\x32\x0e.mart.v1.Error\x12\x0f\n\x07session\x18\x02 \x01(\t\x12$\n\x06worlds\x18\x03 \x01(\x0b\x32\x14.mart.v1.WorldArrays\x12\x15\n\rstate_digests\x18\x04 \x01(\x0c\x12\x1d\n\x05model\x18\x05 \x01(\x0b\x32\x0e.mart.v1.Model\x12#\n\x08numerics\x18\x06 \x01(\x0b\x32\x11.mart.v1.Numerics\x12-\n\x0b\x64ifferences\x18\x07 \x03(\x0b\x32\x18.mart.v1.StateDifferenceb\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x15mart/v1/rollout.proto\x12\x07mart.v1\x1a\x12mart/v1/room.proto\x1a\x13mart/v1/state.proto\"\xb9\x07\n\x0eRolloutRequest\x12.\n\x05reset\x18\x01 \x01(\x0b\x32\x1d.mart.v1.RolloutRequest.ResetH\x00\x12,\n\x04step\x18\x02 \x01(\x0b\x32\x1c.mart.v1.RolloutRequest.StepH\x00\x12.\n\x05\x63lose\x18\x03 \x01(\x0b\x32\x1d.mart.v1.RolloutRequest.CloseH\x00\x12\x38\n\nresimulate\x18\x04 \x01(\x0b\x32\".mart.v1.RolloutRequest.ResimulateH\x00\x12\x34\n\x08\x64\x65scribe\x18\x05 \x01(\x0b\x32 .mart.v1.RolloutRequest.DescribeH\x00\x12=\n\rcompare_ticks\x18\x06 \x01(\x0b\x32$.mart.v1.RolloutRequest.CompareTicksH\x00\x1au\n\x05Reset\x12\x0c\n\x04task\x18\x01 \x01(\t\x12\x12\n\ncontrol_hz\x18\x02 \x01(\x01\x12\x0c\n\x04\x61rms\x18\x03 \x01(\r\x12\r\n\x05seeds\x18\x04 \x03(\x04\x12\x1a\n\x12integration_states\x18\x05 \x01(\x08\x12\x11\n\tarm_kinds\x18\x06 \x03(\t\x1aI\n\x04Step\x12\x0f\n\x07session\x18\x01 \x01(\t\x12\x0f\n\x07\x61\x63tions\x18\x02 \x01(\x0c\x12\x0f\n\x07running\x18\x03 \x01(\x0c\x12\x0e\n\x06number\x18\x04 \x01(\r\x1a\x18\n\x05\x43lose\x12\x0f\n\x07session\x18\x01 \x01(\t\x1a\x9b\x01\n\nResimulate\x12\x14\n\x0cmodel_sha256\x18\x01 \x01(\t\x12\x0c\n\x04task\x18\x02 \x01(\t\x12\x12\n\ncontrol_hz\x18\x03 \x01(\x01\x12\x0c\n\x04\x61rms\x18\x04 \x01(\r\x12\x13\n\x0b\x66irst_state\x18\x05 \x01(\x0c\x12\x0f\n\x07\x61\x63tions\x18\x06 \x01(\x0c\x12\x0e\n\x06native\x18\x07 \x01(\x08\x12\x11\n\tarm_kinds\x18\x08 \x03(\t\x1a\x98\x01\n\x0c\x43ompareTicks\x12\x14\n\x0cmodel_sha256\x18\x01 \x01(\t\x12\x0c\n\x04task\x18\x02 \x01(\t\x12\x12\n\ncontrol_hz\x18\x03 \x01(\x01\x12\x0c\n\x04\x61rms\x18\x04 \x01(\r\x12\x0e\n\x06states\x18\x05 \x01(\x0c\x12\x0f\n\x07\x61\x63tions\x18\x06 \x01(\x0c\x12\x0e\n\x06native\x18\x07 \x01(\x08\x12\x11\n\tarm_kinds\x18\x08 \x03(\t\x1aM\n\x08\x44\x65scribe\x12\x0c\n\x04task\x18\x01 \x01(\t\x12\x12\n\ncontrol_hz\x18\x02 \x01(\x01\x12\x0c\n\x04\x61rms\x18\x03 \x01(\r\x12\x11\n\tarm_kinds\x18\x04 \x03(\tB\x06\n\x04what\"E\n\x0fStateDifference\x12\r\n\x05group\x18\x01 \x01(\t\x12\x0f\n\x07largest\x18\x02 \x01(\x01\x12\x12\n\ntransition\x18\x03 \x01(\r\"\x9d\x01\n\x0bWorldArrays\x12\x14\n\x0cobservations\x18\x01 \x01(\x0c\x12\x10\n\x08subtasks\x18\x02 \x01(\x0c\x12\x15\n\rsuccess_ticks\x18\x03 \x01(\x0c\x12\x0f\n\x07success\x18\x04 \x01(\x0c\x12\x0e\n\x06\x66\x61iled\x18\x05 \x03(\t\x12\x12\n\nsim_time_s\x18\x06 \x01(\x0c\x12\x1a\n\x12integration_states\x18\x07 \x01(\x0c\"\xee\x01\n\x0cRolloutReply\x12\x1d\n\x05\x65rror\x18\x01 \x01(\x0b\x32\x0e.mart.v1.Error\x12\x0f\n\x07session\x18\x02 \x01(\t\x12$\n\x06worlds\x18\x03 \x01(\x0b\x32\x14.mart.v1.WorldArrays\x12\x15\n\rstate_digests\x18\x04 \x01(\x0c\x12\x1d\n\x05model\x18\x05 \x01(\x0b\x32\x0e.mart.v1.Model\x12#\n\x08numerics\x18\x06 \x01(\x0b\x32\x11.mart.v1.Numerics\x12-\n\x0b\x64ifferences\x18\x07 \x03(\x0b\x32\x18.mart.v1.StateDifferenceb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -34,23 +34,23 @@ _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'mart.v1.rollout_pb2', _glob
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
   _globals['_ROLLOUTREQUEST']._serialized_start=76
-  _globals['_ROLLOUTREQUEST']._serialized_end=953
+  _globals['_ROLLOUTREQUEST']._serialized_end=1029
   _globals['_ROLLOUTREQUEST_RESET']._serialized_start=411
-  _globals['_ROLLOUTREQUEST_RESET']._serialized_end=509
-  _globals['_ROLLOUTREQUEST_STEP']._serialized_start=511
-  _globals['_ROLLOUTREQUEST_STEP']._serialized_end=584
-  _globals['_ROLLOUTREQUEST_CLOSE']._serialized_start=586
-  _globals['_ROLLOUTREQUEST_CLOSE']._serialized_end=610
-  _globals['_ROLLOUTREQUEST_RESIMULATE']._serialized_start=613
-  _globals['_ROLLOUTREQUEST_RESIMULATE']._serialized_end=749
-  _globals['_ROLLOUTREQUEST_COMPARETICKS']._serialized_start=752
-  _globals['_ROLLOUTREQUEST_COMPARETICKS']._serialized_end=885
-  _globals['_ROLLOUTREQUEST_DESCRIBE']._serialized_start=887
-  _globals['_ROLLOUTREQUEST_DESCRIBE']._serialized_end=945
-  _globals['_STATEDIFFERENCE']._serialized_start=955
-  _globals['_STATEDIFFERENCE']._serialized_end=1024
-  _globals['_WORLDARRAYS']._serialized_start=1027
-  _globals['_WORLDARRAYS']._serialized_end=1184
-  _globals['_ROLLOUTREPLY']._serialized_start=1187
-  _globals['_ROLLOUTREPLY']._serialized_end=1425
+  _globals['_ROLLOUTREQUEST_RESET']._serialized_end=528
+  _globals['_ROLLOUTREQUEST_STEP']._serialized_start=530
+  _globals['_ROLLOUTREQUEST_STEP']._serialized_end=603
+  _globals['_ROLLOUTREQUEST_CLOSE']._serialized_start=605
+  _globals['_ROLLOUTREQUEST_CLOSE']._serialized_end=629
+  _globals['_ROLLOUTREQUEST_RESIMULATE']._serialized_start=632
+  _globals['_ROLLOUTREQUEST_RESIMULATE']._serialized_end=787
+  _globals['_ROLLOUTREQUEST_COMPARETICKS']._serialized_start=790
+  _globals['_ROLLOUTREQUEST_COMPARETICKS']._serialized_end=942
+  _globals['_ROLLOUTREQUEST_DESCRIBE']._serialized_start=944
+  _globals['_ROLLOUTREQUEST_DESCRIBE']._serialized_end=1021
+  _globals['_STATEDIFFERENCE']._serialized_start=1031
+  _globals['_STATEDIFFERENCE']._serialized_end=1100
+  _globals['_WORLDARRAYS']._serialized_start=1103
+  _globals['_WORLDARRAYS']._serialized_end=1260
+  _globals['_ROLLOUTREPLY']._serialized_start=1263
+  _globals['_ROLLOUTREPLY']._serialized_end=1501
 # @@protoc_insertion_point(module_scope)

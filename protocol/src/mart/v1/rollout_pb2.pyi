@@ -11,18 +11,20 @@ DESCRIPTOR: _descriptor.FileDescriptor
 class RolloutRequest(_message.Message):
     __slots__ = ("reset", "step", "close", "resimulate", "describe", "compare_ticks")
     class Reset(_message.Message):
-        __slots__ = ("task", "control_hz", "arms", "seeds", "integration_states")
+        __slots__ = ("task", "control_hz", "arms", "seeds", "integration_states", "arm_kinds")
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
         ARMS_FIELD_NUMBER: _ClassVar[int]
         SEEDS_FIELD_NUMBER: _ClassVar[int]
         INTEGRATION_STATES_FIELD_NUMBER: _ClassVar[int]
+        ARM_KINDS_FIELD_NUMBER: _ClassVar[int]
         task: str
         control_hz: float
         arms: int
         seeds: _containers.RepeatedScalarFieldContainer[int]
         integration_states: bool
-        def __init__(self, task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., seeds: _Optional[_Iterable[int]] = ..., integration_states: _Optional[bool] = ...) -> None: ...
+        arm_kinds: _containers.RepeatedScalarFieldContainer[str]
+        def __init__(self, task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., seeds: _Optional[_Iterable[int]] = ..., integration_states: _Optional[bool] = ..., arm_kinds: _Optional[_Iterable[str]] = ...) -> None: ...
     class Step(_message.Message):
         __slots__ = ("session", "actions", "running", "number")
         SESSION_FIELD_NUMBER: _ClassVar[int]
@@ -40,7 +42,7 @@ class RolloutRequest(_message.Message):
         session: str
         def __init__(self, session: _Optional[str] = ...) -> None: ...
     class Resimulate(_message.Message):
-        __slots__ = ("model_sha256", "task", "control_hz", "arms", "first_state", "actions", "native")
+        __slots__ = ("model_sha256", "task", "control_hz", "arms", "first_state", "actions", "native", "arm_kinds")
         MODEL_SHA256_FIELD_NUMBER: _ClassVar[int]
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -48,6 +50,7 @@ class RolloutRequest(_message.Message):
         FIRST_STATE_FIELD_NUMBER: _ClassVar[int]
         ACTIONS_FIELD_NUMBER: _ClassVar[int]
         NATIVE_FIELD_NUMBER: _ClassVar[int]
+        ARM_KINDS_FIELD_NUMBER: _ClassVar[int]
         model_sha256: str
         task: str
         control_hz: float
@@ -55,9 +58,10 @@ class RolloutRequest(_message.Message):
         first_state: bytes
         actions: bytes
         native: bool
-        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., first_state: _Optional[bytes] = ..., actions: _Optional[bytes] = ..., native: _Optional[bool] = ...) -> None: ...
+        arm_kinds: _containers.RepeatedScalarFieldContainer[str]
+        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., first_state: _Optional[bytes] = ..., actions: _Optional[bytes] = ..., native: _Optional[bool] = ..., arm_kinds: _Optional[_Iterable[str]] = ...) -> None: ...
     class CompareTicks(_message.Message):
-        __slots__ = ("model_sha256", "task", "control_hz", "arms", "states", "actions", "native")
+        __slots__ = ("model_sha256", "task", "control_hz", "arms", "states", "actions", "native", "arm_kinds")
         MODEL_SHA256_FIELD_NUMBER: _ClassVar[int]
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -65,6 +69,7 @@ class RolloutRequest(_message.Message):
         STATES_FIELD_NUMBER: _ClassVar[int]
         ACTIONS_FIELD_NUMBER: _ClassVar[int]
         NATIVE_FIELD_NUMBER: _ClassVar[int]
+        ARM_KINDS_FIELD_NUMBER: _ClassVar[int]
         model_sha256: str
         task: str
         control_hz: float
@@ -72,16 +77,19 @@ class RolloutRequest(_message.Message):
         states: bytes
         actions: bytes
         native: bool
-        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., states: _Optional[bytes] = ..., actions: _Optional[bytes] = ..., native: _Optional[bool] = ...) -> None: ...
+        arm_kinds: _containers.RepeatedScalarFieldContainer[str]
+        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., states: _Optional[bytes] = ..., actions: _Optional[bytes] = ..., native: _Optional[bool] = ..., arm_kinds: _Optional[_Iterable[str]] = ...) -> None: ...
     class Describe(_message.Message):
-        __slots__ = ("task", "control_hz", "arms")
+        __slots__ = ("task", "control_hz", "arms", "arm_kinds")
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
         ARMS_FIELD_NUMBER: _ClassVar[int]
+        ARM_KINDS_FIELD_NUMBER: _ClassVar[int]
         task: str
         control_hz: float
         arms: int
-        def __init__(self, task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ...) -> None: ...
+        arm_kinds: _containers.RepeatedScalarFieldContainer[str]
+        def __init__(self, task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., arm_kinds: _Optional[_Iterable[str]] = ...) -> None: ...
     RESET_FIELD_NUMBER: _ClassVar[int]
     STEP_FIELD_NUMBER: _ClassVar[int]
     CLOSE_FIELD_NUMBER: _ClassVar[int]

@@ -167,7 +167,7 @@ class EmergencyStop(_message.Message):
     def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ..., by_host: _Optional[bool] = ..., also_name: _Optional[str] = ...) -> None: ...
 
 class RoomStatus(_message.Message):
-    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded", "practice", "course_required", "to_do")
+    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded", "practice", "course_required", "arm_kinds", "to_do")
     class ToDoEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -196,6 +196,7 @@ class RoomStatus(_message.Message):
     UNRECORDED_FIELD_NUMBER: _ClassVar[int]
     PRACTICE_FIELD_NUMBER: _ClassVar[int]
     COURSE_REQUIRED_FIELD_NUMBER: _ClassVar[int]
+    ARM_KINDS_FIELD_NUMBER: _ClassVar[int]
     TO_DO_FIELD_NUMBER: _ClassVar[int]
     room: str
     task: str
@@ -218,8 +219,9 @@ class RoomStatus(_message.Message):
     unrecorded: str
     practice: bool
     course_required: bool
+    arm_kinds: _containers.RepeatedScalarFieldContainer[str]
     to_do: _containers.ScalarMap[str, str]
-    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ..., practice: _Optional[bool] = ..., course_required: _Optional[bool] = ..., to_do: _Optional[_Mapping[str, str]] = ...) -> None: ...
+    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ..., practice: _Optional[bool] = ..., course_required: _Optional[bool] = ..., arm_kinds: _Optional[_Iterable[str]] = ..., to_do: _Optional[_Mapping[str, str]] = ...) -> None: ...
 
 class SeatRequest(_message.Message):
     __slots__ = ("claim", "release", "assign", "hand_back", "free")
@@ -356,7 +358,14 @@ class EpisodeRequest(_message.Message):
 class RoomsRequest(_message.Message):
     __slots__ = ("open", "close")
     class Open(_message.Message):
-        __slots__ = ("room", "task", "control_hz", "episodes", "arms", "practice", "course_required")
+        __slots__ = ("room", "task", "control_hz", "episodes", "arms", "practice", "course_required", "arm_kinds")
+        class ArmKindsEntry(_message.Message):
+            __slots__ = ("key", "value")
+            KEY_FIELD_NUMBER: _ClassVar[int]
+            VALUE_FIELD_NUMBER: _ClassVar[int]
+            key: str
+            value: str
+            def __init__(self, key: _Optional[str] = ..., value: _Optional[str] = ...) -> None: ...
         ROOM_FIELD_NUMBER: _ClassVar[int]
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -364,6 +373,7 @@ class RoomsRequest(_message.Message):
         ARMS_FIELD_NUMBER: _ClassVar[int]
         PRACTICE_FIELD_NUMBER: _ClassVar[int]
         COURSE_REQUIRED_FIELD_NUMBER: _ClassVar[int]
+        ARM_KINDS_FIELD_NUMBER: _ClassVar[int]
         room: str
         task: str
         control_hz: float
@@ -371,7 +381,8 @@ class RoomsRequest(_message.Message):
         arms: int
         practice: bool
         course_required: bool
-        def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., episodes: _Optional[int] = ..., arms: _Optional[int] = ..., practice: _Optional[bool] = ..., course_required: _Optional[bool] = ...) -> None: ...
+        arm_kinds: _containers.ScalarMap[str, str]
+        def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., episodes: _Optional[int] = ..., arms: _Optional[int] = ..., practice: _Optional[bool] = ..., course_required: _Optional[bool] = ..., arm_kinds: _Optional[_Mapping[str, str]] = ...) -> None: ...
     class Close(_message.Message):
         __slots__ = ("room", "with_people")
         ROOM_FIELD_NUMBER: _ClassVar[int]

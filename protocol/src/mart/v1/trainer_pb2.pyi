@@ -168,7 +168,7 @@ class Evaluation(_message.Message):
     def __init__(self, seed: _Optional[int] = ..., updates: _Optional[int] = ..., checkpoint: _Optional[str] = ..., purpose: _Optional[str] = ..., episodes: _Optional[int] = ..., successes: _Optional[int] = ..., low: _Optional[float] = ..., high: _Optional[float] = ..., mean_success_time_s: _Optional[float] = ..., done: _Optional[_Iterable[_Union[SubtaskCount, _Mapping]]] = ..., failures: _Optional[_Iterable[_Union[SubtaskCount, _Mapping]]] = ..., rollouts: _Optional[_Iterable[_Union[Rollout, _Mapping]]] = ...) -> None: ...
 
 class Policy(_message.Message):
-    __slots__ = ("name", "model", "task", "control_hz", "arms", "joint", "seed", "updates", "job", "evaluation", "promoted_ns")
+    __slots__ = ("name", "model", "task", "control_hz", "arms", "joint", "seed", "updates", "job", "evaluation", "promoted_ns", "arm_kinds")
     NAME_FIELD_NUMBER: _ClassVar[int]
     MODEL_FIELD_NUMBER: _ClassVar[int]
     TASK_FIELD_NUMBER: _ClassVar[int]
@@ -180,6 +180,7 @@ class Policy(_message.Message):
     JOB_FIELD_NUMBER: _ClassVar[int]
     EVALUATION_FIELD_NUMBER: _ClassVar[int]
     PROMOTED_NS_FIELD_NUMBER: _ClassVar[int]
+    ARM_KINDS_FIELD_NUMBER: _ClassVar[int]
     name: str
     model: str
     task: str
@@ -191,7 +192,8 @@ class Policy(_message.Message):
     job: str
     evaluation: Evaluation
     promoted_ns: int
-    def __init__(self, name: _Optional[str] = ..., model: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[_Iterable[str]] = ..., joint: _Optional[bool] = ..., seed: _Optional[int] = ..., updates: _Optional[int] = ..., job: _Optional[str] = ..., evaluation: _Optional[_Union[Evaluation, _Mapping]] = ..., promoted_ns: _Optional[int] = ...) -> None: ...
+    arm_kinds: _containers.RepeatedScalarFieldContainer[str]
+    def __init__(self, name: _Optional[str] = ..., model: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[_Iterable[str]] = ..., joint: _Optional[bool] = ..., seed: _Optional[int] = ..., updates: _Optional[int] = ..., job: _Optional[str] = ..., evaluation: _Optional[_Union[Evaluation, _Mapping]] = ..., promoted_ns: _Optional[int] = ..., arm_kinds: _Optional[_Iterable[str]] = ...) -> None: ...
 
 class DataSet(_message.Message):
     __slots__ = ("path", "episodes", "tasks", "name", "left_out", "sha256")

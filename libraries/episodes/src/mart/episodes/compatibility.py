@@ -1,10 +1,11 @@
-"""Hold episodes that are learned from together to one task, one control rate and the same arms. Pure."""
+"""Hold episodes that are learned from together to one task, one control rate and the same kinds of arms. Pure."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import Protocol
 
+from mart.protocol.arms import PANDA
 from mart.protocol.errors import InvalidInput
 
 
@@ -17,6 +18,8 @@ class ComparableEpisode(Protocol):
     def control_hz(self) -> float | None: ...
     @property
     def arms(self) -> tuple[str, ...]: ...
+    @property
+    def arm_kinds(self) -> tuple[str, ...]: ...
 
 
 def require_alike(episodes: Iterable[ComparableEpisode], advice: str, *, any_rate: bool = False) -> None:
@@ -34,6 +37,9 @@ def require_alike(episodes: Iterable[ComparableEpisode], advice: str, *, any_rat
     facts: dict[str, set[str]] = {
         "tasks": {str(one.task) for one in listed},
         "sets of arms": {" and ".join(one.arms) for one in listed},
+        "kinds of arms (arm_kinds)": {
+            " and ".join(one.arm_kinds or (PANDA.name,) * len(one.arms)) for one in listed
+        },
     }
     for what, values in facts.items():
         if len(values) > 1:

@@ -41,6 +41,7 @@ class LabelledEpisode(BaseModel):
     task: str | None = None
     control_hz: float | None = None
     arms: tuple[str, ...] = ()
+    arm_kinds: tuple[str, ...] = ()
     outcome: str = EpisodeOutcome.UNSPECIFIED.value
     verdict: str = Verdict.UNVERIFIED.value
     verification_pending: bool = False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
@@ -38,15 +38,20 @@ class McapEntry:
     sequence: int = 0
 
 
-def state_entries(state: State, payload: bytes, arrived_ns: int, task: str | None) -> list[McapEntry]:
-    """Return the state itself and what tools without MART's schemas can draw: frames and grippers."""
+def state_entries(
+    state: State, payload: bytes, arrived_ns: int, task: str | None, arm_kinds: Sequence[str] = ()
+) -> list[McapEntry]:
+    """Return the state itself and what tools without MART's schemas can draw: frames and grippers.
+
+    arm_kinds: one for each arm, none of them: Pandas; where bases stand depends on it.
+    """
     sent_ns = state.stamps.sent_ns or arrived_ns
     sequence = state.tick & _SEQUENCE_MASK
 
     def entry(topic: str, message: Message, raw: bytes) -> McapEntry:
         return McapEntry(topic, type(message), raw, arrived_ns, sent_ns, sequence)
 
-    frames = _frames(state, sent_ns, task)
+    frames = _frames(state, sent_ns, _bases(task, len(state.arms), arm_kinds))
     grippers = [(recording.gripper_topic(arm.arm), _gripper(arm.gripper, sent_ns)) for arm in state.arms]
     return [
         entry(recording.STATE, state, payload),
@@ -74,17 +79,16 @@ def event_entry(event: Event, payload: bytes, arrived_ns: int) -> McapEntry:
     return McapEntry(recording.EVENT, Event, payload, arrived_ns, event.wall_ns or arrived_ns)
 
 
-def _frames(state: State, sent_ns: int, task: str | None) -> FrameTransforms:
-    bases = _bases(task, len(state.arms))
+def _frames(state: State, sent_ns: int, bases: Iterable[tuple[str, PoseMessage]]) -> FrameTransforms:
     transforms = [_frame("world", f"{arm}/base", pose, sent_ns) for arm, pose in bases]
     transforms += [_frame(f"{a.arm}/base", f"{a.arm}/tool", a.tool_in_base, sent_ns) for a in state.arms]
     return FrameTransforms(transforms=transforms)
 
 
-def _bases(task: str | None, arms: int) -> Iterable[tuple[str, PoseMessage]]:
+def _bases(task: str | None, arms: int, arm_kinds: Sequence[str]) -> Iterable[tuple[str, PoseMessage]]:
     """Return where the task's catalogue entry puts each arm; nothing for a task that is not in the catalogue."""
     try:
-        known = get_task(task or "", arms)
+        known = get_task(task or "", arms, arm_kinds)
     except MartError:
         return ()
     return [(arm.name, pose_message(arm.pose_base_in_world)) for arm in known.arms]

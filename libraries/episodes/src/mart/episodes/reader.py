@@ -143,7 +143,7 @@ class EpisodeFile:
                 "another control rate was asked for, and it names no task of the catalogue or no rate; "
                 "read it as it is."
             )
-        return at_control_hz(data, recorded_hz, control_hz, task.limits)
+        return at_control_hz(data, recorded_hz, control_hz, [arm.kind.limits for arm in task.arms])
 
     def messages(self, *topics: str) -> Iterator[RecordedMessage]:
         """Iterate over the messages of these topics, or of all, in the order of the file.
@@ -214,7 +214,7 @@ class EpisodeFile:
     def _known_task(self) -> Task | None:
         episode = self.episode
         try:
-            return get_task(episode.task or "", len(episode.arms))
+            return get_task(episode.task or "", len(episode.arms), episode.arm_kinds)
         except (InvalidInput, NotFound):
             return None
 

@@ -17,6 +17,7 @@ can be had: what was between its ticks was not recorded. Why so: docs/decisions/
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -32,10 +33,12 @@ from mart.protocol.tasks import Limits
 Array = NDArray[np.float64]
 
 
-def at_control_hz(data: EpisodeData, recorded_hz: float, control_hz: float, limits: Limits) -> EpisodeData:
+def at_control_hz(
+    data: EpisodeData, recorded_hz: float, control_hz: float, limits: Limits | Sequence[Limits]
+) -> EpisodeData:
     """Return the transitions at `control_hz` of an episode that was recorded at `recorded_hz`.
 
-    limits: of a step, those of the episode's task. Raises InvalidInput, as a sentence about the episode, for a rate
+    limits: of a step, each arm's or one for all. Raises InvalidInput, as a sentence about the episode, for a rate
     above its own or one that no room has.
     """
     require_control_hz(control_hz)
@@ -46,7 +49,7 @@ def at_control_hz(data: EpisodeData, recorded_hz: float, control_hz: float, limi
     return replace(
         data,
         observations={name: values[ticks] for name, values in data.observations.items()},
-        actions=_actions(data, ticks, limits),
+        actions=_actions(data, ticks, [limits] * len(data.arms) if isinstance(limits, Limits) else limits),
         sources=data.sources[last],
         engaged=data.engaged[last],
         subtasks={name: done[ticks] for name, done in data.subtasks.items()},
@@ -75,14 +78,14 @@ def coarse_ticks(ticks: int, recorded_hz: float, control_hz: float) -> NDArray[n
     return np.append(nearest[nearest < ticks], ticks)
 
 
-def _actions(data: EpisodeData, ticks: NDArray[np.int64], limits: Limits) -> Array:
+def _actions(data: EpisodeData, ticks: NDArray[np.int64], limits: Sequence[Limits]) -> Array:
     """Return float64[transitions, arms, 7]."""
     actions = data.actions[ticks[1:] - 1].copy()
     for row, (start, end) in enumerate(pairwise(ticks)):
         if end - start == 1:
             continue  # as it was recorded, to the bit
         for arm in range(len(data.arms)):
-            actions[row, arm, :6] = _step_to_goal(data, arm, int(start), int(end), limits)
+            actions[row, arm, :6] = _step_to_goal(data, arm, int(start), int(end), limits[arm])
     return actions
 
 

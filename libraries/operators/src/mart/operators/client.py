@@ -19,7 +19,7 @@ from mart.protocol.control_rate import ticks_for_each
 from mart.protocol.errors import Conflict, InvalidInput, Unavailable
 from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_SCRIPT, RoomStatus, operator_from_word
 from mart.protocol.messages import Operator as OperatorOnWire
-from mart.protocol.tasks import get_task
+from mart.protocol.room_task import task_of_room
 from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind, ServiceKind
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.service import Service, announced, stop_requested
@@ -172,7 +172,7 @@ def _maker(
     operator: Operator, arms: Sequence[str], source: OperatorOnWire, control_hz: float | None
 ) -> Callable[[RoomStatus], Sequence[SeatCommander]]:
     def make(status: RoomStatus) -> Sequence[SeatCommander]:
-        task = get_task(status.task, len(status.seats))
+        task = task_of_room(status)
         each = 1 if control_hz is None else ticks_for_each(control_hz, status.control_hz)
         return [SeatCommander(operator, task, arms, source, act_every_ticks=each)]
 

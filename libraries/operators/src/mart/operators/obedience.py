@@ -102,7 +102,8 @@ class ObedientOperator(Operator):
             return self._said
         return {
             arm: replace(
-                target, pose_tool_in_base=slowed(measured, target.pose_tool_in_base, view.task.limits)
+                target,
+                pose_tool_in_base=slowed(measured, target.pose_tool_in_base, view.task.arm(arm).kind.limits),
             )
             for arm, measured in view.poses_tool_in_base.items()
             if (target := self._said.get(arm)) is not None

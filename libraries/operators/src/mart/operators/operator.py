@@ -21,7 +21,7 @@ class ToolTarget:
     """Say where an operator wants a tool: its pose in the arm's base frame, and the gripper, 0 (open) to 1 (closed).
 
     While not `engaged` the clutch is let go, and the arm should hold. The room moves the arm at most one step a tick
-    (`task.limits`) towards the pose, and never out of the arm's workspace.
+    (`kind.limits` of the task's arm) towards the pose, and never out of the arm's workspace.
     """
 
     pose_tool_in_base: Pose

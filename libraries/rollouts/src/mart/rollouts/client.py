@@ -76,14 +76,17 @@ class RolloutClient:
         control_hz: float = DEFAULT_CONTROL_HZ,
         arms: int | None = None,
         *,
+        arm_kinds: Sequence[str] = (),
         integration_states: bool = False,
     ) -> BatchState:
         """Begins an episode in one world for each seed; earlier worlds of this client are closed.
 
+        arm_kinds: one for each arm, such as a task's `arm_kinds`; none of them: Pandas.
+
         Raises NotFound for an unknown task, InvalidInput where seeds, rate or arms cannot be, Unavailable where a
         replica does not answer or cannot hold its share.
         """
-        known, seeds = get_task(task, arms), _whole(seeds)
+        known, seeds = get_task(task, arms, arm_kinds), _whole(seeds)
         with self._alone():
             self._close_shares()
             self._require_replicas()
@@ -94,6 +97,7 @@ class RolloutClient:
                     task=task,
                     control_hz=control_hz,
                     arms=arms or 0,
+                    arm_kinds=arm_kinds,
                     seeds=seeds[share.first : share.end],
                     integration_states=integration_states,
                 )
@@ -127,9 +131,17 @@ class RolloutClient:
             self._steps += 1
             return self._unpack(task, replies)
 
-    def model(self, task: str, control_hz: float = DEFAULT_CONTROL_HZ, arms: int | None = None) -> Model:
+    def model(
+        self,
+        task: str,
+        control_hz: float = DEFAULT_CONTROL_HZ,
+        arms: int | None = None,
+        arm_kinds: Sequence[str] = (),
+    ) -> Model:
         """What such worlds are compiled to. Raises as `reset`; worlds that there are stay as they are."""
-        describe = RolloutRequest.Describe(task=task, control_hz=control_hz, arms=arms or 0)
+        describe = RolloutRequest.Describe(
+            task=task, control_hz=control_hz, arms=arms or 0, arm_kinds=arm_kinds
+        )
         with self._alone():
             self._require_replicas()
             return self._query(self._replicas[0], RolloutRequest(describe=describe), _RESET_TIMEOUT_S).model

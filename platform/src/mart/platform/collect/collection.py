@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from mart.platform.collect.browser import running_browser
@@ -28,7 +28,7 @@ from mart.runtime.ports import free_port
 class CollectionSpec:
     """What to collect. `browsers` opens a real operator page per person, which also measures motion to photon.
 
-    time_limit_s: of an episode, simulated; None: the task's trial.
+    time_limit_s: of an episode, simulated; None: the task's trial. arm_kinds: by arm, of those that are no Pandas.
     """
 
     task: str
@@ -40,6 +40,7 @@ class CollectionSpec:
     operators: SeatOperators
     time_limit_s: float | None = None
     browsers: bool = False
+    arm_kinds: Mapping[str, str] = field(default_factory=dict)
 
 
 def collect_episodes(spec: CollectionSpec) -> Iterator[CollectedEpisode]:
@@ -90,4 +91,5 @@ def _private_options(spec: CollectionSpec) -> PlatformOptions:
         skill=spec.skill,
         time_limit_s=get_task(spec.task).trial_limit_s if spec.time_limit_s is None else spec.time_limit_s,
         control_hz=spec.control_hz,
+        arm_kinds=spec.arm_kinds,
     )

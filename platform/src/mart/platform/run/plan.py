@@ -7,8 +7,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mart.protocol.arms import arms_folder
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.arm_option import arm_arguments
 from mart.runtime.rate_option import AUTO
 
 if TYPE_CHECKING:
@@ -57,6 +59,7 @@ class PlatformOptions:
     practice: bool = False
     course_required: bool = False
     time_limit_s: float | None = None
+    arm_kinds: Mapping[str, str] = field(default_factory=dict)  # by arm, of those that are no Pandas
     environment: Mapping[str, str] = field(default_factory=dict)
     name: str = ""
 
@@ -132,6 +135,7 @@ def _sim(options: PlatformOptions, room: str, *more: str) -> Process:
     }
     for option, value in chosen.items():
         command += [] if value is None else [option, str(value)]
+    command += arm_arguments(options.arm_kinds)
     command += ["--practice"] * options.practice + ["--course-required"] * options.course_required
     return Process((*command, *more), ServiceKind.SIM, room)
 
@@ -145,6 +149,7 @@ def room(options: PlatformOptions, wanted: RoomsRequest.Open) -> Process:
         episodes=wanted.episodes or None,
         practice=wanted.practice,
         course_required=wanted.course_required,
+        arm_kinds=dict(wanted.arm_kinds),
     )
     arms = ("--arms", str(wanted.arms)) if wanted.arms else ()
     return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None), wanted.room, *arms)
@@ -155,6 +160,7 @@ def environment(options: PlatformOptions) -> dict[str, str]:
     return {
         "MART_ROUTER": options.router,
         "MART_DATA_DIR": str(options.data_dir.resolve()),
+        "MART_ARMS_DIR": str(arms_folder().resolve()),
         # Several processes share few cores; a pool of threads in each would only make them wait for each other.
         "OMP_NUM_THREADS": "1",
         "OPENBLAS_NUM_THREADS": "1",

@@ -29,7 +29,7 @@ from mart.protocol.messages import (
 from mart.protocol.practice import require_practice_alone
 from mart.protocol.queryables import ROOMS
 from mart.protocol.received import decode_received
-from mart.protocol.tasks import get_task
+from mart.protocol.tasks import arm_kinds_of
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.base import Request, Sample
 from mart.runtime.serving import BoundedInbox, RequestAnswerer
@@ -110,6 +110,7 @@ class RoomManager:
             arms=asked.arms,
             practice=asked.practice,
             course_required=asked.course_required,
+            arm_kinds=asked.arm_kinds,
         )
         self._start(wanted)
         self._kept[wanted.room] = wanted
@@ -118,7 +119,7 @@ class RoomManager:
 
     def _start(self, wanted: RoomsRequest.Open) -> None:
         keys.status(wanted.room)  # raises where a room cannot be called so
-        get_task(wanted.task, wanted.arms or None)
+        arm_kinds_of(wanted.task, wanted.arms or None, wanted.arm_kinds)
         if wanted.control_hz:
             require_control_hz(wanted.control_hz)
         if wanted.episodes > MAX_EPISODES:

@@ -5,22 +5,21 @@ A row is a file in this folder that says NAME (its own), DEFAULT_ARMS, ARM_COUNT
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from importlib import import_module
 from pkgutil import iter_modules
 from types import ModuleType
 
+from mart.protocol.arms import ArmKind, Limits, Workspace, arm_kind
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.tasks.task import (
     MAX_ARMS,
     SHARED_VIEWPOINT,
     Arm,
     Ghost,
-    Limits,
     Observation,
     Subtask,
     Task,
-    Workspace,
     proprioception,
 )
 
@@ -28,6 +27,7 @@ __all__ = [
     "MAX_ARMS",
     "SHARED_VIEWPOINT",
     "Arm",
+    "ArmKind",
     "Ghost",
     "Limits",
     "Observation",
@@ -35,6 +35,7 @@ __all__ = [
     "Task",
     "Workspace",
     "arm_counts",
+    "arm_kinds_of",
     "get_task",
     "proprioception",
     "task_names",
@@ -61,10 +62,11 @@ def arm_counts(name: str) -> tuple[int, ...]:
     return tuple(_entry(name).ARM_COUNTS)
 
 
-def get_task(name: str, arms: int | None = None) -> Task:
+def get_task(name: str, arms: int | None = None, kinds: Sequence[str] = ()) -> Task:
     """The task called `name`, with its usual number of arms unless told.
 
-    Raises NotFound for an unknown name and InvalidInput for a number of arms that the task cannot have.
+    kinds: the arms' kinds by name, one for each; none of them: Pandas. Raises NotFound for an unknown name and
+    InvalidInput for a number of arms that the task cannot have.
     """
     entry = _entry(name)
     number = entry.DEFAULT_ARMS if arms is None else arms
@@ -72,7 +74,18 @@ def get_task(name: str, arms: int | None = None) -> Task:
         allowed = ", ".join(map(str, entry.ARM_COUNTS))
         raise InvalidInput(f"{number} arms were asked for; {name} can have {allowed}.")
     task: Task = entry.task(number)
-    return task
+    return task.with_kinds([arm_kind(kind) for kind in kinds]) if kinds else task
+
+
+def arm_kinds_of(name: str, arms: int | None, chosen: Mapping[str, str]) -> tuple[str, ...]:
+    """The kinds of the arms of a task, where `chosen` says which arms (by name) are of another kind than a Panda.
+
+    None of them is chosen: empty, as files and messages say that all are Pandas. Raises NotFound for an unknown task,
+    arm or kind, InvalidInput for a number of arms that cannot be.
+    """
+    task = get_task(name, arms)
+    kinds = {task.arm(arm).name: arm_kind(kind) for arm, kind in chosen.items()}
+    return task.with_kinds([kinds.get(arm.name, arm.kind) for arm in task.arms]).arm_kinds
 
 
 def _entry(name: str) -> ModuleType:

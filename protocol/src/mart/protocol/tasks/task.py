@@ -10,13 +10,13 @@ middle of the finger pads; its axes are the base's while the hand points straigh
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from mart.protocol.errors import NotFound
+from mart.protocol.arms import PANDA, ArmKind
+from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.pose import Pose
 
 SHARED_VIEWPOINT = "front"
@@ -36,6 +36,7 @@ class Arm:
     pose_base_in_world: Pose
     color: str
     symbol: str
+    kind: ArmKind = PANDA
 
     @property
     def color_name(self) -> str:
@@ -48,6 +49,12 @@ class Arm:
         color, symbol = _ACCENTS[index]
         turn = np.array([math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2)])
         return cls(f"arm{index}", Pose(np.array([x_m, y_m, 0.0]), turn), color, symbol)
+
+    def of(self, kind: ArmKind) -> Arm:
+        """The same arm of another kind, its base where that kind's reach wants it; tasks place Pandas."""
+        placement = kind.placement
+        shift = Pose(np.array([placement.forward_m, 0.0, placement.up_m]), np.array([1.0, 0.0, 0.0, 0.0]))
+        return replace(self, pose_base_in_world=self.pose_base_in_world @ shift, kind=kind)
 
 
 @dataclass(frozen=True)
@@ -89,74 +96,6 @@ class Observation:
     arms: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Limits:
-    """How far ahead of its measured pose a tool may be told to go, at every tick and every tick rate.
-
-    The servo follows at a speed in proportion to what is ahead, so this limits speed: 5 cm is 0.27 m/s at 20 Hz and
-    0.29 m/s at 60 Hz. A limit that shrank with the tick would make arms three times slower at 60 Hz (0.10 m/s).
-    """
-
-    step_m: float = 0.05
-    step_rad: float = 0.5
-
-
-@dataclass(frozen=True)
-class Workspace:
-    """Bound where a tool may be sent, in the arm's base frame: part of a shell around the base axis, over the table.
-
-    Measured with the hand pointing down: nearer to the axis than `radius_min_m` joint 4 meets its limit; further than
-    `reach_m` from the point at `reach_center_z_m` on the axis the arm is stretched; beside and behind its base it ties
-    itself up. The limits of tilt (from straight down) and yaw (from the direction of reach) keep the wrist off its own;
-    the hand is mounted at 45 degrees, so its yaw has more room on one side.
-    """
-
-    radius_min_m: float = 0.28
-    reach_m: float = 0.78
-    reach_center_z_m: float = 0.12
-    azimuth_max_rad: float = 1.2
-    z_min_m: float = 0.0
-    z_max_m: float = 0.65
-    tilt_max_rad: float = 0.85
-    yaw_min_rad: float = -1.9
-    yaw_max_rad: float = 2.7
-
-    def clamp(self, pose_tool_in_base: Pose) -> Pose:
-        """An allowed pose close to the given one; an allowed one is returned as it is, but for rounding."""
-        x, y, z = self._position(*pose_tool_in_base.position.tolist())
-        turn = self._turn(math.atan2(y, x), *pose_tool_in_base.quaternion_wxyz.tolist())
-        return Pose(np.array([x, y, z]), turn)
-
-    def _position(self, x: float, y: float, z: float) -> tuple[float, float, float]:
-        z = _clip(z, self.z_min_m, self.z_max_m)
-        farthest_m = math.sqrt(self.reach_m**2 - (z - self.reach_center_z_m) ** 2)
-        radius = _clip(math.hypot(x, y), self.radius_min_m, farthest_m)
-        azimuth = _clip(math.atan2(y, x), -self.azimuth_max_rad, self.azimuth_max_rad)
-        return radius * math.cos(azimuth), radius * math.sin(azimuth), z
-
-    def _turn(self, azimuth: float, w: float, x: float, y: float, z: float) -> NDArray[np.float64]:
-        """Every rotation is a turn about the vertical axis and then a tilt about a level one: limits each by itself."""
-        yaw, tilt = 2 * math.atan2(z, w), 2 * math.atan2(math.hypot(x, y), math.hypot(w, z))
-        tilt_direction = math.atan2(y, x) + yaw / 2
-        middle = azimuth + (self.yaw_min_rad + self.yaw_max_rad) / 2
-        largest = (self.yaw_max_rad - self.yaw_min_rad) / 2
-        yaw = middle + _clip(math.remainder(yaw - middle, math.tau), -largest, largest)
-        tilt = min(tilt, self.tilt_max_rad)
-        level, lean = math.cos(tilt / 2), math.sin(tilt / 2)
-        return np.array(
-            [
-                level * math.cos(yaw / 2),
-                lean * math.cos(tilt_direction - yaw / 2),
-                lean * math.sin(tilt_direction - yaw / 2),
-                level * math.sin(yaw / 2),
-            ]
-        )
-
-
-def _clip(value: float, low: float, high: float) -> float:
-    return min(max(value, low), high)
-
-
 _HORIZON_HZ = 20.0
 
 
@@ -182,8 +121,6 @@ class Task:
     trial_ticks: int | None = None
     success_hold_ticks: int = 10
     afterwards: str = ""
-    limits: Limits = Limits()
-    workspace: Workspace = Workspace()
 
     @property
     def time_limit_s(self) -> float:
@@ -206,6 +143,25 @@ class Task:
     @property
     def arm_names(self) -> tuple[str, ...]:
         return tuple(arm.name for arm in self.arms)
+
+    @property
+    def arm_kinds(self) -> tuple[str, ...]:
+        """The names of the arms' kinds, in order; none where all are Pandas, as messages and files say it."""
+        kinds = tuple(arm.kind.name for arm in self.arms)
+        return () if set(kinds) == {PANDA.name} else kinds
+
+    def with_kinds(self, kinds: Sequence[ArmKind]) -> Task:
+        """The same task with arms of these kinds, one for each; raises InvalidInput where the number differs."""
+        if len(kinds) != len(self.arms):
+            raise InvalidInput(
+                f"{len(kinds)} kinds of arms were given; {self.name} has {len(self.arms)} arms: name one for each."
+            )
+        arms = tuple(
+            arm if kind == arm.kind else arm.of(kind) for arm, kind in zip(self.arms, kinds, strict=True)
+        )
+        shapes = {f"{arm.name}/joint_positions": (len(arm.kind.home_rad),) for arm in arms}
+        observations = tuple(replace(o, shape=shapes.get(o.name, o.shape)) for o in self.observations)
+        return replace(self, arms=arms, observations=observations)
 
     @property
     def viewpoints(self) -> tuple[str, ...]:

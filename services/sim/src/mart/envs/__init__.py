@@ -28,7 +28,7 @@ are told in docs/how-to-use-the-environments.md.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Literal, TypedDict, Unpack
 
 from mart.protocol.errors import Unavailable
@@ -48,6 +48,8 @@ class EnvKeywords(TypedDict, total=False):
     """Steps a second of simulated time, 5 to 100; default 20."""
     arms: int | None
     """How many arms, where the task can have several numbers; default: the task's own."""
+    arm_kinds: Mapping[str, str]
+    """By arm: its kind, of those that are no Pandas, such as {"arm1": "ur5e"}; `mart arms list` names them."""
     render_mode: Literal["rgb_array"] | None
     """What `render` gives: pictures, or nothing, which is the default."""
     viewpoint: str

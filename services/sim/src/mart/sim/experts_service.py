@@ -9,7 +9,7 @@ from mart.operators.commander import SeatCommander
 from mart.operators.driver import SeatDriver, SeatSelection
 from mart.protocol import keys
 from mart.protocol.messages import OPERATOR_SCRIPT, RoomStatus, Seat
-from mart.protocol.tasks import get_task
+from mart.protocol.room_task import task_of_room
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.service import running
 from mart.sim.experts import ScriptedOperator, Skill, get_skill
@@ -30,7 +30,7 @@ class ScriptSeats(SeatSelection[str]):
 
     def commanders(self, key: str, status: RoomStatus) -> Sequence[SeatCommander]:
         """Return one for this arm; see `SeatSelection`."""
-        task = get_task(status.task, len(status.seats))
+        task = task_of_room(status)
         operator = ScriptedOperator(task, key, self._skill, self._settings.seed)
         return [SeatCommander(operator, task, (key,), OPERATOR_SCRIPT)]
 

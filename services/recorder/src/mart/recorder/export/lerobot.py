@@ -171,11 +171,17 @@ def _statistics(values: NDArray[Any]) -> dict[str, list[float]]:
     return {name: value.tolist() for name, value in (found | quantiles).items()} | {"count": [len(rows)]}
 
 
+def _robots(task: Task) -> str:
+    if not task.arm_kinds:
+        return f"{len(task.arms)} Franka Pandas"  # as every version has called them
+    return " + ".join(arm.kind.title for arm in task.arms)
+
+
 def _info(selection: ExportSelection, columns: Columns, episodes: int) -> dict[str, Any]:
     rate = selection.control_hz
     return {
         "codebase_version": _VERSION,
-        "robot_type": f"{len(selection.task.arms)} Franka Pandas",
+        "robot_type": _robots(selection.task),
         "total_episodes": episodes,
         "total_frames": len(columns["index"]),
         "total_tasks": 1,

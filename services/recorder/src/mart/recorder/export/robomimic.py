@@ -89,8 +89,11 @@ def _write_demo(group: h5py.Group, data: EpisodeData, episode: LabelledEpisode) 
 
 
 def _environment(selection: ExportSelection) -> dict[str, object]:
-    arguments = {"control_hz": selection.control_hz, "arms": len(selection.task.arms)}
-    return {"env_name": selection.task.name, "type": _GYM_TYPE, "env_kwargs": arguments}
+    task = selection.task
+    arguments: dict[str, object] = {"control_hz": selection.control_hz, "arms": len(task.arms)}
+    if task.arm_kinds:
+        arguments["arm_kinds"] = dict(zip(task.arm_names, task.arm_kinds, strict=True))
+    return {"env_name": task.name, "type": _GYM_TYPE, "env_kwargs": arguments}
 
 
 def _observations(task: Task) -> dict[str, object]:

@@ -51,7 +51,7 @@ def choose(
     first = taken[0]
     if first.task is None or first.control_hz is None:
         raise InvalidInput(f"{first.file_path} does not say its task and control rate; leave it out.")
-    task = get_task(first.task, len(first.arms))
+    task = get_task(first.task, len(first.arms), first.arm_kinds)
     return ExportSelection(task, control_hz or first.control_hz, tuple(taken))
 
 

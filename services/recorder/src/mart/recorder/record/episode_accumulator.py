@@ -185,6 +185,7 @@ class EpisodeAccumulator:
             task=facts.task,
             control_hz=facts.control_hz,
             arms=self.arms,
+            arm_kinds=facts.arm_kinds,
             seed=self.seed,
             mode=started and ("lockstep" if started.lockstep else "live"),
             skill=(started and started.skill) or None,

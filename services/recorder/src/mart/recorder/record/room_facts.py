@@ -24,16 +24,18 @@ class RoomFacts:
     control_hz: float | None = None
     model_sha256: str | None = None
     mujoco_version: str | None = None
+    arm_kinds: tuple[str, ...] = ()
     numerics: Numerics = field(default_factory=Numerics)
     names: dict[tuple[str, int], str] = field(default_factory=dict)  # (arm, seat epoch) → who
 
     def of_next_run(self) -> RoomFacts:
         """Return what still holds when the sim has started anew, perhaps at another rate: its task, and who was who."""
-        return RoomFacts(self.room, self.task, names=dict(self.names))
+        return RoomFacts(self.room, self.task, arm_kinds=self.arm_kinds, names=dict(self.names))
 
     def learn_status(self, status: RoomStatus) -> None:
         """Learn task, control rate and who sits where."""
         self._learn_task(status.task, status.control_hz)
+        self.arm_kinds = tuple(status.arm_kinds)
         self._learn_seats(status.seats)
 
     def learn_event(self, event: Event) -> None:
@@ -50,13 +52,14 @@ class RoomFacts:
         """Learn which compiled model the room steps, and with which MuJoCo."""
         self._learn_task(model.task, model.control_hz)
         self.model_sha256, self.mujoco_version = model.sha256, model.mujoco_version
-        self.numerics = model.numerics
+        self.arm_kinds, self.numerics = tuple(model.arm_kinds), model.numerics
 
     def learn_record(self, record: RoomRecord) -> None:
         """Learn what the room's record in a file says."""
         self._learn_task(record.task or "", record.control_hz or 0.0)
         self.model_sha256 = record.model_sha256 or self.model_sha256
         self.mujoco_version = record.mujoco_version or self.mujoco_version
+        self.arm_kinds = record.arm_kinds or self.arm_kinds
         if record.numeric_fingerprint:
             self.numerics = record.numerics
 
@@ -73,6 +76,7 @@ class RoomFacts:
             control_hz=self.control_hz,
             model_sha256=self.model_sha256,
             mujoco_version=self.mujoco_version,
+            arm_kinds=self.arm_kinds,
         ).with_numerics(self.numerics)
 
     def _learn_task(self, task: str, control_hz: float) -> None:

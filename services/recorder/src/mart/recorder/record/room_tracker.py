@@ -96,7 +96,7 @@ class RoomTracker:
         else:
             actions = []
         if known is not None and known.episode.add_state(state):
-            entries = state_entries(state, payload, arrived_ns, self.facts.task)
+            entries = state_entries(state, payload, arrived_ns, self.facts.task, self.facts.arm_kinds)
             actions += [WriteEntry(known.episode, entry) for entry in entries]
             if known.episode.states > 1:
                 actions += [WriteEntry(known.episode, entry) for entry in known.early_entries(state)]

@@ -164,7 +164,9 @@ class _Mended:
             self.unreadable += 1
             return
         self.episode.add_state(state)
-        for entry in state_entries(state, found.payload, found.arrived_ns, self.facts.task):
+        for entry in state_entries(
+            state, found.payload, found.arrived_ns, self.facts.task, self.facts.arm_kinds
+        ):
             self._file.add(entry)
 
     def _tell(self, said: Event | Command) -> None:

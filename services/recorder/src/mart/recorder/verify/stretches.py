@@ -49,6 +49,7 @@ class Stretch:
             task=room.task or "",
             control_hz=room.control_hz or 0.0,
             arms=len(self.arms),
+            arm_kinds=room.arm_kinds,
             first_state=self.first_state,
             actions=self.packed_actions(),
             native=native,

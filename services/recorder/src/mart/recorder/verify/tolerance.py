@@ -66,6 +66,7 @@ def compare_ticks(file: EpisodeFile, room: RoomRecord, ask: AskReplica, *, nativ
             task=room.task or "",
             control_hz=room.control_hz or 0.0,
             arms=len(stretch.arms),
+            arm_kinds=room.arm_kinds,
             states=b"".join(stretch.states or ()),
             actions=stretch.packed_actions(),
             native=native,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
 from mart.protocol.pose import Pose
-from mart.protocol.tasks import SHARED_VIEWPOINT, Observation, Task
+from mart.protocol.tasks import SHARED_VIEWPOINT, Observation, Task, arm_kinds_of
 from mart.render import Image, Renderer
 from mart.sim.scene.meshes import Detail
 from mart.sim.world import Diverged, World
@@ -31,13 +31,15 @@ _BOUND = 10.0  # metres, radians, shares: nothing that is still in the room come
 class EnvOptions:
     """Choose how a task's environment is built; the fields are the keywords of both kinds.
 
-    `arms`: how many, where the task can have several numbers. `viewpoint`: which camera `render` shows, an arm's name
-    or "front". `detail`: "hull", or "detailed" for machines with a GPU.
+    `arms`: how many, where the task can have several numbers. `arm_kinds`: by arm, of those that are no Pandas.
+    `viewpoint`: which camera `render` shows, an arm's name or "front". `detail`: "hull", or "detailed" for machines
+    with a GPU.
     """
 
     render_mode: str | None = None
     control_hz: float = DEFAULT_CONTROL_HZ
     arms: int | None = None
+    arm_kinds: Mapping[str, str] = field(default_factory=dict)
     viewpoint: str = SHARED_VIEWPOINT
     width_px: int = 640
     height_px: int = 480
@@ -78,7 +80,8 @@ class EpisodeRunner:
 
     def __init__(self, task: str, options: EnvOptions) -> None:
         """Build the world; raises NotFound for an unknown task or viewpoint, InvalidInput for what it cannot have."""
-        self._world = World.build(task, options.control_hz, options.arms, options.detail)
+        kinds = arm_kinds_of(task, options.arms, options.arm_kinds)
+        self._world = World.build(task, options.control_hz, options.arms, options.detail, kinds)
         self._options = options
         self._horizon_ticks = self.task.horizon_at(options.control_hz)
         self._ticks: int | None = None  # None: the episode is over, or none has begun

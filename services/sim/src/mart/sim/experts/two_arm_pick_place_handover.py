@@ -158,6 +158,7 @@ class _Receiver:
             human, self._trash, lambda now: across(self._trash(now), math.pi / 2) @ _QUARTER_TURN
         )
         self._grips = cycle((along, athwart))
+        self._workspace = arm.kind.workspace
         self._handle, self._grip_m = PickAndPlace(human, self._hammer, self._grip), _FREE_END_M
         self._sides = cycle(_BESIDE_M)
         self._back, self._taken = to_base @ _BACK, False
@@ -189,7 +190,9 @@ class _Receiver:
         give_up_s = obs.sim_time_s + _ATTEMPT_S
 
         def is_pointless(now: OperatorObservation) -> bool:
-            moved_away = offered and not (self._is_in_the_air(now, _SAG_M) and _is_reachable(self._grip(now)))
+            moved_away = offered and not (
+                self._is_in_the_air(now, _SAG_M) and _is_reachable(self._grip(now), self._workspace)
+            )
             return moved_away or now.sim_time_s > give_up_s
 
         beside_m = 0.0 if offered else next(self._sides)
@@ -240,7 +243,9 @@ class _Receiver:
         free = (
             place for place in places if abs(place - held_m) > _HAND_M and (place > held_m) == towards_tail
         )
-        return next((m for m in free if _is_reachable(across(hammer @ at(m, 0.0, 0.0)))), None)
+        return next(
+            (m for m in free if _is_reachable(across(hammer @ at(m, 0.0, 0.0)), self._workspace)), None
+        )
 
     def _is_back(self, now: OperatorObservation) -> bool:
         x, _, z = self._hammer(now).position
@@ -275,9 +280,9 @@ def _points_away(hammer: Pose) -> bool:
     return bool(hammer.rotation_matrix()[0, 0] > 0.0)
 
 
-def _is_reachable(tool: Pose) -> bool:
+def _is_reachable(tool: Pose, workspace: Workspace) -> bool:
     """Whether the tool gets there, and to somewhere above it."""
-    return all(apart_m(pose, Workspace().clamp(pose)) < _REACH_M for pose in (tool, _ABOVE @ tool))
+    return all(apart_m(pose, workspace.clamp(pose)) < _REACH_M for pose in (tool, _ABOVE @ tool))
 
 
 def _lies_in(thing: Pose, box: Pose, half_m: tuple[float, float]) -> bool:

@@ -17,6 +17,7 @@ class WorldSpec:
     task: str
     control_hz: float
     arms: int | None
+    kinds: tuple[str, ...] = ()
 
 
 class CompiledWorlds:
@@ -26,10 +27,10 @@ class CompiledWorlds:
         self._worlds: OrderedDict[WorldSpec, World] = OrderedDict()
 
     def get(self, spec: WorldSpec) -> World:
-        """Return the world; raises NotFound for an unknown task, InvalidInput for an impossible rate or arms."""
+        """Return the world; raises NotFound for an unknown task or kind, InvalidInput for an impossible rate."""
         world = self._worlds.get(spec)
         if world is None:
-            world = World.build(spec.task, spec.control_hz, spec.arms)
+            world = World.build(spec.task, spec.control_hz, spec.arms, kinds=spec.kinds)
         self._worlds[spec] = world
         self._worlds.move_to_end(spec)
         while len(self._worlds) > MAX_COMPILED:

@@ -85,7 +85,8 @@ class Resimulator:
         return RolloutReply(differences=differences, numerics=own_numerics())
 
     def _world(self, request: RolloutRequest.Resimulate | RolloutRequest.CompareTicks) -> World:
-        world = self._worlds.get(WorldSpec(request.task, request.control_hz, request.arms or None))
+        kinds = tuple(request.arm_kinds)
+        world = self._worlds.get(WorldSpec(request.task, request.control_hz, request.arms or None, kinds))
         if request.model_sha256 != world.model_sha256:
             raise Conflict(
                 f"A recording of model {request.model_sha256[:12]} was given, but this replica compiles "

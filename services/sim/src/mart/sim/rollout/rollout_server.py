@@ -85,7 +85,7 @@ class RolloutServer:
 
     def _reset(self, reset: RolloutRequest.Reset, now_s: float) -> RolloutReply:
         self._require_room(len(reset.seeds))
-        world = self._worlds.get(WorldSpec(reset.task, reset.control_hz, reset.arms or None))
+        world = self._worlds.get(_spec(reset))
         worlds = WorldBatch(world, len(reset.seeds), self._threads, self._explain)
         worlds.reset(reset.seeds)
         self._opened += 1
@@ -109,7 +109,7 @@ class RolloutServer:
         return session.reply(step.session)
 
     def _describe(self, request: RolloutRequest.Describe) -> RolloutReply:
-        world = self._worlds.get(WorldSpec(request.task, request.control_hz, request.arms or None))
+        world = self._worlds.get(_spec(request))
         return RolloutReply(model=model_message(world))
 
     def _require_room(self, worlds: int) -> None:
@@ -140,6 +140,10 @@ class RolloutServer:
         idle = [name for name, session in self._sessions.items() if now_s - session.used_s > IDLE_S]
         for name in idle:
             del self._sessions[name]
+
+
+def _spec(asked: RolloutRequest.Reset | RolloutRequest.Describe) -> WorldSpec:
+    return WorldSpec(asked.task, asked.control_hz, asked.arms or None, tuple(asked.arm_kinds))
 
 
 def _actions(payload: bytes, shape: tuple[int, ...]) -> Array:

@@ -194,6 +194,7 @@ class Room:
             last_ended=self._last_ended,
             unrecorded=self.recording_watch.objection(now_s),
             practice=self._terms.practice,
+            arm_kinds=self._world.task.arm_kinds,
             **room_messages.counts(self._record),
         )
 

@@ -13,6 +13,7 @@ from mart.protocol import clock, keys
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.messages import Event, RoomStatus
 from mart.protocol.practice import require_practice_alone
+from mart.protocol.tasks import arm_kinds_of
 from mart.protocol.vocabulary import OperatorKind, ServiceKind
 from mart.runtime.bus import Bus, Closable
 from mart.runtime.decoding_subscriber import DecodingSubscriber
@@ -37,6 +38,7 @@ from mart.sim.room.work_queue import WorkQueue
 from mart.sim.settings import SimSettings
 from mart.sim.world import World
 from mart.sim.world.divergence import DivergenceArchive
+from mart.sim.world.reach import require_reach
 
 _log = logging.getLogger(__name__)
 
@@ -47,7 +49,7 @@ def serve_room(settings: SimSettings) -> None:
     """Build the world of `settings` and serve its room.
 
     Raises what building a world raises, NotFound for an unknown skill, and InvalidInput for a practice room that is to
-    count or to run by itself.
+    count or to run by itself, or for arms that do not reach what the task asks of them.
     """
     require_practice_alone(
         practice=settings.practice,
@@ -56,7 +58,10 @@ def serve_room(settings: SimSettings) -> None:
         lockstep=settings.lockstep,
     )
     skill = get_skill(settings.skill) if settings.skill else None
-    world = World.build(settings.task, settings.control_hz or DEFAULT_CONTROL_HZ, settings.arms)
+    world = World.build(
+        settings.task, settings.control_hz or DEFAULT_CONTROL_HZ, settings.arms, kinds=_arm_kinds(settings)
+    )
+    require_reach(world)
     if settings.lockstep:
         serve_unpaced(settings, world, skill or get_skill(DEFAULT_SKILL))
     else:
@@ -203,7 +208,11 @@ def _looks(settings: SimSettings) -> World | None:
     if settings.quality == "fast":
         return None
     hz = settings.control_hz or DEFAULT_CONTROL_HZ  # shown, never stepped
-    return World.build(settings.task, hz, settings.arms, detail="detailed")
+    return World.build(settings.task, hz, settings.arms, "detailed", _arm_kinds(settings))
+
+
+def _arm_kinds(settings: SimSettings) -> tuple[str, ...]:
+    return arm_kinds_of(settings.task, settings.arms, settings.arm_kinds)
 
 
 def _archive(settings: SimSettings) -> DivergenceArchive:

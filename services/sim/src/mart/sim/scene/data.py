@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
 
 import mujoco
 import numpy as np
@@ -18,11 +19,33 @@ Flags = NDArray[np.bool_]
 
 def evenly(rows: Iterable[int]) -> slice:
     """Return rows that lie equally far apart as a slice: what it chooses is a view that follows the data."""
-    first, *others = rows
-    step = others[0] - first if others else 1
-    chosen = slice(first, first + step * len(others) + 1, step)
-    assert list(range(chosen.start, chosen.stop, step)) == [first, *others]
-    return chosen
+    chosen = list(rows)
+    assert _are_even(chosen)
+    step = chosen[1] - chosen[0] if len(chosen) > 1 else 1
+    return slice(chosen[0], chosen[-1] + 1, step)
+
+
+def _are_even(rows: Sequence[int]) -> bool:
+    steps = {after - before for before, after in pairwise(rows)}
+    return len(rows) > 0 and len(steps) < 2 and min(steps, default=1) > 0
+
+
+class ChosenRows:
+    """Choose rows of an array of the data, shape (..., rows, n), and follow it.
+
+    Rows that lie equally far apart, as those of equal arms do, are one view; others are put together when read.
+    """
+
+    def __init__(self, array: Array, rows: Sequence[int]) -> None:
+        self._view = array[..., evenly(rows), :] if _are_even(rows) else None
+        self._views = [array[..., row, :] for row in rows]
+        self._none = array[..., :0, :]
+
+    def read(self) -> Array:
+        """Return the rows as they are now, shape (..., chosen, n)."""
+        if self._view is not None:
+            return self._view
+        return np.stack(self._views, axis=-2) if self._views else self._none
 
 
 def into_frame(rotation: Array, vectors: Array) -> Array:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from mart.sim.scene.data import Array, Data, evenly, into_frame
+from mart.protocol.tasks import Arm
+from mart.sim.scene.data import Array, ChosenRows, Data, into_frame
 from mart.sim.scene.gripper import STROKE_M
 
 
@@ -17,44 +18,51 @@ class MeasuredArms:
     It holds views into the data of a world or a batch, which follow it.
     """
 
-    def __init__(self, model: mujoco.MjModel, data: Data, names: Sequence[str]) -> None:
+    def __init__(self, model: mujoco.MjModel, data: Data, arms: Sequence[Arm]) -> None:
+        names = [arm.name for arm in arms]
         bases = [model.body(f"{name}/base").id for name in names]
         tools = [model.site(f"{name}/tool").id for name in names]
         hands = [int(model.site_bodyid[tool]) for tool in tools]
-        first, fingers = (
-            [int(model.joint(f"{name}/{joint}").qposadr[0]) for name in names]
-            for joint in ("joint1", "left_finger")
-        )
         turns = [_conjugate(model.body_quat[base]) for base in bases]
         self._axes = np.stack([_matrix(turn).T for turn in turns])  # of the bases, each a column
         self._positions_base_in_world = model.body_pos[bases].copy()
         self._hands_to_tools = np.stack(
             [_between(turn, model.site_quat[tool]).T for turn, tool in zip(turns, tools, strict=True)]
         )
-        self._tool_positions = data.site_xpos[..., evenly(tools), :]
-        self._hand_quaternions = data.xquat[..., evenly(hands), :]
-        self._fingers = [data.qpos[..., evenly(fingers)], data.qpos[..., evenly(f + 1 for f in fingers)]]
-        self.joint_positions = [data.qpos[..., start : start + 7] for start in first]  # radians; of each arm
+        self._tool_positions = ChosenRows(data.site_xpos, tools)
+        self._hand_quaternions = ChosenRows(data.xquat, hands)
+        fingers = [first for name in names if (first := _first_finger(model, name)) is not None]
+        self._with_fingers = np.array([_first_finger(model, name) is not None for name in names])
+        self._fingers = [ChosenRows(data.qpos[..., None], [f + side for f in fingers]) for side in (0, 1)]
+        self.joint_positions = []  # radians; views, one of each arm
+        for arm in arms:
+            start = int(model.joint(f"{arm.name}/joint1").qposadr[0])
+            self.joint_positions.append(data.qpos[..., start : start + arm.kind.joint_count])
 
     def tools_in_base(self) -> tuple[Array, Array]:
         """Return positions, shape (..., arms, 3), and quaternions wxyz, shape (..., arms, 4), w >= 0."""
-        positions = into_frame(self._axes, self._tool_positions - self._positions_base_in_world)
-        quaternions = into_frame(self._hands_to_tools, self._hand_quaternions)
+        positions = into_frame(self._axes, self._tool_positions.read() - self._positions_base_in_world)
+        quaternions = into_frame(self._hands_to_tools, self._hand_quaternions.read())
         return positions, quaternions * np.copysign(1.0, quaternions[..., :1])
 
     def grippers(self) -> Array:
-        """Return how far each is closed, 0 open … 1 closed, shape (..., arms)."""
-        left, right = self._fingers
-        return np.minimum(np.maximum(1.0 - (left + right) / (2 * STROKE_M), 0.0), 1.0)
+        """Return how far each is closed, 0 open … 1 closed, shape (..., arms); 0 of a tool without fingers."""
+        left, right = (fingers.read()[..., 0] for fingers in self._fingers)
+        closed: Array = np.minimum(np.maximum(1.0 - (left + right) / (2 * STROKE_M), 0.0), 1.0)
+        if self._with_fingers.all():
+            return closed
+        every = np.zeros((*closed.shape[:-1], len(self._with_fingers)))
+        every[..., self._with_fingers] = closed
+        return every
 
 
 class MeasuredArm:
     """Measure one arm of a single world."""
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, name: str) -> None:
-        self._alone = MeasuredArms(model, data, [name])
-        fingers = int(model.joint(f"{name}/left_finger").qposadr[0])
-        self._fingers = data.qpos[fingers : fingers + 2]
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, arm: Arm) -> None:
+        self._alone = MeasuredArms(model, data, [arm])
+        first = _first_finger(model, arm.name)
+        self._fingers = data.qpos[:0] if first is None else data.qpos[first : first + 2]
 
     def tool_in_base(self) -> tuple[Array, Array]:
         """Return position, shape (3,), and quaternion wxyz, shape (4,), w >= 0."""
@@ -66,9 +74,15 @@ class MeasuredArm:
         return float(self._alone.grippers()[0])
 
     def place(self, joint_positions: Array) -> None:
-        """Set the arm to rest at these joint positions, shape (7,), radians, gripper open."""
+        """Set the arm to rest at these joint positions, radians, one for each joint; gripper open."""
         self._alone.joint_positions[0][:] = joint_positions
         self._fingers[:] = STROKE_M
+
+
+def _first_finger(model: mujoco.MjModel, arm: str) -> int | None:
+    """Return where the left finger is in qpos, the right one behind it; None for a tool without fingers."""
+    joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f"{arm}/left_finger")
+    return None if joint < 0 else int(model.jnt_qposadr[joint])
 
 
 def _conjugate(quaternion_wxyz: Array) -> Array:

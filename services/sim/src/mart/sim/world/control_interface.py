@@ -24,9 +24,9 @@ class ControlInterface:
         scene.attach(data)
         self._scene = scene
         self._shadows = Shadows(model, data)
-        self._arms = MeasuredArms(model, data, scene.task.arm_names)
-        limits = scene.task.limits
-        self._action_scale = np.array([limits.step_m] * 3 + [limits.step_rad] * 3 + [-STROKE_M])
+        self._arms = MeasuredArms(model, data, scene.task.arms)
+        limits = [arm.kind.limits for arm in scene.task.arms]
+        self._action_scale = np.array([[of.step_m] * 3 + [of.step_rad] * 3 + [-STROKE_M] for of in limits])
         blocks = data.userdata[..., : osc.BLOCK_SIZE * len(scene.task.arms)]
         blocks = blocks.reshape(*blocks.shape[:-1], len(scene.task.arms), osc.BLOCK_SIZE)
         self.modes, self.commands = blocks[..., osc.MODE], blocks[..., osc.COMMAND]

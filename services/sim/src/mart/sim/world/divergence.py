@@ -1,7 +1,7 @@
 """Keep the last states of worlds that went out of bounds in files: `data/diverged/{when}-{owner}-{task}.npz`.
 
 last = divergence.load(path)
-world = World.build(last.task, last.control_hz, arms=last.actions.shape[1])
+world = World.build(last.task, last.control_hz, arms=last.actions.shape[1], kinds=last.arm_kinds)
 world.set_integration_state(last.states[0].tobytes())
 for actions in last.actions:
     world.step(actions)
@@ -61,6 +61,7 @@ def load(path: Path) -> LastStates:
                 model_sha256=str(kept["model_sha256"]),
                 states=kept["states"],
                 actions=kept["actions"],
+                arm_kinds=tuple(map(str, kept["arm_kinds"])) if "arm_kinds" in kept else (),
             )
     except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
         raise Corrupt(f"{path} holds no last states of a world ({error}); choose another file.") from error

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mart.protocol.errors import InvalidInput
 from mart.protocol.pose import Pose
@@ -16,9 +16,9 @@ _LARGEST_STEP_RAD = 0.3
 
 
 def solve(
-    model: mujoco.MjModel, arm: str, pose_tool_in_world: Pose, start_rad: NDArray[np.float64]
+    model: mujoco.MjModel, arm: str, pose_tool_in_world: Pose, start_rad: ArrayLike
 ) -> NDArray[np.float64]:
-    """Return joint positions, shape (7,), radians, that put the arm's tool at the pose, near `start_rad`.
+    """Return joint positions, radians, that put the arm's tool at the pose, near `start_rad`, of the same shape.
 
     Raises InvalidInput where the arm cannot reach it.
     """
@@ -26,18 +26,19 @@ def solve(
     site = model.site(f"{arm}/tool").id
     joint = model.joint(f"{arm}/joint1")
     qpos, dof = int(joint.qposadr[0]), int(joint.dofadr[0])
-    low, high = model.jnt_range[joint.id : joint.id + 7].T
-    jacobian = np.zeros((6, model.nv))
     joints = np.array(start_rad, dtype=np.float64)
+    count = len(joints)
+    low, high = model.jnt_range[joint.id : joint.id + count].T
+    jacobian = np.zeros((6, model.nv))
     for _ in range(_ITERATIONS):
-        data.qpos[qpos : qpos + 7] = joints
+        data.qpos[qpos : qpos + count] = joints
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         error = _error(data, site, pose_tool_in_world)
         if np.abs(error).max() < _TOLERANCE:
             return joints
         mujoco.mj_jacSite(model, data, jacobian[:3], jacobian[3:], site)
-        step = _damped_step(jacobian[:, dof : dof + 7], error)
+        step = _damped_step(jacobian[:, dof : dof + count], error)
         joints = np.clip(joints + step, low, high)
     raise InvalidInput(
         f"{arm} cannot reach {pose_tool_in_world.position.round(3).tolist()} (world, metres): choose a nearer pose."

@@ -26,6 +26,7 @@ class LastStates:
     model_sha256: str
     states: Array
     actions: Array
+    arm_kinds: tuple[str, ...] = ()
 
 
 class Diverged(Corrupt):

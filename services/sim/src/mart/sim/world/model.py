@@ -6,8 +6,9 @@ import math
 
 import mujoco
 
+from mart.protocol.arms.robot_file import Gains
 from mart.protocol.control_rate import require_control_hz
-from mart.sim.scene import panda, scenery
+from mart.sim.scene import arm_bodies, scenery
 from mart.sim.scene.meshes import Detail
 from mart.sim.scene.scene import Scene
 from mart.sim.world import osc
@@ -27,7 +28,7 @@ def substeps(control_hz: float) -> tuple[int, float]:
 
 
 def build(
-    scene: Scene, timestep_s: float, detail: Detail = "hull", gains: osc.Gains | None = None
+    scene: Scene, timestep_s: float, detail: Detail = "hull", gains: Gains | None = None
 ) -> mujoco.MjModel:
     """Compile a scene with its arms and their controller; `timestep_s`: of a substep."""
     spec = mujoco.MjSpec()
@@ -35,13 +36,13 @@ def build(
     spec.compiler.degree = False
     scenery.configure(spec, timestep_s)
     scenery.add_room(spec, scene.task)
-    panda.add_assets(spec, detail)
+    arm_bodies.add_assets(spec, scene.task.arms, detail)
     for index, arm in enumerate(scene.task.arms):
-        panda.add_panda(spec, arm, index, detail)
+        arm_bodies.add_arm(spec, arm, index, detail)
     scene.add_objects(spec)
     for camera in scene.cameras():
         scenery.add_camera(spec, camera)
     # The arms' blocks, what the scene remembers, and the count of successful ticks.
     spec.nuserdata = osc.BLOCK_SIZE * len(scene.task.arms) + scene.memory_size + 1
-    osc.describe(spec, scene.task.arm_names, gains or osc.Gains())
+    osc.describe(spec, scene.task.arms, gains)
     return spec.compile()

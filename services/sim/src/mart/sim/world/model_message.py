@@ -17,6 +17,7 @@ def model_message(world: World) -> Model:
         task=world.task.name,
         control_hz=world.control_hz,
         arms=world.arms,
+        arm_kinds=world.task.arm_kinds,
         mujoco_version=mujoco.__version__,
         numerics=own_numerics(),
     )

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from dataclasses import dataclass
 from importlib.util import find_spec
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.protocol.arms import PANDA
+from mart.protocol.arms.robot_file import Gains
 from mart.protocol.errors import Unavailable
+from mart.protocol.tasks import Arm
 
 Array = NDArray[np.float64]
 
-MAGIC = 1296126548.0
+PANDAS_MAGIC, ARMS_MAGIC = 1296126548.0, 1296126514.0
 HOLD_GOAL, NEW_DELTA = 1.0, 2.0
 
-# One arm's part of userdata: mode, delta (6), finger, goal position (3), goal rotation (9), posture (7).
+# One arm's part of userdata: mode, delta (6), finger, goal position (3), goal rotation (9), posture (7, of which
+# an arm uses as many as it has joints).
 MODE = 0
 COMMAND = slice(
     1, 8
@@ -28,63 +31,63 @@ GOAL_ROTATION = slice(11, 20)
 POSTURE = slice(20, 27)
 BLOCK_SIZE = 27
 
-
-@dataclass(frozen=True)
-class Gains:
-    """Set the controller: kp in 1/s², damping critical. Larger errors are pulled in, so that no goal makes a whip.
-
-    The regular mobilities are the inverse effective mass (1/kg) and inertia (1/(kg m²)) below which a direction counts
-    as nearly lost and is damped.
-    """
-
-    kp_position: float = 150.0
-    kp_orientation: float = 150.0
-    kp_posture: float = 10.0
-    max_position_error_m: float = 0.10
-    max_orientation_error_rad: float = 0.50
-    regular_mobility_position: float = 0.03
-    regular_mobility_orientation: float = 0.3
-
-    def as_row(self) -> tuple[float, ...]:
-        """Return the numbers in the order in which osc.c reads them."""
-        return (
-            self.kp_position,
-            self.kp_orientation,
-            self.kp_posture,
-            self.max_position_error_m,
-            self.max_orientation_error_rad,
-            self.regular_mobility_position,
-            self.regular_mobility_orientation,
-        )
+_PANDA_ROW, _ARM_ROW = 7, 21  # numbers of a row, see osc.c
+_FINGER_SCALE_AND_OFFSET = (1.0, 0.0)  # from a finger's target in metres to what its servo is told
 
 
-def describe(spec: mujoco.MjSpec, arms: Sequence[str], gains: Gains) -> None:
+def describe(spec: mujoco.MjSpec, arms: Sequence[Arm], gains: Gains | None = None) -> None:
     """Add the numeric that osc.c looks for; userdata must begin with one block for each arm, in this order.
 
-    Call when the spec has all its parts: the numeric holds their indices.
+    Call when the spec has all its parts: the numeric holds their indices. gains: for all arms instead of their own.
+    Scenes of Pandas alone keep the layout, and so the bits, of every earlier version.
     """
-    numeric = spec.add_numeric(name="osc", size=2 + len(gains.as_row()) + 7 * len(arms))
+    pandas = all(arm.kind == PANDA for arm in arms)
+    head = [*(gains or PANDA.gains).model_dump().values()] if pandas else []
+    numeric = spec.add_numeric(
+        name="osc", size=2 + len(head) + len(arms) * (_PANDA_ROW if pandas else _ARM_ROW)
+    )
     probe = spec.compile()
-    rows = [_row(probe, arm, BLOCK_SIZE * i) for i, arm in enumerate(arms)]
-    numeric.data = np.concatenate([[MAGIC, len(arms)], gains.as_row(), *rows])
+    rows = [_panda_row(probe, arm, BLOCK_SIZE * i) for i, arm in enumerate(arms)]
+    if not pandas:
+        rows = [[*row, *_arm_row(probe, arm, gains)] for row, arm in zip(rows, arms, strict=True)]
+    numeric.data = np.concatenate([[PANDAS_MAGIC if pandas else ARMS_MAGIC, len(arms)], head, *rows])
 
 
-def _row(model: mujoco.MjModel, arm: str, userdata_start: int) -> list[float]:
-    first = model.joint(f"{arm}/joint1")
-    dof = int(first.dofadr[0])
+def _panda_row(model: mujoco.MjModel, arm: Arm, userdata_start: int) -> list[float]:
+    first = model.joint(f"{arm.name}/joint1")
+    dof, joints = int(first.dofadr[0]), arm.kind.joint_count
     # osc.c reads the mass matrix as the packed rows of a chain; any other tree would be read wrongly.
-    chain = model.M_rownnz[dof : dof + 7].tolist()
-    if chain != [1, 2, 3, 4, 5, 6, 7]:
-        raise AssertionError(f"{arm} is not a chain of 7 joints fixed to the world: {chain}")
+    chain = model.M_rownnz[dof : dof + joints].tolist()
+    if chain != [*range(1, joints + 1)]:
+        raise AssertionError(f"{arm.name} is not a chain of {joints} joints fixed to the world: {chain}")
     return [
-        model.site(f"{arm}/tool").id,
-        model.body(f"{arm}/base").id,
+        model.site(f"{arm.name}/tool").id,
+        model.body(f"{arm.name}/base").id,
         dof,
         int(first.qposadr[0]),
-        model.actuator(f"{arm}/torque1").id,
-        model.actuator(f"{arm}/left_finger").id,
+        model.actuator(f"{arm.name}/torque1").id,
+        _finger(model, arm, "left"),
         userdata_start,
     ]
+
+
+def _arm_row(model: mujoco.MjModel, arm: Arm, gains: Gains | None) -> list[float]:
+    """Return what osc.c is told of an arm beyond what it is told of a Panda."""
+    second = _finger(model, arm, "right")
+    return [
+        arm.kind.joint_count,
+        0 if second < 0 else 2,
+        second,
+        *_FINGER_SCALE_AND_OFFSET,
+        arm.kind.posture.joint1_sign,
+        arm.kind.posture.joint1_offset_rad,
+        *(gains or arm.kind.gains).model_dump().values(),
+    ]
+
+
+def _finger(model: mujoco.MjModel, arm: Arm, side: str) -> int:
+    """Return the index of a finger's servo, -1 where there is none."""
+    return int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, f"{arm.name}/{side}_finger"))
 
 
 def install() -> None:

@@ -11,6 +11,7 @@ import copy
 import hashlib
 import logging
 import math
+from collections.abc import Sequence
 from functools import cached_property
 
 import mujoco
@@ -22,7 +23,6 @@ from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.errors import InvalidInput
 from mart.protocol.pose import Pose, quaternion_conjugate, quaternion_log, quaternion_multiply
 from mart.protocol.tasks import Task, get_task
-from mart.sim.scene import panda
 from mart.sim.scene.data import Array
 from mart.sim.scene.meshes import Detail
 from mart.sim.scene.scene import Scene, TaskStatus
@@ -49,7 +49,7 @@ class World:
     """Hold a compiled task and its state. Build with `World.build`, then `reset` before anything else.
 
     Actions: shape (arms, 7), each number in [-1, 1] (clipped): translation along the arm's base axes over
-    `task.limits.step_m`, rotation vector about them over `task.limits.step_rad`, gripper -1 open … +1 closed. They
+    its kind's `limits.step_m`, rotation vector about them over `limits.step_rad`, gripper -1 open … +1 closed. They
     count from the tool's measured pose.
     """
 
@@ -66,7 +66,7 @@ class World:
         self.model.opt.timestep = timestep_s
         self.data = mujoco.MjData(self.model)
         self._interface = ControlInterface(scene, self.model, self.data)
-        self._measured = {arm: MeasuredArm(self.model, self.data, arm) for arm in self.arms}
+        self._measured = {arm.name: MeasuredArm(self.model, self.data, arm) for arm in self.task.arms}
         self._action_shape = (len(self.arms), ACTION_SIZE)
         self._history = StateHistory(self.model, self._action_shape)
         self._fatal_warnings = self.data.warning.number[FATAL_WARNINGS]
@@ -78,9 +78,13 @@ class World:
         control_hz: float = DEFAULT_CONTROL_HZ,
         arms: int | None = None,
         detail: Detail = "hull",
+        kinds: Sequence[str] = (),
     ) -> World:
-        """Compile a task by name; raises NotFound for an unknown one, InvalidInput for an impossible rate or arms."""
-        return cls(scene_of(get_task(task_name, arms)), control_hz, detail)
+        """Compile a task by name, with arms of these kinds (none: Pandas).
+
+        Raises NotFound for an unknown task or kind, InvalidInput for an impossible rate or arms.
+        """
+        return cls(scene_of(get_task(task_name, arms, kinds)), control_hz, detail)
 
     def at(self, control_hz: float) -> World:
         """Return the same world in ticks of another rate, not reset yet; raises InvalidInput for an impossible one.
@@ -127,9 +131,9 @@ class World:
         self._scene.place_objects(random)
         for index, arm in enumerate(self.task.arms):
             tool_in_world = arm.pose_base_in_world @ self._scene.start_pose_in_base(arm, random)
-            joints = kinematics.solve(self.model, arm.name, tool_in_world, np.array(panda.HOME_RAD))
+            joints = kinematics.solve(self.model, arm.name, tool_in_world, arm.kind.home_rad)
             self._measured[arm.name].place(joints)
-            self._interface.postures[index] = joints
+            self._interface.postures[index, : len(joints)] = joints
         self._interface.command(np.tile(_HOLD_OPEN, (len(self.arms), 1)))
         mujoco.mj_forward(self.model, self.data)
 
@@ -148,13 +152,14 @@ class World:
         target every tick lets a loaded arm sink.
         """
         position, quaternion = self._arm(arm).tool_in_base()
-        target = self.task.workspace.clamp(target_tool_in_base)
+        kind = self.task.arm(arm).kind
+        target = kind.workspace.clamp(target_tool_in_base)
         shift = target.position - position
         turn = quaternion_multiply(target.quaternion_wxyz, quaternion_conjugate(quaternion))
         return np.concatenate(
             [
-                _within_unit(shift / self.task.limits.step_m),
-                _within_unit(quaternion_log(turn) / self.task.limits.step_rad),
+                _within_unit(shift / kind.limits.step_m),
+                _within_unit(quaternion_log(turn) / kind.limits.step_rad),
                 [2.0 * min(max(gripper, 0.0), 1.0) - 1.0],
             ]
         )
@@ -189,7 +194,9 @@ class World:
 
     def last_states(self, states: Array, actions: Array) -> LastStates:
         """Describe states of this model, shape (n, size), and actions in them, shape (n, arms, 7)."""
-        return LastStates(self.task.name, self.control_hz, self.model_sha256, states, actions)
+        return LastStates(
+            self.task.name, self.control_hz, self.model_sha256, states, actions, self.task.arm_kinds
+        )
 
     def integration_state(self) -> bytes:
         """Return MuJoCo's full integration state, float64 little-endian: what decides the future, and shadows."""

@@ -11,7 +11,8 @@ import numpy as np
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import Model, State
 from mart.protocol.pose import Pose
-from mart.protocol.tasks import Ghost, Task, get_task
+from mart.protocol.room_task import task_of_model
+from mart.protocol.tasks import Ghost, Task
 from mart.render import Image, Renderer, load_model, viewpoint_id
 from mart.teleop_gateway.input.retarget import azimuth_of_camera_rad
 from mart.teleop_gateway.video import tick_code
@@ -51,14 +52,15 @@ def camera_azimuth_rad(message: Model, model: mujoco.MjModel, arm: str) -> float
     mujoco.mj_camlight(model, data)
     camera = viewpoint_id(model, arm)
     camera_in_world = Pose.from_matrix(data.cam_xmat[camera].reshape(3, 3), data.cam_xpos[camera])
-    base_in_world = get_task(message.task, len(message.arms)).arm(arm).pose_base_in_world
+    base = data.body(f"{arm}/base")
+    base_in_world = Pose.from_matrix(base.xmat.reshape(3, 3), base.xpos)
     return azimuth_of_camera_rad(base_in_world.inverse() @ camera_in_world)
 
 
 def task_of(message: Model) -> Task | None:
     """Return the task of the room that sent this; None where this version does not know it."""
     try:
-        return get_task(message.task, len(message.arms))
+        return task_of_model(message)
     except (NotFound, InvalidInput):
         return None
 

@@ -53,6 +53,7 @@ class DataDigest(BaseModel):
     task: str
     control_hz: float
     arms: tuple[str, ...]
+    arm_kinds: tuple[str, ...] = ()  # one for each arm; none: Pandas
     selection: Selection
     episodes: tuple[UsedEpisode, ...]
     ticks: int
@@ -104,14 +105,14 @@ def load_dataset(
             f"Every episode of the data set {dataset.name!r} was deleted; put them back, or choose another."
         )
     chosen = select(found, selection, any_rate=control_hz is not None)
-    name, recorded_hz, arms = _facts(chosen[0])
-    task = get_task(name, len(arms))
+    task, recorded_hz = _facts(chosen[0])
     read = _read(chosen, task, control_hz, cache)
     chosen, hashes, episodes = [one for one, _, _ in read], [h for _, h, _ in read], [e for _, _, e in read]
     digest = DataDigest(
-        task=name,
+        task=task.name,
         control_hz=control_hz or recorded_hz,
-        arms=arms,
+        arms=task.arm_names,
+        arm_kinds=task.arm_kinds,
         selection=selection,
         episodes=tuple(map(_used, chosen, hashes, episodes)),
         ticks=sum(len(episode.actions) for episode in episodes),
@@ -156,10 +157,10 @@ def join(digest: DataDigest, layout: ObservationLayout, episodes: Iterable[Episo
     )
 
 
-def _facts(first: LabelledEpisode) -> tuple[str, float, tuple[str, ...]]:
+def _facts(first: LabelledEpisode) -> tuple[Task, float]:
     if first.task is None or first.control_hz is None:
         raise InvalidInput(f"{first.file_path} does not say its task and control rate; leave it out.")
-    return first.task, first.control_hz, first.arms
+    return get_task(first.task, len(first.arms), first.arm_kinds), first.control_hz
 
 
 def _used(one: LabelledEpisode, sha256: str, episode: EpisodeArrays) -> UsedEpisode:

@@ -7,7 +7,7 @@ part is what its operator sees, in the same order. Parts overlap where arms see 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,12 +48,12 @@ class ObservationLayout:
         return cls(task.arm_names, tuple(fields))
 
     @classmethod
-    def of_arms(cls, task: str, arms: int) -> ObservationLayout:
-        """Return the layout of a task with so many arms.
+    def of_arms(cls, task: str, arms: int, kinds: Sequence[str] = ()) -> ObservationLayout:
+        """Return the layout of a task with so many arms, of these kinds; none of them: Pandas.
 
-        Raises NotFound for an unknown task and InvalidInput for a number of arms that it cannot have.
+        Raises NotFound for an unknown task or kind and InvalidInput for a number of arms that it cannot have.
         """
-        return cls.of(get_task(task, arms))
+        return cls.of(get_task(task, arms, kinds))
 
     @property
     def sha256(self) -> str:

@@ -114,7 +114,8 @@ def _ticks_ahead(chosen: Path, config: EvalConfig) -> int:
         seeds, rounds = len(run.seeds(updates[0])), len(updates)
         first = run.checkpoint(updates[0], run.seeds(updates[0])[0])
     record = read_record(first)
-    limit_s = config.time_limit_s or get_task(record.task, len(record.arms)).trial_limit_s
+    task = get_task(record.task, len(record.arms), record.arm_kinds)
+    limit_s = config.time_limit_s or task.trial_limit_s
     batches = rounds * batch_count(seeds, config.episodes)
     if rounds > 1 and config.score_episodes:
         batches += batch_count(seeds, config.score_episodes)

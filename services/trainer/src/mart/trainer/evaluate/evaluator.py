@@ -104,7 +104,7 @@ class Evaluator:
         self, path: Path, purpose: Purpose, rollouts: Sequence[RolloutResult], kept_in: Path | None
     ) -> Evaluation:
         record = read_record(path)
-        task = get_task(record.task, len(record.arms))
+        task = get_task(record.task, len(record.arms), record.arm_kinds)
         names: dict[int, str] = {}
         if kept_in is not None:
             most = self.config.kept if purpose is Purpose.SCORE else min(1, self.config.kept)

@@ -92,6 +92,7 @@ class RolloutEpisode:
             task=self.task.name,
             control_hz=self.control_hz,
             arms=self.task.arm_names,
+            arm_kinds=self.task.arm_kinds,
             seed=self.seed,
             started_ns=started_ns,
             ended_ns=self._at_ns(self.ticks, started_ns),
@@ -141,6 +142,7 @@ def write(path: Path, rollout: RolloutEpisode, model: Model, started_ns: int) ->
         control_hz=rollout.control_hz,
         model_sha256=model.sha256,
         mujoco_version=model.mujoco_version,
+        arm_kinds=rollout.task.arm_kinds,
     ).with_numerics(model.numerics)
     file = EpisodeWriter(path.with_name(f".{path.name}.half"))
     file.describe(room)

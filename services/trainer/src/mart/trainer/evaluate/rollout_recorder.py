@@ -30,7 +30,7 @@ class RolloutRecorder:
         """Write each rollout as an episode file at its path."""
         if not rollouts:
             return
-        model = self.client.model(self.task.name, self.control_hz, len(self.task.arms))
+        model = self.client.model(self.task.name, self.control_hz, len(self.task.arms), self.task.arm_kinds)
         states_by_tick = self._step_again(list(rollouts.values()))
         for world, (path, rollout) in enumerate(rollouts.items()):
             write(path, self._episode(rollout, states_by_tick, world), model, clock.wall_ns())
@@ -41,7 +41,14 @@ class RolloutRecorder:
         ticks = np.array([len(rollout.actions) for rollout in rollouts])
         arms = len(self.task.arms)
         states_by_tick = [
-            self.client.reset(self.task.name, seeds, self.control_hz, arms, integration_states=True)
+            self.client.reset(
+                self.task.name,
+                seeds,
+                self.control_hz,
+                arms,
+                arm_kinds=self.task.arm_kinds,
+                integration_states=True,
+            )
         ]
         for tick in range(int(ticks.max())):
             actions = [rollout.actions[min(tick, len(rollout.actions) - 1)] for rollout in rollouts]

@@ -97,7 +97,8 @@ class _PolicyBatch:
         self, client: RolloutClient, policy_seed: int, limit_s: float, on_ticks: Callable[[int], None]
     ) -> None:
         control_hz, arms = self._policies[0].control_hz, len(self._task.arms)
-        worlds = client.reset(self._task.name, list(self._seeds) * len(self._policies), control_hz, arms)
+        seeds = list(self._seeds) * len(self._policies)
+        worlds = client.reset(self._task.name, seeds, control_hz, arms, arm_kinds=self._task.arm_kinds)
         for policy in self._policies:
             policy.begin(len(self._seeds), policy_seed)
         self._look(worlds)
@@ -166,7 +167,12 @@ def common_task(policies: Sequence[Policy]) -> Task:
         raise InvalidInput(
             f"Policies of {given or 'no task'} were given; judge those of one task and rate together."
         )
-    task = get_task(policies[0].task, len(policies[0].arms))
+    if len({policy.arm_kinds for policy in policies}) > 1:
+        given = "; ".join(sorted({", ".join(policy.arm_kinds) or "Pandas" for policy in policies}))
+        raise InvalidInput(
+            f"Policies for several kinds of arms (arm_kinds) were given: {given}; judge those of one together."
+        )
+    task = get_task(policies[0].task, len(policies[0].arms), policies[0].arm_kinds)
     needed = ", ".join(task.arm_names)
     for policy in policies:
         if policy.arms != task.arm_names:

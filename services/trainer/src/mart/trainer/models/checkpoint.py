@@ -36,6 +36,7 @@ class CheckpointRecord(BaseModel):
     task: str
     control_hz: float
     arms: tuple[str, ...]
+    arm_kinds: tuple[str, ...] = ()  # one for each arm; none: Pandas
     layout: tuple[ObservationField, ...]
     hyperparameters: Hyperparameters
     seed: int

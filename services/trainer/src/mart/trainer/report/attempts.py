@@ -35,7 +35,7 @@ def read_attempts(folder: Path) -> list[Attempts]:
     A file that cannot be read is left out, and the log says so. Raises NotFound where there is no episode.
     """
     listed = readable(list_episodes(folder), [folder])
-    found: defaultdict[tuple[str, int], list[Attempt]] = defaultdict(list)
+    found: defaultdict[tuple[str, int, tuple[str, ...]], list[Attempt]] = defaultdict(list)
     for episode in COUNTED.apply(listed):
         if episode.task is None:
             _log.warning("Left out: %s does not say of which task it is.", episode.file_path)
@@ -45,10 +45,10 @@ def read_attempts(folder: Path) -> list[Attempts]:
         except Corrupt as error:
             _log.warning("Left out: %s", error)
             continue
-        found[episode.task, len(episode.arms)].append(attempt)
+        found[episode.task, len(episode.arms), episode.arm_kinds].append(attempt)
     if not found:
         raise NotFound(f"There are no episodes in {folder}; `mart collect` records some.")
-    return [Attempts(get_task(name, arms), attempts) for (name, arms), attempts in sorted(found.items())]
+    return [Attempts(get_task(*kind), attempts) for kind, attempts in sorted(found.items())]
 
 
 def _done(file: EpisodeFile) -> frozenset[str]:

@@ -72,19 +72,19 @@ def read_couplings(folder: Path, policies: Sequence[Policy] = ()) -> list[Coupli
     where there are too few.
     """
     listed = readable(list_episodes(folder), [folder])
-    by_task: defaultdict[tuple[str, int], list[LabelledEpisode]] = defaultdict(list)
+    by_task: defaultdict[tuple[str, int, tuple[str, ...]], list[LabelledEpisode]] = defaultdict(list)
     for episode in _SUCCESSFUL.apply(listed):
         if episode.task is not None:
-            by_task[episode.task, len(episode.arms)].append(episode)
+            by_task[episode.task, len(episode.arms), episode.arm_kinds].append(episode)
     if not by_task:
         raise NotFound(f"There are no successful episodes in {folder}; `mart collect` records some.")
-    for (task, _), episodes in sorted(by_task.items()):
+    for (task, *_), episodes in sorted(by_task.items()):
         if len(episodes) < MIN_EPISODES:  # told before hours may have gone into the other tasks
             raise InvalidInput(
                 f"{len(episodes)} successful episodes of {task} are in {folder}; at least {MIN_EPISODES} of a task "
                 "tell something about dependence: record more, or move these elsewhere."
             )
-    chosen = {(policy.task, len(policy.arms)): policy for policy in policies}
+    chosen = {(policy.task, len(policy.arms), policy.arm_kinds): policy for policy in policies}
     return [
         _coupling(get_task(*kind), episodes, chosen.get(kind)) for kind, episodes in sorted(by_task.items())
     ]

@@ -39,7 +39,9 @@ class PolicyOperator(Operator):
                 f"The policy's action of shape {actions.shape} is not of finite numbers for its arms."
             )
         return {
-            arm: ToolTarget(*target_from_action(view.poses_tool_in_base[arm], action, view.task.limits))
+            arm: ToolTarget(
+                *target_from_action(view.poses_tool_in_base[arm], action, view.task.arm(arm).kind.limits)
+            )
             for arm, action in zip(arms, actions[0], strict=True)
         }
 

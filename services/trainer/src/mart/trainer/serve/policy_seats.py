@@ -13,7 +13,8 @@ from mart.operators.obedience import ObedientOperator
 from mart.protocol.control_rate import ticks_for_each
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
-from mart.protocol.tasks import Task, get_task
+from mart.protocol.room_task import task_of_room
+from mart.protocol.tasks import Task
 from mart.protocol.vocabulary import ServiceKind
 from mart.trainer.serve.policy_operator import PolicyOperator, parts_of
 
@@ -69,7 +70,7 @@ def policy_commanders(policy: Policy, status: RoomStatus) -> Sequence[SeatComman
     It obeys its partners' cues, and acts at its own rate also where the room's is a multiple of it. Raises InvalidInput
     where the policy was not made for such a room, or the room's rate is no multiple.
     """
-    task = get_task(status.task, len(status.seats))
+    task = task_of_room(status)
     require_fit(policy, task)
     each = ticks_for_each(policy.control_hz, status.control_hz)
     return [
@@ -89,6 +90,11 @@ def require_fit(policy: Policy, task: Task) -> None:
     """Raise InvalidInput where the policy was not made for such a room, whatever its rate."""
     if policy.task != task.name:
         raise InvalidInput(f"It was trained for {policy.task} and the room's task is {task.name}.")
+    if policy.arm_kinds != task.arm_kinds:
+        raise InvalidInput(
+            f"It was trained with {', '.join(policy.arm_kinds) or 'Pandas'} (arm_kinds) and the room has "
+            f"{', '.join(task.arm_kinds) or 'Pandas'}: open a room with those arms, or train on episodes of these."
+        )
     unknown = sorted(set(policy.needs) - {observation.name for observation in task.observations})
     if unknown:
         raise InvalidInput(

@@ -47,6 +47,7 @@ def write_checkpoint(
             task=digest.task,
             control_hz=digest.control_hz,
             arms=digest.arms,
+            arm_kinds=digest.arm_kinds,
             layout=layout.fields,
             hyperparameters=sizes,
             seed=seed,

@@ -86,6 +86,7 @@ def _policy(name: str, record: CheckpointRecord, job: str, now_ns: int) -> Polic
         task=record.task,
         control_hz=record.control_hz,
         arms=record.arms,
+        arm_kinds=record.arm_kinds,
         joint="joint" in (model.actor, model.residual, model.planner),
         seed=record.seed,
         updates=record.updates,

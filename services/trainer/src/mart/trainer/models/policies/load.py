@@ -39,9 +39,10 @@ def load_policy(checkpoint: Path, device: str = "cpu") -> TrainedPolicy:
 def _check_task(checkpoint: Path, record: CheckpointRecord) -> None:
     """Raise Corrupt where what was learned would not mean the same now."""
     try:
-        now: tuple[ObservationField, ...] = ObservationLayout.of_arms(record.task, len(record.arms)).fields
+        known = ObservationLayout.of_arms(record.task, len(record.arms), record.arm_kinds)
     except MartError as error:
         raise Corrupt(f"{checkpoint} is of the task {record.task}. {error}") from error
+    now: tuple[ObservationField, ...] = known.fields
     if now != record.layout:
         changed = next(
             (a or b for a, b in zip((*record.layout, None), (*now, None), strict=False) if a != b), None

@@ -30,6 +30,11 @@ class Policy(Protocol):
         ...
 
     @property
+    def arm_kinds(self) -> tuple[str, ...]:
+        """What its task's arms are, one for each of the task; none: all are Pandas."""
+        ...
+
+    @property
     def needs(self) -> tuple[str, ...]:
         """Names of the observations that `act` reads."""
         ...

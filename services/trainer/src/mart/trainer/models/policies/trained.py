@@ -42,6 +42,10 @@ class TrainedPolicy(ABC):
         return self.record.arms
 
     @property
+    def arm_kinds(self) -> tuple[str, ...]:
+        return self.record.arm_kinds
+
+    @property
     def needs(self) -> tuple[str, ...]:
         return self.layout.names
 
@@ -100,6 +104,10 @@ class SingleArmPolicy:
     @property
     def control_hz(self) -> float:
         return self._policy.control_hz
+
+    @property
+    def arm_kinds(self) -> tuple[str, ...]:
+        return self._policy.arm_kinds
 
     def begin(self, worlds: int, seed: int) -> None:
         self._policy.begin(worlds, seed)

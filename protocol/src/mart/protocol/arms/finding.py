@@ -1,0 +1,100 @@
+"""Find the kinds of arms by name, and read their files."""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, get_args
+
+from pydantic import ValidationError
+
+from mart.protocol.arms.robot_file import ArmKind, GripperKind
+from mart.protocol.errors import InvalidInput, NotFound
+
+SUFFIX = ".toml"
+_SHIPPED = Path(__file__).parent
+_MAX_FILE_BYTES = 256 * 1024
+_NAME = re.compile(r"[a-z][a-z0-9_]{0,62}")
+_GRIPPERS = get_args(GripperKind)
+
+
+def arms_folder() -> Path:
+    """Return where people's own robot files are: MART_ARMS_DIR, or data/arms."""
+    return Path(os.environ.get("MART_ARMS_DIR") or Path("data", "arms"))
+
+
+def arm_kind_names() -> tuple[str, ...]:
+    """Return the kinds that there are: those that come with MART, the Panda first, then people's own."""
+    shipped = sorted(_names_in(_SHIPPED), key=lambda name: (name != "panda", name))
+    return (*shipped, *sorted(_names_in(arms_folder()) - set(shipped)))
+
+
+def arm_kind(name: str) -> ArmKind:
+    """Return the kind called `name`; "ur5e+pad" is the kind ur5e with that gripper.
+
+    Raises NotFound for an unknown name, InvalidInput where its file cannot be used.
+    """
+    plain, plus, gripper = name.partition("+")
+    path = _path_of(plain)
+    if path is None:
+        raise NotFound.named("kind of arm", plain[:64], arm_kind_names())
+    kind = _load(path, path.stat().st_mtime_ns)
+    if not plus:
+        return kind
+    if gripper not in _GRIPPERS:
+        raise NotFound.named("gripper", gripper[:64], _GRIPPERS)
+    return kind if gripper == kind.gripper else kind.model_copy(update={"name": name, "gripper": gripper})
+
+
+def load_robot_file(path: Path) -> ArmKind:
+    """Read a robot file. Raises NotFound where there is none, InvalidInput with what is wrong in it and where."""
+    if not path.is_file():
+        raise NotFound(f"There is no robot file {path}; `mart arms list` names the kinds that there are.")
+    if not _NAME.fullmatch(path.stem) or path.suffix != SUFFIX:
+        raise InvalidInput(
+            f"{path.name} cannot be a robot file's name: use small letters, digits and underscores, then {SUFFIX}."
+        )
+    if path.stat().st_size > _MAX_FILE_BYTES:
+        raise InvalidInput(
+            f"{path} is larger than {_MAX_FILE_BYTES // 1024} KiB; a robot file holds text alone."
+        )
+    try:
+        said: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InvalidInput(f"{path} is not TOML: {error}.") from error
+    if "name" in said:
+        raise InvalidInput(f"{path} says a name; a robot is called as its file is: leave the line out.")
+    try:
+        return ArmKind.model_validate({**said, "name": path.stem})
+    except ValidationError as error:
+        raise InvalidInput(f"{path} cannot be used: {_sentence(error)}") from error
+
+
+@lru_cache(maxsize=64)
+def _load(path: Path, _modified_ns: int) -> ArmKind:
+    return load_robot_file(path)
+
+
+def _path_of(name: str) -> Path | None:
+    if not _NAME.fullmatch(name):
+        return None
+    paths = (folder / f"{name}{SUFFIX}" for folder in (_SHIPPED, arms_folder()))
+    return next((path for path in paths if path.is_file()), None)
+
+
+def _names_in(folder: Path) -> set[str]:
+    return {path.stem for path in folder.glob(f"*{SUFFIX}") if _NAME.fullmatch(path.stem)}
+
+
+def _sentence(error: ValidationError) -> str:
+    """Say the first mistake: where, and what is wrong."""
+    first = error.errors()[0]
+    where = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in first["loc"])
+    message = first["msg"].removeprefix("Value error, ").rstrip(".")
+    return f"{where.lstrip('.')}: {message}." if where else f"{message}."
+
+
+PANDA = arm_kind("panda")

@@ -1,0 +1,189 @@
+"""Define what a robot file says: one kind of arm, as TOML. docs/how-to-bring-your-own-robot.md is for who writes one.
+
+Frames: the base frame stands level, x towards the work. Every joint turns about the z axis of its own link's frame,
+whose place in the link before is what the file says for angle 0. The tool's own frame is the gripper's.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+
+from mart.protocol.arms.workspace import Limits, Workspace
+
+Vector = tuple[float, float, float]
+Positive = Annotated[float, Field(gt=0.0)]
+
+MIN_JOINTS, MAX_JOINTS = 5, 7
+_MOST_RAD = 7.0  # of an angle: beyond a whole turn it is in degrees
+_UNTURNED = (1.0, 0.0, 0.0, 0.0)
+
+GripperKind = Literal["two-finger", "pad"]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+def _has_length(quaternion: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    if math.hypot(*quaternion) < 1e-3:
+        raise ValueError("a quaternion of length 0 is no turn; [1, 0, 0, 0] is none at all")
+    return quaternion
+
+
+class ArmFrame(_Part):
+    """Place a frame in another: metres, and a quaternion wxyz of any length."""
+
+    position_m: Vector = (0.0, 0.0, 0.0)
+    quaternion_wxyz: tuple[float, float, float, float] = _UNTURNED
+
+    _has_length = field_validator("quaternion_wxyz")(_has_length)
+
+
+class LinkMesh(_Part):
+    """Look like a part of the Panda (link0 … link7), whose meshes come with the package gymnasium-robotics."""
+
+    form: Literal["mesh"]
+    part: str = Field(pattern=r"^link[0-7]$")
+
+
+class _Solid(_Part):
+    material: str = "shell"  # of the scene's palette
+    accent: bool = False  # painted in the arm's own colour
+
+
+class LinkTube(_Solid):
+    """A capsule or a cylinder between two points of the link's frame."""
+
+    form: Literal["capsule", "cylinder"]
+    from_m: Vector
+    to_m: Vector
+    radius_m: Positive
+
+    @model_validator(mode="after")
+    def _long(self) -> Self:
+        if math.dist(self.from_m, self.to_m) < 1e-4:
+            raise ValueError("from_m and to_m are the same point; a sphere has a form of its own")
+        return self
+
+
+class LinkBox(_Solid):
+    """A box around a point of the link's frame, along its axes."""
+
+    form: Literal["box"]
+    center_m: Vector
+    half_m: tuple[Positive, Positive, Positive]
+
+
+class LinkSphere(_Solid):
+    """A ball around a point of the link's frame."""
+
+    form: Literal["sphere"]
+    center_m: Vector
+    radius_m: Positive
+
+
+LinkShape = Annotated[LinkMesh | LinkTube | LinkBox | LinkSphere, Field(discriminator="form")]
+
+
+class ArmBody(_Part):
+    """Weigh and show a part. inertia_kg_m2: xx yy zz xy xz yz about the centre of mass, along the link's axes."""
+
+    mass_kg: Positive
+    center_of_mass_m: Vector
+    inertia_kg_m2: tuple[float, float, float, float, float, float]
+    shapes: tuple[LinkShape, ...] = ()
+
+
+class ArmLink(ArmBody, ArmFrame):
+    """Describe a link and the joint before it, which turns about the link's z axis."""
+
+    range_rad: tuple[float, float]
+    torque_nm: Positive
+
+    @field_validator("range_rad")
+    @classmethod
+    def _ordered(cls, limits: tuple[float, float]) -> tuple[float, float]:
+        low, high = limits
+        if max(abs(low), abs(high)) > _MOST_RAD:
+            raise ValueError(
+                f"angles are in radians, at most a whole turn: [{low:g}, {high:g}] looks like degrees"
+            )
+        if low >= high:
+            raise ValueError(f"the lower limit comes first: [{low:g}, {high:g}]")
+        return limits
+
+
+class ArmPlacement(_Part):
+    """Say where the base stands, seen from where a Panda's would: closer to the work, and higher."""
+
+    forward_m: float = Field(0.0, ge=-0.3, le=0.3)
+    up_m: float = Field(0.0, ge=-0.3, le=0.6)
+
+
+class ArmPosture(_Part):
+    """Say which angle of joint 1 points the arm towards an azimuth: sign * azimuth + offset."""
+
+    joint1_sign: Literal[-1, 1] = 1
+    joint1_offset_rad: float = Field(0.0, ge=-math.pi, le=math.pi)
+
+
+class Gains(_Part):
+    """Set the controller: kp in 1/s², damping critical. Larger errors are pulled in, so that no goal makes a whip.
+
+    The regular mobilities are the inverse effective mass (1/kg) and inertia (1/(kg m²)) below which a direction counts
+    as nearly lost and is damped.
+    """
+
+    kp_position: Positive = 150.0
+    kp_orientation: Positive = 150.0
+    kp_posture: Positive = 10.0
+    max_position_error_m: Positive = 0.10
+    max_orientation_error_rad: Positive = 0.50
+    regular_mobility_position: Positive = 0.03
+    regular_mobility_orientation: Positive = 0.3
+
+
+class ArmKind(_Part):
+    """One kind of arm. `name` is the file's, and how people call it; `title` is who makes it and what it is.
+
+    home_rad: joint angles with the tool straight down before the base, from which poses are looked for. mount: where
+    the gripper sits in the last link. meets_things_from_link: links before it meet other arms only, not things.
+    """
+
+    name: str = Field(pattern=r"^[a-z][a-z0-9_]*(\+[a-z]+)?$", max_length=64)
+    title: str = Field(min_length=1, max_length=80)
+    gripper: GripperKind = "two-finger"
+    home_rad: tuple[float, ...]
+    base: ArmBody
+    links: tuple[ArmLink, ...] = Field(min_length=MIN_JOINTS, max_length=MAX_JOINTS)
+    mount: ArmFrame = ArmFrame()
+    meets_things_from_link: int = Field(ge=1, le=MAX_JOINTS)
+    armature_kg_m2: float = Field(0.1, ge=0.0)
+    damping_nm_s: float = Field(0.5, ge=0.0)
+    posture: ArmPosture = ArmPosture()
+    gains: Gains = Gains()
+    limits: Limits = Limits()
+    workspace: Workspace = Workspace()
+    placement: ArmPlacement = ArmPlacement()
+
+    @property
+    def joint_count(self) -> int:
+        """How many joints it has, its fingers not counted."""
+        return len(self.links)
+
+    @model_validator(mode="after")
+    def _home_is_one_of_its_postures(self) -> Self:
+        if len(self.home_rad) != len(self.links):
+            raise ValueError(
+                f"home_rad has {len(self.home_rad)} angles, but there are {len(self.links)} links"
+            )
+        for number, (angle, link) in enumerate(zip(self.home_rad, self.links, strict=True), start=1):
+            low, high = link.range_rad
+            if not low <= angle <= high:
+                raise ValueError(
+                    f"home_rad puts joint {number} at {angle:g} rad, outside its range of {low:g} to {high:g}"
+                )
+        return self

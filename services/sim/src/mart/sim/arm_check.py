@@ -1,0 +1,174 @@
+"""Drive one kind of arm through what tasks will ask of it, and say in words how it stands (`mart arms check`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from mart.protocol.arms import ArmKind
+from mart.protocol.errors import InvalidInput
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Task, get_task, task_names
+from mart.sim.experts.run_experts import run_experts
+from mart.sim.scene.data import Array
+from mart.sim.tasks import scene_of
+from mart.sim.world.reach import missed
+from mart.sim.world.world import World
+
+_TASK = "two_arm_multi_cube_lifting"  # where an arm is looked at alone
+_ARM = "arm0"
+_LOAD_KG = 0.5
+_GRAVITY = 9.81
+_MOST_SAG_M = 0.015
+_LEAST_MARGIN_RAD = 0.05
+_MOST_TORQUE_SHARE = 0.9
+_STEP_M = 0.05
+_RIGHT_M = 0.003
+_SETTLE_TICKS = 30
+_CONTROL_HZ = 20.0
+_SEED = 0
+
+
+@dataclass(frozen=True)
+class ArmFinding:
+    """Tell of one thing that was looked at. what: reach, payload, …; said: what was found, in words."""
+
+    what: str
+    ok: bool
+    said: str
+
+
+def check_arm(kind: ArmKind) -> Iterator[ArmFinding]:
+    """Look at one thing after another; the first that keeps the others from being looked at is the last."""
+    try:
+        world = _world_of(get_task(_TASK), kind)
+        world.reset(_SEED)
+    except (
+        InvalidInput,
+        ValueError,
+    ) as error:  # MuJoCo's own words for what cannot be compiled are a ValueError
+        yield ArmFinding("loads", ok=False, said=str(error))
+        return
+    joints = (
+        f"{kind.joint_count} joints, {'no fingers' if kind.gripper == 'pad' else kind.gripper + ' gripper'}"
+    )
+    yield ArmFinding("loads", ok=True, said=f"{kind.title}: {joints}.")
+    yield from _alone(world, kind)
+    for name in task_names():
+        yield _in_task(get_task(name), kind)
+
+
+def _world_of(task: Task, kind: ArmKind) -> World:
+    return World(scene_of(task.with_kinds([kind] * len(task.arms))), _CONTROL_HZ)
+
+
+def _alone(world: World, kind: ArmKind) -> Iterator[ArmFinding]:
+    mujoco.mj_forward(world.model, world.data)
+    joint = world.model.joint(f"{_ARM}/joint1")
+    first, count = int(joint.dofadr[0]), kind.joint_count
+    dofs = slice(first, first + count)
+    yield _limits(world, kind, int(joint.qposadr[0]))
+    jacobian, mass = np.zeros((6, world.model.nv)), np.zeros((world.model.nv, world.model.nv))
+    site = world.model.site(f"{_ARM}/tool").id
+    mujoco.mj_jacSite(world.model, world.data, jacobian[:3], jacobian[3:], site)
+    mujoco.mj_fullM(world.model, world.data, mass)
+    mobility = jacobian[:, dofs] @ np.linalg.inv(mass[dofs, dofs]) @ jacobian[:, dofs].T
+    torques = np.array([link.torque_nm for link in kind.links])
+    load = jacobian[2, dofs] * _LOAD_KG * _GRAVITY
+    yield _payload(kind, mobility, np.abs(world.data.qfrc_bias[dofs] + load) / torques)
+    yield _singularity(kind, mobility)
+    yield _response(world)
+
+
+def _limits(world: World, kind: ArmKind, qpos: int) -> ArmFinding:
+    joints = world.data.qpos[qpos : qpos + kind.joint_count]
+    margins = [
+        min(q - link.range_rad[0], link.range_rad[1] - q) for q, link in zip(joints, kind.links, strict=True)
+    ]
+    nearest = int(np.argmin(margins))
+    margin_deg = np.degrees(margins[nearest])
+    said = f"Where episodes begin, joint {nearest + 1} is nearest to a stop: {margin_deg:.0f} degrees."
+    return ArmFinding("limits", margins[nearest] > _LEAST_MARGIN_RAD, said)
+
+
+def _payload(kind: ArmKind, mobility: Array, shares: Array) -> ArmFinding:
+    sag_m = _LOAD_KG * _GRAVITY * float(mobility[2, 2]) / kind.gains.kp_position
+    hardest = int(shares.argmax())
+    said = (
+        f"{_LOAD_KG:g} kg in its hand let it sag by {1000 * sag_m:.1f} mm; joint {hardest + 1} holds it with "
+        f"{100 * shares[hardest]:.0f} % of its torque."
+    )
+    return ArmFinding("payload", sag_m < _MOST_SAG_M and bool(shares[hardest] < _MOST_TORQUE_SHARE), said)
+
+
+def _singularity(kind: ArmKind, mobility: Array) -> ArmFinding:
+    gains = kind.gains
+    scale = np.sqrt(np.repeat([gains.regular_mobility_position, gains.regular_mobility_orientation], 3))
+    least = float(np.linalg.eigvalsh(mobility / np.outer(scale, scale))[0])
+    lost = "" if least >= 1 else "; below 1 a direction counts as lost and is damped"
+    said = f"Where episodes begin, its least mobile direction has {least:.1f} times what is regular{lost}."
+    return ArmFinding("singularity", least >= 1 or kind.joint_count < 6, said)
+
+
+def _response(world: World) -> ArmFinding:
+    """Step the tool by 5 cm along each axis of the base, and look where it comes to rest and how far beyond it went."""
+    worst_m, beyond = 0.0, 0.0
+    for axis in range(3):
+        world.reset(_SEED)
+        start = {arm: world.tool_pose_in_base(arm) for arm in world.arms}
+        shift = _STEP_M * np.eye(3)[axis]
+        goals = start | {_ARM: Pose(start[_ARM].position + shift, start[_ARM].quaternion_wxyz)}
+        for _ in range(_SETTLE_TICKS):
+            world.step([world.action_for(arm, goal, 0.0) for arm, goal in goals.items()])
+            along = float((world.tool_pose_in_base(_ARM).position - start[_ARM].position)[axis]) / _STEP_M
+            beyond = max(beyond, along - 1.0)
+        worst_m = max(worst_m, goals[_ARM].distance_to(world.tool_pose_in_base(_ARM))[0])
+    after_s = _SETTLE_TICKS / _CONTROL_HZ
+    said = f"Steps of 5 cm end within {1000 * worst_m:.1f} mm in {after_s:g} s, {100 * beyond:.1f} % beyond."
+    return ArmFinding("response", worst_m < _RIGHT_M and beyond < 0.02, said)
+
+
+def _in_task(task: Task, kind: ArmKind) -> ArmFinding:
+    """Look at a task with this kind at every place: what is out of reach, and whether scripts can do it."""
+    try:
+        world = _world_of(task, kind)
+        out_of_reach = missed(world)
+        if out_of_reach:
+            worst = max(out_of_reach, key=lambda one: one.by_m)
+            said = f"{task.title}: {worst.arm} misses {worst.thing} by {100 * worst.by_m:.0f} cm."
+            return ArmFinding("reach", ok=False, said=said)
+        if kind.gripper == "pad":
+            return ArmFinding("reach", ok=True, said=f"{task.title}: everything is within reach.")
+        progress = run_experts(world, _SEED, until_s=world.task.trial_limit_s)
+    except InvalidInput as error:
+        return ArmFinding("reach", ok=False, said=f"{task.title}: {error}")
+    if progress.success:
+        return ArmFinding("reach", ok=True, said=f"{task.title}: scripts did it in {world.sim_time_s:.1f} s.")
+    open_ones = ", ".join(name for name, done in progress.subtasks.items() if not done)
+    return ArmFinding(
+        "reach", ok=False, said=f"{task.title}: within reach, but scripts did not do it ({open_ones})."
+    )
+
+
+def draw_arm(kind: ArmKind, draw: Callable[[World, str], None]) -> None:
+    """Show the arm where cubes are lifted, beside another of its kind; `draw` is given the world and a viewpoint."""
+    world = _world_of(get_task(_TASK), kind)
+    world.reset(_SEED)
+    for viewpoint in ("front", _ARM):
+        draw(world, viewpoint)
+
+
+def verdict(findings: list[ArmFinding]) -> str:
+    """Return in a sentence whether the arm can be used."""
+    bad = [finding for finding in findings if not finding.ok]
+    if not bad:
+        return "It can be used in every task."
+    if any(finding.what == "loads" for finding in bad):
+        return "It cannot be used: mend its file first."
+    if all(finding.what == "reach" for finding in bad):
+        tasks = len([finding for finding in findings if finding.what == "reach"]) - len(bad)
+        return f"It can be used in {tasks} of {tasks + len(bad)} tasks."
+    return "It can be used, but look at what is marked BAD."

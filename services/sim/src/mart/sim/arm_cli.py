@@ -1,0 +1,103 @@
+"""Offer `mart arms`: which kinds of arms there are, what each one is, and whether one can be used."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from mart.protocol.arms import ArmKind, arm_kind, arm_kind_names, arms_folder, load_robot_file
+from mart.runtime.cli import json_option, print_result
+
+if TYPE_CHECKING:
+    from mart.sim.world import World
+
+_WIDTH_PX, _HEIGHT_PX = 960, 720
+
+
+@click.group()
+def arms() -> None:
+    """Show the kinds of arms that --arm takes, and check a robot file."""
+
+
+@arms.command("list")
+@json_option
+def list_kinds(as_json: bool) -> None:
+    """List the kinds of arms; "+pad" behind a name is the same arm with a pad instead of fingers."""
+    kinds = [arm_kind(name) for name in arm_kind_names()]
+    width = max(len(kind.name) for kind in kinds)
+    lines = [f"{kind.name:<{width}}  {kind.title}, {kind.joint_count} joints" for kind in kinds]
+    lines.append(f"Robot files of your own: {arms_folder()}")
+    told = [{"name": kind.name, "title": kind.title, "joints": kind.joint_count} for kind in kinds]
+    print_result({"arms": told, "folder": str(arms_folder())}, "\n".join(lines), as_json)
+
+
+@arms.command()
+@click.argument("name")
+@json_option
+def show(name: str, as_json: bool) -> None:
+    """Show one kind of arm: its joints, its limits, and where its tool may go."""
+    kind = _found(name)
+    space = kind.workspace
+    lines = [
+        f"{kind.name}: {kind.title}, {kind.joint_count} joints, {kind.gripper}",
+        *(
+            f"joint {number}  {link.range_rad[0]:7.3f} to {link.range_rad[1]:6.3f} rad  {link.torque_nm:5.0f} Nm"
+            for number, link in enumerate(kind.links, start=1)
+        ),
+        f"workspace  {space.radius_min_m:.2f} m from the axis … {space.reach_m:.2f} m from a point on it,",
+        f"           {space.reach_center_z_m:.2f} m up; {space.z_min_m:.2f} to {space.z_max_m:.2f} m high",
+        f"a tick     {100 * kind.limits.step_m:.0f} cm, {kind.limits.step_rad:.2f} rad ahead at most",
+        f"base       {100 * kind.placement.forward_m:+.0f} cm forward, {100 * kind.placement.up_m:+.0f} cm up",
+    ]
+    print_result(kind.model_dump(mode="json"), "\n".join(lines), as_json)
+
+
+@arms.command()
+@click.argument("file")
+@click.option("--pictures", type=click.Path(path_type=Path), help="Folder for pictures of it.")
+@json_option
+@click.pass_context
+def check(context: click.Context, file: str, pictures: Path | None, as_json: bool) -> None:
+    """Check a robot file, or a kind by its name: reach in every task, payload, singularity, limits, response."""
+    from mart.sim.arm_check import check_arm, verdict
+
+    kind = _found(file)
+    findings = []
+    for finding in check_arm(kind):
+        findings.append(finding)
+        if not as_json:
+            click.echo(f"{'ok ' if finding.ok else 'BAD'}  {finding.what:<12} {finding.said}")
+    drawn = _draw(kind, pictures) if pictures is not None and findings[0].ok else []
+    said = verdict(findings)
+    told = [{"what": one.what, "ok": one.ok, "said": one.said} for one in findings]
+    shown = "".join(f"\n{path}" for path in drawn)
+    result = {"arm": kind.name, "findings": told, "verdict": said, "pictures": [str(path) for path in drawn]}
+    print_result(result, f"{said}{shown}", as_json)
+    context.exit(0 if all(finding.ok for finding in findings) else 1)
+
+
+def _found(name: str) -> ArmKind:
+    """Return the kind of this name or file."""
+    return load_robot_file(Path(name)) if name.endswith(".toml") else arm_kind(name)
+
+
+def _draw(kind: ArmKind, folder: Path) -> list[Path]:
+    from contextlib import closing
+
+    from mart.render import Renderer
+    from mart.sim.arm_check import draw_arm
+    from mart.sim.picture import write_png
+
+    drawn: list[Path] = []
+
+    def draw(world: World, viewpoint: str) -> None:
+        path = folder / f"{kind.name}-{viewpoint}.png"
+        with closing(Renderer(world.model, viewpoint, width_px=_WIDTH_PX, height_px=_HEIGHT_PX)) as renderer:
+            write_png(path, renderer.draw(world.integration_state()))
+        drawn.append(path)
+
+    folder.mkdir(parents=True, exist_ok=True)
+    draw_arm(kind, draw)
+    return drawn

@@ -1,0 +1,144 @@
+"""Put an arm into a scene, as its robot file describes it: links, joints, motors, and the gripper in its hand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+
+from mart.protocol.arms.robot_file import ArmBody, LinkBox, LinkMesh, LinkShape, LinkSphere, LinkTube
+from mart.protocol.tasks import MAX_ARMS, Arm
+from mart.sim.scene import gripper
+from mart.sim.scene.meshes import Detail, mesh_path
+from mart.sim.scene.palette import rgba
+from mart.sim.scene.symbols import add_tile
+
+_HAND_MASS = (0.73, (-0.01, 0.0, 0.03), (0.001, 0.0025, 0.0017, 0.0, 0.0, 0.0))  # the Panda's, with every arm
+_GEOMS = {
+    "capsule": mujoco.mjtGeom.mjGEOM_CAPSULE,
+    "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
+    "box": mujoco.mjtGeom.mjGEOM_BOX,
+    "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
+}
+
+
+def add_assets(spec: mujoco.MjSpec, arms: Sequence[Arm], detail: Detail) -> None:
+    """Add the meshes, once for all arms: `hull/…` for contacts and, where asked, `detailed/…` to look at."""
+    bodies = [body for arm in arms for body in (arm.kind.base, *arm.kind.links)]
+    parts = dict.fromkeys(
+        shape.part for body in bodies for shape in body.shapes if isinstance(shape, LinkMesh)
+    )
+    for level in dict.fromkeys(("hull", detail)):
+        for part in (*parts, "hand"):
+            _add_mesh(spec, part, level)
+    _add_mesh(spec, "finger", "detailed")  # 600 triangles, and the part that everybody looks at
+
+
+def _add_mesh(spec: mujoco.MjSpec, part: str, level: Detail) -> None:
+    # Given as bytes: a path would end up in the compiled model and make its hash differ from machine to machine.
+    file = f"{level}-{part}.stl"
+    spec.assets[file] = mesh_path(part, level).read_bytes()
+    spec.add_mesh(name=f"{level}/{part}", file=file)
+
+
+def add_arm(spec: mujoco.MjSpec, arm: Arm, index: int, detail: Detail) -> None:
+    """Add the arm with its gripper, joints, motors and the site `{arm}/tool` at the middle of the finger pads."""
+    kind = arm.kind
+    body = spec.worldbody.add_body(
+        name=f"{arm.name}/base",
+        pos=arm.pose_base_in_world.position,
+        quat=arm.pose_base_in_world.quaternion_wxyz,
+    )
+    _fill(body, kind.base, arm, detail, _masks(index, reaches_objects=False))
+    for number, link in enumerate(kind.links, start=1):
+        body = body.add_body(name=f"{arm.name}/link{number}", pos=link.position_m, quat=link.quaternion_wxyz)
+        _set_inertia(body, link.mass_kg, link.center_of_mass_m, link.inertia_kg_m2)
+        body.add_joint(
+            name=f"{arm.name}/joint{number}",
+            axis=(0, 0, 1),
+            range=link.range_rad,
+            armature=kind.armature_kg_m2,
+            damping=[kind.damping_nm_s, 0, 0],
+        )
+        masks = _masks(index, reaches_objects=number >= kind.meets_things_from_link)
+        for shape in link.shapes:
+            _add_shape(body, shape, arm, detail, masks)
+        _add_motor(spec, arm.name, number, link.torque_nm)
+    hand = body.add_body(name=f"{arm.name}/hand", pos=kind.mount.position_m, quat=kind.mount.quaternion_wxyz)
+    _add_hand(spec, hand, arm, index, detail)
+
+
+def _add_hand(spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: Arm, index: int, detail: Detail) -> None:
+    masks = _masks(index, reaches_objects=True)
+    _set_inertia(hand, *_HAND_MASS)
+    _add_shell(hand, "hand", detail, masks, rgba(arm.color))
+    for side in (-1, 1):
+        position = (0.0325 * side, 0.0, 0.018)
+        add_tile(spec, hand, arm.symbol, radius_m=0.016, position=position, normal=(side, 0, 0))
+    gripper.add_fingers(spec, hand, arm.name, masks)
+
+
+def _masks(index: int, *, reaches_objects: bool) -> dict[str, int]:
+    """Return contact bits: things 1, arm i's far links 2 << i.
+
+    Arms meet each other, never themselves; an arm's near links cannot meet the things on the table.
+    """
+    own = 2 << index
+    others = sum(2 << other for other in range(MAX_ARMS) if other != index)
+    return (
+        {"contype": own, "conaffinity": others | 1}
+        if reaches_objects
+        else {"contype": 0, "conaffinity": others}
+    )
+
+
+def _fill(body: mujoco.MjsBody, described: ArmBody, arm: Arm, detail: Detail, masks: dict[str, int]) -> None:
+    _set_inertia(body, described.mass_kg, described.center_of_mass_m, described.inertia_kg_m2)
+    for shape in described.shapes:
+        _add_shape(body, shape, arm, detail, masks)
+
+
+def _set_inertia(
+    body: mujoco.MjsBody, mass: float, center: tuple[float, ...], inertia: tuple[float, ...]
+) -> None:
+    body.mass, body.ipos, body.fullinertia, body.explicitinertial = mass, center, inertia, True
+
+
+def _add_shape(
+    body: mujoco.MjsBody, shape: LinkShape, arm: Arm, detail: Detail, masks: dict[str, int]
+) -> None:
+    if isinstance(shape, LinkMesh):
+        _add_shell(body, shape.part, detail, masks)
+        return
+    look = {"material": "paint", "rgba": rgba(arm.color)} if shape.accent else {"material": shape.material}
+    body.add_geom(type=_GEOMS[shape.form], **_extent(shape), **look, **masks)
+
+
+def _extent(shape: LinkTube | LinkBox | LinkSphere) -> dict[str, tuple[float, ...]]:
+    if isinstance(shape, LinkTube):
+        return {"fromto": (*shape.from_m, *shape.to_m), "size": (shape.radius_m, 0, 0)}
+    size = shape.half_m if isinstance(shape, LinkBox) else (shape.radius_m, 0, 0)
+    return {"pos": shape.center_m, "size": size}
+
+
+def _add_shell(
+    body: mujoco.MjsBody, part: str, detail: Detail, masks: dict[str, int], color: np.ndarray | None = None
+) -> None:
+    look = {"material": "shell"} if color is None else {"material": "shell", "rgba": color}
+    mesh = mujoco.mjtGeom.mjGEOM_MESH
+    if detail == "hull":
+        body.add_geom(type=mesh, meshname=f"hull/{part}", **look, **masks)
+        return
+    body.add_geom(type=mesh, meshname=f"detailed/{part}", contype=0, conaffinity=0, **look)
+    body.add_geom(type=mesh, meshname=f"hull/{part}", group=3, **masks)
+
+
+def _add_motor(spec: mujoco.MjSpec, arm: str, number: int, torque_nm: float) -> None:
+    spec.add_actuator(
+        name=f"{arm}/torque{number}",
+        target=f"{arm}/joint{number}",
+        trntype=mujoco.mjtTrn.mjTRN_JOINT,
+        ctrllimited=True,
+        ctrlrange=(-torque_nm, torque_nm),
+    )
