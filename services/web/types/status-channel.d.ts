@@ -34,6 +34,8 @@ declare namespace StatusChannel {
     phone: { age_ms: number; tracking: boolean; started: boolean } | null;
     rejected: Record<string, number>;
     no_picture: string;
+    /** Thousandths of the picture's width and height, from its upper left corner. */
+    tools: Record<string, [right: number, down: number]>;
     fps: number;
     latency: Latency | null;
   }
@@ -61,7 +63,26 @@ declare namespace StatusChannel {
     heard: boolean;
   }
 
-  type FromGateway = Tick | Pong | Replaced | Voices;
+  /** `name` is empty for a machine without one; `number` is greater for what is said later. */
+  interface SaidCue {
+    arm: string;
+    name: string;
+    cue: string;
+    number: number;
+  }
+
+  interface Cues {
+    type: "cues";
+    said: SaidCue[];
+  }
+
+  interface CueRefused {
+    type: "cue_refused";
+    cue: string;
+    t_us: number;
+  }
+
+  type FromGateway = Tick | Pong | Replaced | Voices | Cues | CueRefused;
 
   type ToGateway =
     | { type: "ping"; t_us: number }

@@ -46,13 +46,17 @@ def drawn_model(model: mujoco.MjModel, quality: Quality) -> mujoco.MjModel:
 
 def camera_azimuth_rad(message: Model, model: mujoco.MjModel, arm: str) -> float:
     """Return where the camera of `arm`'s seat looks, as an angle about the z axis of the arm's base frame."""
+    base_in_world = get_task(message.task, len(message.arms)).arm(arm).pose_base_in_world
+    return azimuth_of_camera_rad(base_in_world.inverse() @ camera_in_world(model, arm))
+
+
+def camera_in_world(model: mujoco.MjModel, arm: str) -> Pose:
+    """Return where the camera of `arm`'s seat hangs. Raises NotFound where the model has none of that name."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_camlight(model, data)
     camera = viewpoint_id(model, arm)
-    camera_in_world = Pose.from_matrix(data.cam_xmat[camera].reshape(3, 3), data.cam_xpos[camera])
-    base_in_world = get_task(message.task, len(message.arms)).arm(arm).pose_base_in_world
-    return azimuth_of_camera_rad(base_in_world.inverse() @ camera_in_world)
+    return Pose.from_matrix(data.cam_xmat[camera].reshape(3, 3), data.cam_xpos[camera])
 
 
 def task_of(message: Model) -> Task | None:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
 from mart.protocol.tokens import Role
-from mart.teleop_gateway.input.cues import CueFilter
+from mart.teleop_gateway.input.cues import CueFilter, PressVerdict
 from mart.teleop_gateway.input.driving import InputDevice
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.seat_events import SeatEvents
@@ -96,7 +96,7 @@ class PeerMessages:
             case status_channel.DrawingMessage():
                 self._on_drawing(peer, message)
         if peer.role in _DEVICES:
-            self._do_for_holder(_DEVICES[peer.role], message)
+            self._do_for_holder(peer, _DEVICES[peer.role], message)
 
     def _on_drawing(self, peer: Peer, message: status_channel.DrawingMessage) -> None:
         if peer.role is Role.PHONE:
@@ -105,7 +105,7 @@ class PeerMessages:
         if peer.role is Role.BROWSER:
             self._latency.draws = PageDraws(message.on, message.p50_ms, message.p95_ms, message.per_s)
 
-    def _do_for_holder(self, device: InputDevice, message: status_channel.PeerMessage) -> None:
+    def _do_for_holder(self, peer: Peer, device: InputDevice, message: status_channel.PeerMessage) -> None:
         match message:
             case status_channel.ClockMessage(offset_ns):
                 self._input.set_clock(device, offset_ns)
@@ -115,5 +115,8 @@ class PeerMessages:
                 self._input.select(chosen)
                 self._broadcaster.tell_changes()
             case status_channel.CueMessage(cue, press_us):
-                if self._cues.allow(press_us, clock.monotonic_s()):
+                verdict = self._cues.judge(press_us, clock.monotonic_s())
+                if verdict is PressVerdict.SAID:
                     self._events.cue(cue)
+                elif verdict is PressVerdict.TOO_SOON:
+                    peer.send_status(status_channel.cue_refused(message))

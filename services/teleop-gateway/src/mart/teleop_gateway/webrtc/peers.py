@@ -169,6 +169,12 @@ class Peers:
         for peer in self:
             peer.send_status(text)
 
+    def tell_phones(self, text: str) -> None:
+        """Send a message to phones alone: pages hear it from the web service."""
+        for peer in self:
+            if peer.role is Role.PHONE:
+                peer.send_status(text)
+
     def drop_silent(self, now_s: float) -> None:
         """End the connections of peers that have said nothing for SILENT_S."""
         for peer in [peer for peer in self if now_s - peer.heard_s > SILENT_S]:

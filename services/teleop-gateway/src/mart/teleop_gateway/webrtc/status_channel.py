@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from mart.protocol.errors import InvalidInput
@@ -18,13 +19,16 @@ from mart.protocol.messages import (
     State,
     barrier_word,
     cue_from_word,
+    cue_word,
     phase_word,
 )
 from mart.teleop_gateway.input.driving import Driving, InputDevice, PhoneState
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
+from mart.teleop_gateway.video.tool_projection import ToolPlaces
 from mart.teleop_gateway.voice.lanes import Speaker
+from mart.teleop_gateway.webrtc.said_cues import SaidCue
 
-MAX_CHARACTERS = 1100  # one SCTP packet
+MAX_CHARACTERS = 1200  # one SCTP packet
 _LARGEST = 2**63 - 1
 _LONGEST_DRAW_MS = 60_000
 _NAME_CHARACTERS = 24
@@ -130,6 +134,17 @@ def voices(speakers: Sequence[Speaker], *, is_heard: bool) -> str:
     return _text({"type": "voices", "speakers": told, "heard": is_heard})
 
 
+def cues(said: Sequence[SaidCue]) -> str:
+    """Return what the drivers of the room's arms say to each other now."""
+    told = [{"arm": one.arm, "name": one.name, "cue": one.cue, "number": one.number} for one in said]
+    return _text({"type": "cues", "said": told})
+
+
+def cue_refused(message: CueMessage) -> str:
+    """Return the word to whoever gave cues too soon after each other that this one was not said."""
+    return _text({"type": "cue_refused", "cue": cue_word(message.cue), "t_us": message.press_us})
+
+
 def ping(t_us: float) -> str:
     """Return a peer's question for the gateway's time."""
     return _text({"type": "ping", "t_us": t_us})
@@ -149,6 +164,7 @@ def tick(
     frames_per_s: float,
     latency: LatencySummary | None,
     no_picture: str = "",
+    tools: ToolPlaces = MappingProxyType({}),
 ) -> str:
     """Return what a page shows, at most MAX_CHARACTERS long."""
     sequence = next((arm.sequence for arm in state.arms if arm.arm == driving.arm), 0)
@@ -177,6 +193,7 @@ def tick(
             "phone": phone and _phone(phone),
             "rejected": dict(driving.rejected()),
             "no_picture": no_picture[:_REASON_CHARACTERS],
+            "tools": dict(tools),
             "fps": round(frames_per_s, 1),
             "latency": latency and _latency(latency),
         }

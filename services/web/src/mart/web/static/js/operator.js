@@ -11,22 +11,18 @@ import { isCue, isOffered } from "./hud/command-kinds.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
 import { onDeviceButtons } from "./hud/device-buttons.js";
-import { DisplayedTicks } from "./hud/displayed-ticks.js";
 import { showHealth } from "./hud/health-figure.js";
 import { showHolder } from "./hud/holder.js";
 import { InputPanel } from "./hud/input-panel.js";
 import { keepDiscarded } from "./hud/keep-discarded.js";
 import { showNotice } from "./hud/notice.js";
 import { showPartners } from "./hud/partners.js";
-import { showPicture } from "./hud/picture.js";
+import { SeatPicture } from "./hud/seat-picture.js";
 import { showSeatTitle } from "./hud/seat-title.js";
 import { StatusBar } from "./hud/status-bar.js";
 import { showWaiting } from "./hud/waiting.js";
 import { approachAsPage } from "./link/page-approach.js";
-import { DrawnPicture } from "./scene/drawn-picture.js";
-import { pictureChoice } from "./scene/picture-choice.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
-import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
 import { toLobby } from "./member.js";
 import { inPlainWords } from "./plain-words.js";
@@ -40,7 +36,6 @@ const NO_NEWS_MS = 2500; // rooms are told once a second at least
 const RECORDED_KEY = "mart.recorded";
 const FINGERS = matchMedia("(hover: none) and (pointer: coarse)");
 const [, , roomName = "", , armId = ""] = location.pathname.split("/").map(decodeURIComponent);
-const video = byId("video", HTMLVideoElement);
 
 /** @type {Api.Room | null} */
 let room = null;
@@ -50,10 +45,8 @@ let status = null;
 let course = null;
 let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
-let pictured = false; // by the present connection: its picture comes a round trip before its first word
 let beganMs = -Infinity; // when the gateway first told of this holder's seat
 
-const displayed = new DisplayedTicks();
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
 const panel = new InputPanel(roomName, armId, fail);
@@ -65,21 +58,21 @@ const link = new SeatLink({
   wantsVideo: true,
   onState: onLinkState,
   onStatus,
-  onTrack: (stream) => (video.srcObject = stream),
-  onPoses: (message) => drawn.onPoses(message),
+  onTrack: (stream) => picture.show(stream),
+  onPoses: (message) => picture.drawn.onPoses(message),
+  onCues: (told) => cues.onTold(told),
   voice: { onTrack: (track) => voice.onTrack(track), onVoices: (told) => voice.onVoices(told) },
 });
 const voice = new VoicePanel(link, armId);
-const drawn = new DrawnPicture({
-  host: byId("picture"),
+const picture = new SeatPicture({
   room: roomName,
   arm: armId,
-  choice: pictureChoice(),
   send: (message) => link.send(message),
-  onShown,
+  onSeen: (tick) => (input.seenTick = tick),
   onChange: () => render(),
   commanded: () => input.commandedSince(status),
 });
+const { drawn } = picture;
 const headset = new Headset({ room: roomName, arm: armId, picture: drawn, input, onCommand: onKey, onFailure: fail });
 const stop = emergencyStop({
   label: roomName,
@@ -88,7 +81,7 @@ const stop = emergencyStop({
   onStop: () => run("stop"),
   onLetGo: () => run("goOn"),
 });
-const cues = new Cues(armId, (message) => link.send(message), () => render());
+const cues = new Cues(armId, (message) => link.send(message), showNotice, () => render());
 
 begin();
 
@@ -105,13 +98,8 @@ function begin() {
   });
   byId("emergency").append(stop.node);
   byId("health").addEventListener("toggle", () => render());
-  video.addEventListener("resize", () => {
-    pictured = true;
-    render();
-  });
   document.addEventListener("click", letGoOfButton);
   document.addEventListener("keydown", (event) => letGoOnEscape(event, () => panel.hideHelp()));
-  watchTicks(video, onShown);
   setInterval(render, AGE_MS); // what grows old says so without any news
   input.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));
   followRooms({ onRooms, onEvent, onEnded: toLobby });
@@ -155,25 +143,13 @@ function onEvent(event) {
 }
 
 function onLinkState() {
-  if (link.state === LinkState.CONNECTING) pictured = false;
-  if (link.state === LinkState.LIVE) drawn.onLive();
+  picture.onLinkState(link.state);
   render();
-}
-
-/**
- * A tick is seen, in the video or drawn.
- * @param {number} tick
- * @param {number} nowMs
- */
-function onShown(tick, nowMs) {
-  displayed.see(tick, nowMs);
-  input.seenTick = tick;
-  link.send({ type: "seen", tick, t_us: nowMs * 1000 });
 }
 
 /** @param {StatusChannel.Tick} tick */
 function onStatus(tick) {
-  drawn.onTick(tick.tick);
+  picture.onStatus(tick);
   input.adoptGripper(tick, status);
   headset.onStatus(tick, status);
   if (status === null) beganMs = performance.now();
@@ -181,9 +157,6 @@ function onStatus(tick) {
   if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
   render();
 }
-
-/** Whether pictures come, or the last ones are still worth showing. */
-const isLive = () => link.state === LinkState.LIVE || (link.state === LinkState.CONNECTING && pictured);
 
 /** Whether the room is heard now. */
 const isTold = () => performance.now() - heardMs < NO_NEWS_MS && room !== null && !room.stale;
@@ -194,15 +167,15 @@ function render() {
   const isNew = !localStorage.getItem(RECORDED_KEY);
   statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches, course });
   const told = isTold();
-  const still = displayed.standStill(status?.tick ?? 0, performance.now());
+  const still = picture.standsStill(status);
   const forMs = performance.now() - beganMs;
-  showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn, link }, video);
+  showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn, link }, picture.video);
   stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
   voice.update();
   if (room) showRoom({ ...room, stale: !told });
-  showPicture(seat, status, isLive(), drawn.isShown);
+  picture.update(seat, status, link.state);
   showHolder(mine, status, link.state, confirm.pending);
   headset.update(mine && drives(), room);
 }
@@ -210,6 +183,7 @@ function render() {
 /** @param {Api.Room} shown */
 function showRoom(shown) {
   drawn.onProgress(shown.progress.subtasks);
+  picture.tell(shown, (arm) => cues.of(arm));
   showPartners(shown, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
   showWaiting(shown);
 }

@@ -36,9 +36,11 @@ const episode = new EpisodeButton(byId("episode"), (action) =>
 
 /** @type {SeatLink | null} */
 let seatLink = null;
-const cues = new PhoneCues((message) => seatLink?.send(message), (what) => {
-  if (what === "open") clutch.release(); // the sheet covers what moves the arm
-  else vibrate("step");
+const cues = new PhoneCues((message) => seatLink?.send(message), {
+  onOpen: () => clutch.release(), // the sheet covers what moves the arm
+  onSay: () => vibrate("step"),
+  onHear: () => vibrate("word"),
+  onUnsaid: tellProblem,
 });
 
 /** @type {XrTracker | TouchTracker | null} */
@@ -107,6 +109,7 @@ function connect(pairing) {
     wantsVideo: false,
     onState: () => onLinkState(link),
     onStatus: (tick) => onStatus(tick, link),
+    onCues: (told) => cues.onTold(told, arm),
   });
   seatLink = link;
   link.connect();
@@ -197,9 +200,14 @@ async function ask(request) {
   try {
     if (paired) await request(paired.room, paired.arm, paired.token);
   } catch (error) {
-    problem = messageOf(error);
-    problemUntilMs = performance.now() + PROBLEM_MS;
+    tellProblem(messageOf(error));
   }
+}
+
+/** @param {string} text */
+function tellProblem(text) {
+  problem = text;
+  problemUntilMs = performance.now() + PROBLEM_MS;
 }
 
 /** @param {Sample} pose */

@@ -1,16 +1,18 @@
 // Words to one's partners: a button each, and what was said, for a few seconds.
 
 import { armName, holderName } from "../arms.js";
-import { cueText, sendCue, waitsAfter } from "../cues.js";
+import { cueText, GivenCues, waitsAfter } from "../cues.js";
 import { byId, element, setShown, setText } from "../dom.js";
 import { CUES } from "../facts.js";
 
 const SHOWN_MS = 4000;
+const NOBODY = "Nobody hears a word now: it goes from who drives an arm to the others who do.";
 
 /** The buttons for cues, and the newest cue of each arm. */
 export class Cues {
   #ownArm;
-  #send;
+  #given;
+  #tell;
   #onChange;
   /** @type {Map<Messages.Cue, HTMLButtonElement>} */
   #buttons = new Map();
@@ -23,11 +25,13 @@ export class Cues {
   /**
    * @param {string} ownArm
    * @param {(message: StatusChannel.ToGateway) => void} send
+   * @param {(notice: string) => void} tell what became of a word that nobody heard
    * @param {() => void} onChange called when something else is to be shown
    */
-  constructor(ownArm, send, onChange) {
+  constructor(ownArm, send, tell, onChange) {
     this.#ownArm = ownArm;
-    this.#send = send;
+    this.#given = new GivenCues(send, tell);
+    this.#tell = tell;
     this.#onChange = onChange;
     CUES.forEach((cue, index) => this.#buttons.set(cue, this.#button(cue, String(index + 1))));
     byId("cues").append(...this.#buttons.values());
@@ -38,7 +42,13 @@ export class Cues {
    * @param {Messages.Cue} cue
    */
   give(cue) {
-    if (!byId("cues").hidden) sendCue(cue, this.#send);
+    if (byId("cues").hidden) this.#tell(NOBODY);
+    else this.#given.give(cue);
+  }
+
+  /** Takes what the gateway says of words. @param {StatusChannel.Cues | StatusChannel.CueRefused} told */
+  onTold(told) {
+    if (told.type === "cue_refused") this.#given.onRefused(told);
   }
 
   /**
@@ -50,6 +60,7 @@ export class Cues {
     clearTimeout(this.#said.get(arm)?.timer);
     const timer = setTimeout(() => this.#forget(arm), SHOWN_MS);
     this.#said.set(arm, { cue, timer });
+    if (arm === this.#ownArm) this.#given.onHeard(cue);
     const seat = room?.seats.find((one) => one.arm === arm);
     const name = seat ? holderName(seat) : armName(arm);
     if (cue === "wait") this.#waitsFor = arm === this.#ownArm ? "you" : name;

@@ -47,6 +47,7 @@ export const LinkState = Object.freeze({
  * @property {(stream: MediaStream) => void} [onTrack]
  * @property {(message: ArrayBuffer) => void} [onPoses]
  * @property {VoiceListener} [voice] whoever hears the room; nobody: there is no sound
+ * @property {(told: StatusChannel.Cues | StatusChannel.CueRefused) => void} [onCues]
  */
 
 /**
@@ -184,6 +185,10 @@ export class SeatLink {
   #onMessage(message) {
     if (message.type === "voices") {
       this.#options.voice?.onVoices(message);
+      return;
+    }
+    if (message.type === "cues" || message.type === "cue_refused") {
+      this.#options.onCues?.(message);
       return;
     }
     if (message.type === "replaced") {

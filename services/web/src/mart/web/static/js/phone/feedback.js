@@ -5,6 +5,7 @@ const PATTERNS_MS = {
   engaged: [15],
   grasped: [45],
   step: [15, 60, 15],
+  word: [30, 40, 30, 40, 30],
   late: [20, 60, 20],
   lost: [80, 60, 80],
   stopped: [200],
