@@ -90,5 +90,6 @@ declare namespace StatusChannel {
     | { type: "seen"; tick: number; t_us: number }
     | { type: "drawing"; on: boolean; p50_ms: number; p95_ms: number; per_s: number }
     | { type: "input"; input: Input }
+    | { type: "token"; token: string }
     | { type: "cue"; cue: Messages.Cue; t_us: number };
 }

@@ -189,9 +189,7 @@ def test_a_word_is_said_to_the_partners_by_the_phone(
         expect(said).to_contain_text("Slower")
         for _ in range(2):
             phone.page.get_by_role("button", name="Go", exact=True).click()
-        expect(phone.page.locator("#link")).to_contain_text(
-            "“Go” was not said: two words a second are allowed."
-        )
+        expect(phone.page.locator("#link")).to_contain_text("“Go” was not said: two words a second at most.")
         phone.page.evaluate("() => { navigator.vibrate = (pattern) => { window.felt = pattern.length } }")
         partner_says(platform, "arm1", CUE_COME_CLOSER)
         heard = phone.page.locator("#heard li[data-arm=arm1]")

@@ -77,7 +77,7 @@ def test_what_is_behind_or_beside_is_in_no_picture(
 ) -> None:
     """Half the picture's height is a metre at two."""
     projection = ToolProjection(Pose.identity(), 2 * np.arctan(0.5), {"arm0": Pose.identity()})
-    pose = pose_message(Pose(at_m, (1.0, 0.0, 0.0, 0.0)))
+    pose = pose_message(Pose(np.array(at_m), np.array((1.0, 0.0, 0.0, 0.0))))
     unknown = ArmState(arm="arm7", tool_in_base=pose)
     places = projection.places(State(arms=[ArmState(arm="arm0", tool_in_base=pose), unknown]))
     assert places == ({"arm0": place} if place else {})

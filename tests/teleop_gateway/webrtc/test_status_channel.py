@@ -180,6 +180,7 @@ def test_nothing_is_made_up_before_there_is_anything() -> None:
         ),
         ('{"type":"input","input":"keyboard"}', status_channel.SelectInputMessage(InputDevice.KEYBOARD)),
         ('{"type":"cue","cue":"wait","t_us":7.5}', status_channel.CueMessage(CUE_WAIT, 7.5)),
+        ('{"type":"token","token":"a.b.c"}', status_channel.TokenMessage("a.b.c")),
     ],
 )
 def test_what_peers_say_is_understood(text: str, message: object) -> None:

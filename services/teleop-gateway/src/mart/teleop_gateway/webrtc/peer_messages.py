@@ -6,7 +6,7 @@ import logging
 from collections.abc import Mapping
 
 from mart.protocol import clock
-from mart.protocol.errors import InvalidInput
+from mart.protocol.errors import Forbidden, InvalidInput
 from mart.protocol.tokens import Role
 from mart.teleop_gateway.input.cues import CueFilter, PressVerdict
 from mart.teleop_gateway.input.driving import InputDevice
@@ -20,6 +20,7 @@ from mart.teleop_gateway.voice.room_voice import RoomVoice
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peers import Peers
+from mart.teleop_gateway.webrtc.speech_rights import SpeechRights
 from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
 
 _log = logging.getLogger(__name__)
@@ -41,8 +42,10 @@ class PeerMessages:
         events: SeatEvents,
         broadcaster: StatusBroadcaster,
         voice: RoomVoice,
+        speech: SpeechRights,
     ) -> None:
-        self._peers, self._pages, self._voice = peers, pages, voice
+        self._peers, self._pages = peers, pages
+        self._voice, self._speech = voice, speech
         self._input, self._views, self._latency = seat_input, views, latency
         self._events, self._broadcaster = events, broadcaster
         self._cues = CueFilter()
@@ -75,8 +78,9 @@ class PeerMessages:
         self._broadcaster.tell_changes()
 
     def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None:
-        """Let the room hear what a peer says."""
-        self._voice.say(peer, drives=peer.role is Role.BROWSER, timestamp=timestamp, opus=opus)
+        """Let the room hear what a peer says, as long as it may speak."""
+        if self._speech.may_speak(peer, clock.wall_ns() * 1e-9):
+            self._voice.say(peer, drives=peer.role in _DEVICES, timestamp=timestamp, opus=opus)
 
     def on_status(self, peer: Peer, text: str) -> None:
         """Do what a message on the status channel asks; one that nobody understands is left out."""
@@ -95,8 +99,16 @@ class PeerMessages:
                     self._latency.on_seen(tick, int(t_us * 1000) + peer.clock_offset_ns)
             case status_channel.DrawingMessage():
                 self._on_drawing(peer, message)
+            case status_channel.TokenMessage(token):
+                self._renew_speech(peer, token)
         if peer.role in _DEVICES:
             self._do_for_holder(peer, _DEVICES[peer.role], message)
+
+    def _renew_speech(self, peer: Peer, token: str) -> None:
+        try:
+            self._speech.renew(peer, token)
+        except Forbidden as error:
+            _log.info("A %s may not speak on: %s", peer.role, error)
 
     def _on_drawing(self, peer: Peer, message: status_channel.DrawingMessage) -> None:
         if peer.role is Role.PHONE:

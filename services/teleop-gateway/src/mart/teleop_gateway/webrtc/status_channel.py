@@ -86,7 +86,16 @@ class CueMessage:
     press_us: float
 
 
-PeerMessage = PingMessage | ClockMessage | SeenMessage | DrawingMessage | SelectInputMessage | CueMessage
+@dataclass(frozen=True)
+class TokenMessage:
+    """Show a newer seat token, with which one may speak on."""
+
+    token: str
+
+
+PeerMessage = (
+    PingMessage | ClockMessage | SeenMessage | DrawingMessage | SelectInputMessage | CueMessage | TokenMessage
+)
 
 
 def parse(text: str | bytes) -> PeerMessage:
@@ -96,25 +105,31 @@ def parse(text: str | bytes) -> PeerMessage:
             f"A status message of {len(text)} characters was given; {MAX_CHARACTERS} are allowed."
         )
     try:
-        message = json.loads(text)
-        match message:
-            case {"type": "ping", "t_us": t_us}:
-                return PingMessage(_finite(t_us))
-            case {"type": "clock", "offset_ns": offset_ns}:
-                return ClockMessage(int(_finite(offset_ns)))
-            case {"type": "seen", "tick": int(tick), "t_us": t_us} if 0 <= tick <= _LARGEST:
-                return SeenMessage(tick, _finite(t_us))
-            case {"type": "drawing", "on": bool(on), "p50_ms": p50, "p95_ms": p95, "per_s": per_s}:
-                return DrawingMessage(on, *(_bounded(value) for value in (p50, p95, per_s)))
-            case {"type": "input", "input": name}:
-                return SelectInputMessage(InputDevice(name))
-            case {"type": "cue", "cue": str(word), "t_us": t_us}:
-                return CueMessage(cue_from_word(word), _finite(t_us))
+        return _parsed(json.loads(text))
     except (ValueError, OverflowError, RecursionError) as error:
         raise InvalidInput(f"A status message was given that cannot be read: {error}.") from error
-    raise InvalidInput(
-        "A status message was given that is none of ping, clock, seen, drawing, input and cue."
-    )
+
+
+def _parsed(message: object) -> PeerMessage:
+    parsed: PeerMessage
+    match message:
+        case {"type": "ping", "t_us": t_us}:
+            parsed = PingMessage(_finite(t_us))
+        case {"type": "clock", "offset_ns": offset_ns}:
+            parsed = ClockMessage(int(_finite(offset_ns)))
+        case {"type": "seen", "tick": int(tick), "t_us": t_us} if 0 <= tick <= _LARGEST:
+            parsed = SeenMessage(tick, _finite(t_us))
+        case {"type": "drawing", "on": bool(on), "p50_ms": p50, "p95_ms": p95, "per_s": per_s}:
+            parsed = DrawingMessage(on, *(_bounded(value) for value in (p50, p95, per_s)))
+        case {"type": "input", "input": name}:
+            parsed = SelectInputMessage(InputDevice(name))
+        case {"type": "cue", "cue": str(word), "t_us": t_us}:
+            parsed = CueMessage(cue_from_word(word), _finite(t_us))
+        case {"type": "token", "token": str(token)}:
+            parsed = TokenMessage(token)
+        case _:
+            raise ValueError("it is none of ping, clock, seen, drawing, input, cue and token")
+    return parsed
 
 
 def pong(ping: PingMessage, gateway_ns: int, limit_bps: float = math.inf) -> str:

@@ -48,7 +48,7 @@ export class GivenCues {
 
   /** The gateway has not passed it on. @param {StatusChannel.CueRefused} refused */
   onRefused({ cue, t_us: pressUs }) {
-    this.#end(pressUs, `“${cueText(cue)}” was not said: two words a second are allowed. Press it again.`);
+    this.#end(pressUs, `“${cueText(cue)}” was not said: two words a second at most.`);
   }
 
   /**

@@ -14,6 +14,8 @@ import { EpisodeButton, episodeText } from "./phone/episode-button.js";
 import { keepScreenOn, vibrate, vibrationsFor } from "./phone/feedback.js";
 import { takePairing } from "./phone/pairing.js";
 import { PhoneCues } from "./phone/phone-cues.js";
+import { PhoneVoice } from "./phone/phone-voice.js";
+import { HOW } from "./phone/start-words.js";
 import { stoppedByText, stoppedHoldText } from "./phone/stop-words.js";
 import { TouchTracker } from "./phone/touch-tracker.js";
 import { Tutorial } from "./phone/tutorial.js";
@@ -42,6 +44,8 @@ const cues = new PhoneCues((message) => seatLink?.send(message), {
   onHear: () => vibrate("word"),
   onUnsaid: tellProblem,
 });
+
+const voice = new PhoneVoice(byId("talk", HTMLButtonElement), () => seatLink, tellProblem);
 
 /** @type {XrTracker | TouchTracker | null} */
 let tracker = null;
@@ -88,16 +92,6 @@ async function begin() {
   document.addEventListener("visibilitychange", () => document.hidden && clutch.release());
 }
 
-/** @type {Record<Mode, string>} */
-const HOW = {
-  xr:
-    "Look at the laptop. Hold the coloured area, and the arm follows this phone. It asks for the camera to know " +
-    "where it is; no picture leaves the phone.",
-  touch:
-    "This browser cannot follow the phone through the room, so the coloured area is a touch pad, and tilting the " +
-    "phone turns the hand.",
-};
-
 /** @param {Api.PairedPhone} pairing */
 function connect(pairing) {
   const link = new SeatLink({
@@ -110,6 +104,7 @@ function connect(pairing) {
     onState: () => onLinkState(link),
     onStatus: (tick) => onStatus(tick, link),
     onCues: (told) => cues.onTold(told, arm),
+    onVoices: (told) => voice.onVoices(told),
   });
   seatLink = link;
   link.connect();
@@ -251,6 +246,7 @@ function showLink(link) {
   if (live) stop.update(stopped);
   episode.update(live ? status : null);
   cues.update(live ? status : null);
+  voice.update();
   if (performance.now() > problemUntilMs) problem = "";
   byId("app").classList.toggle("stopped", stopped);
   setText(byId("link"), problem || linkText(link));

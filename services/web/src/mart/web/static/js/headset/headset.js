@@ -182,8 +182,8 @@ export class Headset {
     const commands = this.#hand.see(own, input.gripper, nowMs);
     if (side && this.#second) commands.push(...this.#second.hand.see(others, this.#second.gripper, nowMs));
     commands.forEach(onCommand);
-    const open = this.#hands.find((hand) => hand.wheel.isOpen) ?? this.#hand;
-    this.#view?.show(controllers, this.#colours(), boardLines(open.wheel));
+    const open = this.#hands.find((hand) => hand.words.isOpen || hand.endings.isOpen) ?? this.#hand;
+    this.#view?.show(controllers, this.#colours(), boardLines(open));
   }
 
   /** By the controllers that lead. @returns {Map<Side, string>} */

@@ -13,9 +13,9 @@ const PATTERNS_MS = {
 
 /** @typedef {keyof typeof PATTERNS_MS} Vibration */
 
-/** Buzzes where the phone can; iPhones cannot. @type {(what: Vibration) => void} */
+/** Buzzes where the phone can, and may: after the first touch. iPhones cannot. @type {(what: Vibration) => void} */
 export function vibrate(what) {
-  navigator.vibrate?.(PATTERNS_MS[what]);
+  if (navigator.userActivation?.hasBeenActive ?? true) navigator.vibrate?.(PATTERNS_MS[what]);
 }
 
 /**

@@ -44,7 +44,7 @@ export class ToolLabels {
       setShown(node, isShown);
       if (!place || !isShown) continue;
       node.style.left = `${(100 * place.x).toFixed(2)}%`;
-      node.style.top = `${(100 * place.y).toFixed(2)}%`;
+      node.style.setProperty("--down", `${(100 * place.y).toFixed(2)}%`);
     }
   }
 }
