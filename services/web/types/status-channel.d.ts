@@ -27,6 +27,7 @@ declare namespace StatusChannel {
     ready: boolean;
     practises_only: boolean;
     partners: boolean;
+    others: boolean;
     stopped_by: string;
     paused_by_host: boolean;
     waiting: { arm: string; since_s: number }[];

@@ -74,6 +74,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "ready": True,
         "practises_only": False,
         "partners": False,
+        "others": True,
         "barrier": "stalled",
         "stopped_by": "",
         "paused_by_host": False,

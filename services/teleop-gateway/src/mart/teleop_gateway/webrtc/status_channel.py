@@ -200,6 +200,7 @@ def tick(
             "ready": any(seat.ready for seat in room.seats if seat.arm == driving.arm),
             "practises_only": _practises_only(room, driving.arm),
             "partners": any(seat.operator in _DRIVING for seat in room.seats if seat.arm != driving.arm),
+            "others": any(seat.operator != OPERATOR_HUMAN for seat in room.seats if seat.arm != driving.arm),
             "barrier": barrier_word(room.barrier),
             "stopped_by": room.stop.name[:_NAME_CHARACTERS],
             "paused_by_host": room.stop.by_host,

@@ -101,20 +101,24 @@ async def redeem(body: PairingRequest, app: App) -> Json:
 async def phone_token(room: str, arm: str, app: App, authorization: Authorization = "") -> Json:
     """Send a phone its renewed token.
 
-    It stays with the user who paired it: its token is renewed while, and whenever, they hold the seat.
+    It stays with the user who paired it: its token is renewed while, and whenever, they hold the seat, and is for the
+    arm that they went on to from there, where they did.
     """
     paired = claims_of(app, room, arm, authorization)
     if paired.role is not Role.PHONE:
         raise Forbidden(f"The token of a {paired.role} was given; only a phone's is renewed here.")
     seat = _seat(app, room, arm)
     if not is_held_by(seat, paired.holder_id):
+        seat = _seat(app, room, app.seat_switches.arm_of(room, paired.holder_id, arm))
+    if not is_held_by(seat, paired.holder_id):
         driver = "Nobody" if seat.operator == OPERATOR_HOLD else seat.name or "A script"
         raise Conflict(
-            f"{driver} drives {arm} now; this phone goes on when the person who paired it takes the seat again."
+            f"{driver} drives {seat.arm} now; this phone goes on when the person who paired it takes the seat again."
         )
-    renewed = replace(paired, epoch=seat.epoch)
+    renewed = replace(paired, arm=seat.arm, epoch=seat.epoch)
     return {
         "token": _sign(app, renewed),
+        "arm": seat.arm,
         "epoch": seat.epoch,
         "speaks_as": renewed.speaks_as,
         "ice_servers": ice_servers_json(app),
