@@ -3,7 +3,7 @@
 import * as api from "./api.js";
 import { hasPicture } from "./arms.js";
 import { coursePath, courseRoom } from "./course.js";
-import { byId, letGoOfButton, letGoOnEscape } from "./dom.js";
+import { byId, letGoOfButton, letGoOnEscape, setShown } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
 import { Headset } from "./headset/headset.js";
@@ -20,6 +20,7 @@ import { showPartners } from "./hud/partners.js";
 import { SeatPicture } from "./hud/seat-picture.js";
 import { showSeatTitle } from "./hud/seat-title.js";
 import { StatusBar } from "./hud/status-bar.js";
+import { othersOf, SwitchedSeat } from "./hud/switched-seat.js";
 import { showWaiting } from "./hud/waiting.js";
 import { approachAsPage } from "./link/page-approach.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
@@ -35,7 +36,8 @@ const AGE_MS = 500;
 const NO_NEWS_MS = 2500; // rooms are told once a second at least
 const RECORDED_KEY = "mart.recorded";
 const FINGERS = matchMedia("(hover: none) and (pointer: coarse)");
-const [, , roomName = "", , armId = ""] = location.pathname.split("/").map(decodeURIComponent);
+const [, , roomName = "", , firstArm = ""] = location.pathname.split("/").map(decodeURIComponent);
+const own = { room: roomName, arm: firstArm }; // the seat; its person may go on to another arm
 
 /** @type {Api.Room | null} */
 let room = null;
@@ -47,14 +49,15 @@ let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
 let beganMs = -Infinity; // when the gateway first told of this holder's seat
 
+const switched = new SwitchedSeat();
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
-const panel = new InputPanel(roomName, armId, fail);
+const panel = new InputPanel(own, fail);
 const input = new KeyboardMouseInput(byId("picture"), (command, hasMoved) => {
   if (!hasMoved || room?.episode.phase !== "recording") onKey(command); // a key that has just moved is still meant to
 }, () => confirm.withdraw());
 const link = new SeatLink({
-  approach: () => approachAsPage(roomName, armId),
+  approach: () => approachAsPage(roomName, own.arm),
   wantsVideo: true,
   onState: onLinkState,
   onStatus,
@@ -63,17 +66,16 @@ const link = new SeatLink({
   onCues: (told) => cues.onTold(told),
   voice: { onTrack: (track) => voice.onTrack(track), onVoices: (told) => voice.onVoices(told) },
 });
-const voice = new VoicePanel(link, armId);
+const voice = new VoicePanel(link, own);
 const picture = new SeatPicture({
-  room: roomName,
-  arm: armId,
+  own,
   send: (message) => link.send(message),
   onSeen: (tick) => (input.seenTick = tick),
   onChange: () => render(),
   commanded: () => input.commandedSince(status),
 });
 const { drawn } = picture;
-const headset = new Headset({ room: roomName, arm: armId, picture: drawn, input, onCommand: onKey, onFailure: fail });
+const headset = new Headset({ own, picture: drawn, input, onCommand: onKey, onFailure: fail });
 const stop = emergencyStop({
   label: roomName,
   id: "stop",
@@ -81,14 +83,14 @@ const stop = emergencyStop({
   onStop: () => run("stop"),
   onLetGo: () => run("goOn"),
 });
-const cues = new Cues(armId, (message) => link.send(message), showNotice, () => render());
+const cues = new Cues(own, (message) => link.send(message), showNotice, () => render());
 
 begin();
 
 function begin() {
-  showSeatTitle(roomName, armId);
+  showSeatTitle(roomName, own.arm);
   byId("edge").prepend(voice.node);
-  for (const command of /** @type {const} */ (["gripper", "leave"])) {
+  for (const command of /** @type {const} */ (["gripper", "leave", "other"])) {
     byId(command).addEventListener("click", () => run(command));
   }
   onDeviceButtons({
@@ -106,7 +108,20 @@ function begin() {
   link.connect(); // the seat's picture is wanted in nearly all cases: what the rooms say comes three round trips later
 }
 
-const ownSeat = () => room?.seats.find((seat) => seat.arm === armId);
+/** Goes on to another arm of the room, in this page. @param {Api.Seat} seat */
+function goTo(seat) {
+  own.arm = seat.arm;
+  history.replaceState(null, "", `/rooms/${encodeURIComponent(roomName)}/arms/${encodeURIComponent(seat.arm)}`);
+  showSeatTitle(roomName, seat.arm);
+  panel.onSwitched();
+  status = null;
+  followed = seat.epoch;
+  drawn.rest();
+  link.connect();
+  render();
+}
+
+const ownSeat = () => room?.seats.find((seat) => seat.arm === own.arm);
 const drives = () => link.role === "browser" && status !== null;
 
 /** @param {Api.Room[]} rooms */
@@ -115,6 +130,8 @@ function onRooms(rooms) {
   heardMs = performance.now();
   room = rooms.find((one) => one.room === roomName) ?? (room && { ...room, stale: true });
   course = courseRoom(rooms);
+  const went = switched.see(room?.seats ?? [], own.arm, heardMs);
+  if (went) goTo(went);
   follow(ownSeat());
   render();
 }
@@ -178,13 +195,14 @@ function render() {
   picture.update(seat, status, link.state);
   showHolder(mine, status, link.state, confirm.pending);
   headset.update(mine && drives(), room);
+  setShown(byId("other"), mine && othersOf(room, own.arm).length > 0);
 }
 
 /** @param {Api.Room} shown */
 function showRoom(shown) {
   drawn.onProgress(shown.progress.subtasks);
   picture.tell(shown, (arm) => cues.of(arm));
-  showPartners(shown, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
+  showPartners(shown, own.arm, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
   showWaiting(shown);
 }
 
@@ -219,15 +237,22 @@ const ACTIONS = {
   lobby: toLobby,
   here: () => link.connect(),
   keep: () => keepDiscarded(room),
-  take: () => api.takeSeat(roomName, armId),
-  back: () => api.handBack(roomName, armId),
+  take: () => api.takeSeat(roomName, own.arm),
+  other: takeOther,
+  back: () => api.handBack(roomName, own.arm),
   course: () => leaveFor(coursePath(course)),
   leave: () => leaveFor("/"),
 };
 
+/** One press, and no other page: solo, one person drives one arm after another. */
+async function takeOther() {
+  if (headset.isWorn) throw new Error("Take the headset off before you switch to another arm.");
+  goTo((await api.switchSeat(roomName, own.arm)).seat);
+}
+
 /** @param {string} path */
 async function leaveFor(path) {
-  if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);
+  if (ownSeat()?.mine) await api.leaveSeat(roomName, own.arm);
   location.assign(path);
 }
 
@@ -251,7 +276,7 @@ async function run(command) {
 function perform(command) {
   if (isCue(command)) return cues.give(command);
   if (isPageCommand(command)) return ACTIONS[command]();
-  return api.actOnEpisode(roomName, command, armId);
+  return api.actOnEpisode(roomName, command, own.arm);
 }
 
 /** @param {string} command @returns {command is PageCommand} */

@@ -14,8 +14,7 @@ import { showPicture } from "./picture.js";
 
 /**
  * @typedef {object} SeatPictureOptions
- * @property {string} room
- * @property {string} arm
+ * @property {{ room: string, arm: string }} own one's own seat, now
  * @property {(message: StatusChannel.ToGateway) => void} send
  * @property {(tick: number) => void} onSeen a tick is on the screen
  * @property {() => void} onChange
@@ -26,14 +25,14 @@ import { showPicture } from "./picture.js";
 export class SeatPicture {
   drawn;
   video = byId("video", HTMLVideoElement);
-  #arm;
+  #own;
   #labels = new ToolLabels(byId("labels"));
   #displayed = new DisplayedTicks();
   #pictured = false; // by the present connection: its picture comes a round trip before its first word
 
   /** @param {SeatPictureOptions} options */
-  constructor({ room, arm, send, onSeen, onChange, commanded }) {
-    this.#arm = arm;
+  constructor({ own, send, onSeen, onChange, commanded }) {
+    this.#own = own;
 
     /** @type {(tick: number, nowMs: number) => void} */
     const onShown = (tick, nowMs) => {
@@ -43,8 +42,10 @@ export class SeatPicture {
     };
     this.drawn = new DrawnPicture({
       host: byId("picture"),
-      room,
-      arm,
+      room: own.room,
+      get arm() {
+        return own.arm;
+      },
       choice: pictureChoice(),
       send,
       onShown,
@@ -102,6 +103,6 @@ export class SeatPicture {
   tell({ seats, episode }, wordsOf) {
     const arms = seats.map((seat) => ({ arm: seat.arm, name: holderName(seat), words: wordsOf(seat.arm) }));
     const isNamed = episode.phase === "practice" || episode.phase === "countdown";
-    this.#labels.tell(arms.filter(({ arm, words }) => isNamed || arm !== this.#arm || words !== ""));
+    this.#labels.tell(arms.filter(({ arm, words }) => isNamed || arm !== this.#own.arm || words !== ""));
   }
 }

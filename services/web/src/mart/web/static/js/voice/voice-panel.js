@@ -17,7 +17,7 @@ const SILENT_MS = 1000;
 export class VoicePanel {
   node;
   #link;
-  #arm;
+  #own;
   #loudspeaker = new Loudspeaker(() => this.update());
   #talking;
   /** @type {StatusChannel.Speaker[]} */
@@ -31,11 +31,11 @@ export class VoicePanel {
 
   /**
    * @param {TalkLink} link
-   * @param {string} [arm] whose page it is, where it is an arm's
+   * @param {{ arm: string }} [own] whose page it is now, where it is an arm's
    */
-  constructor(link, arm = "") {
+  constructor(link, own = { arm: "" }) {
     this.#link = link;
-    this.#arm = arm;
+    this.#own = own;
     this.#talking = new PushToTalk(link, () => this.update());
     this.#talk.append("Hold to talk", element("kbd", { "aria-hidden": "true" }, "V"));
     this.#loudspeaker.mute(sessionStorage.getItem(MUTED_KEY) === "yes");
@@ -102,7 +102,7 @@ export class VoicePanel {
    */
   #isMe({ arm, name }) {
     const { role, speaksAs } = this.#link;
-    return name === speaksAs && arm === (role === "browser" ? this.#arm : "");
+    return name === speaksAs && arm === (role === "browser" ? this.#own.arm : "");
   }
 
   #toggleMute() {
