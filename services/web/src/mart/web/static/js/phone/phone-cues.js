@@ -42,9 +42,13 @@ export class PhoneCues {
     byId("say-close").addEventListener("click", () => this.#open(false));
   }
 
-  /** There is something to say while somebody else drives, too. @param {StatusChannel.Tick | null} status */
+  /**
+   * There is something to say while somebody else drives, too; a moment without news closes no sheet.
+   * @param {StatusChannel.Tick | null} status
+   */
   update(status) {
-    const partners = status?.partners ?? false;
+    if (!status) return;
+    const { partners } = status;
     setShown(byId("cues"), partners);
     if (!partners) this.#open(false);
   }
