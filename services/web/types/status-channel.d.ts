@@ -27,6 +27,7 @@ declare namespace StatusChannel {
     ready: boolean;
     practises_only: boolean;
     partners: boolean;
+    others: boolean;
     stopped_by: string;
     paused_by_host: boolean;
     waiting: { arm: string; since_s: number }[];
@@ -34,6 +35,8 @@ declare namespace StatusChannel {
     phone: { age_ms: number; tracking: boolean; started: boolean } | null;
     rejected: Record<string, number>;
     no_picture: string;
+    /** Thousandths of the picture's width and height, from its upper left corner. */
+    tools: Record<string, [right: number, down: number]>;
     fps: number;
     latency: Latency | null;
   }
@@ -61,7 +64,26 @@ declare namespace StatusChannel {
     heard: boolean;
   }
 
-  type FromGateway = Tick | Pong | Replaced | Voices;
+  /** `name` is empty for a machine without one; `number` is greater for what is said later. */
+  interface SaidCue {
+    arm: string;
+    name: string;
+    cue: string;
+    number: number;
+  }
+
+  interface Cues {
+    type: "cues";
+    said: SaidCue[];
+  }
+
+  interface CueRefused {
+    type: "cue_refused";
+    cue: string;
+    t_us: number;
+  }
+
+  type FromGateway = Tick | Pong | Replaced | Voices | Cues | CueRefused;
 
   type ToGateway =
     | { type: "ping"; t_us: number }
@@ -69,5 +91,6 @@ declare namespace StatusChannel {
     | { type: "seen"; tick: number; t_us: number }
     | { type: "drawing"; on: boolean; p50_ms: number; p95_ms: number; per_s: number }
     | { type: "input"; input: Input }
+    | { type: "token"; token: string }
     | { type: "cue"; cue: Messages.Cue; t_us: number };
 }

@@ -81,6 +81,16 @@ def press(page: Page, side: str, button: str, value: float) -> None:
     )
 
 
+def push_stick(page: Page, side: str, right: float, down: float) -> None:
+    """Pressed, pushed and let go, each for some of the headset's pictures."""
+    for value, *axes in ((1.0, 0.0, 0.0), (1.0, right, down), (0.0, 0.0, 0.0)):
+        press(page, side, "thumbstick", value)
+        page.evaluate(
+            "([side, ...to]) => headset.controllers[side].updateAxes('thumbstick', ...to)", [side, *axes]
+        )
+        page.wait_for_timeout(150)
+
+
 def led_once(page: Page, tools: Tools, sides: Sequence[str]) -> NDArray[np.float64]:
     """How far the tools went while the hands did."""
     for side in sides:
@@ -132,6 +142,10 @@ def test_one_person_drives_two_arms(browser: Browser, platform: Platform) -> Non
         assert_led(page, tools, world, ["left", "right"], [0, 1])
         page.keyboard.press("n")
         expect(page.locator("#state-label")).to_have_text("Recording")
+        push_stick(page, "right", 0, 1)
+        expect(page.locator("#actions [data-command=discard]")).to_contain_text("Press again")
+        push_stick(page, "left", 0, 1)
+        expect(page.locator("#state-label")).to_have_text("Discarded")
         page.evaluate("headset.activeSession.end()")
         expect(partner).to_contain_text("Holds still")
 

@@ -13,7 +13,7 @@ HAND = """({ ControllerHand }, steps) => {
   const hand = new ControllerHand();
   const controller = ({ side = "right", at = [0, 0, 0], ...pressed }) => ({
     side, pose: at && { position: at, quaternionWxyz: [1, 0, 0, 0] },
-    squeeze: 0, trigger: 0, stick: [0, 0], lower: false, upper: false, ...pressed,
+    squeeze: 0, trigger: 0, stick: [0, 0], lower: false, upper: false, stickPressed: false, ...pressed,
   });
   let nowMs = 0;
   return steps.map(({ seen = [], gripper = 0, afterMs = 16, call }) => {
@@ -115,6 +115,18 @@ def test_the_lower_button_asks_for_what_comes_next_or_says_a_word(run: Run) -> N
     told = led(run, IDLE, down, IDLE, up, down, IDLE, up, right, IDLE, down, nothing, IDLE)
     assert [one["commands"] for one in told if one["commands"]] == [["next"], ["have_it"], ["wait"]]
     assert led(run, down, IDLE)[1]["commands"] == []  # it was held before anybody looked
+
+
+def test_the_pressed_stick_asks_for_what_it_was_pushed_to_last(run: Run) -> None:
+    def pushed(*stick: float) -> dict[str, Any]:
+        return {"seen": [{"stickPressed": True, "stick": stick}]}
+
+    told = led(
+        run, IDLE, pushed(0, -1), IDLE, pushed(0, 0), IDLE, pushed(1, 0), pushed(-1, 0), pushed(0, 0), IDLE
+    )
+    assert [one["commands"] for one in told if one["commands"]] == [["success"], ["leave"]]
+    pressed_meanwhile = led(run, IDLE, pushed(0, 1), {"call": "lose"}, pushed(0, 1), IDLE)
+    assert [one["commands"] for one in pressed_meanwhile] == [[]] * 5  # the system's menu lay over it
 
 
 STAND = """({ standOf, levelAxes }, { position, quaternionWxyz, eyesM, right }) =>

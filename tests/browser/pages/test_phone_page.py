@@ -11,6 +11,8 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mart.platform.run.running import Platform
+from mart.protocol import clock, codec, keys
+from mart.protocol.messages import CUE_COME_CLOSER, Cue, Event
 from tests.browser.pages.conftest import Run
 from tests.browser.pages.legibility import faults
 from tests.browser.pages.visits import HERE, SCREENSHOTS, driving, listen, visit
@@ -163,7 +165,7 @@ def test_the_button_of_the_episode_offers_what_can_be_done(
     assert run("phone/episode-button.js", script, {"status": status, "again": again}) == text
 
 
-@pytest.mark.parametrize(("width", "height"), [(360, 640), (740, 360)])
+@pytest.mark.parametrize(("width", "height"), [(390, 844), (740, 360)])
 def test_a_word_is_said_to_the_partners_by_the_phone(
     browser: Browser, platform: Platform, width: int, height: int
 ) -> None:
@@ -185,6 +187,71 @@ def test_a_word_is_said_to_the_partners_by_the_phone(
         expect(phone.page.locator("#say")).to_be_hidden()
         said = phone.operator.locator("#cues .said")
         expect(said).to_contain_text("Slower")
+        for _ in range(2):
+            phone.page.get_by_role("button", name="Go", exact=True).click()
+        expect(phone.page.locator("#link")).to_contain_text("“Go” was not said: two words a second at most.")
+        phone.page.evaluate("() => { navigator.vibrate = (pattern) => { window.felt = pattern.length } }")
+        partner_says(platform, "arm1", CUE_COME_CLOSER)
+        heard = phone.page.locator("#heard li[data-arm=arm1]")
+        expect(heard).to_have_text("1Orange arm:Come closer")
+        assert phone.page.evaluate("() => window.felt") > 1
+        phone.is_fine(f"phone-hears-{width}x{height}")
+        expect(heard).to_have_count(0)
+
+
+def test_one_person_goes_on_to_the_other_arm_and_back_with_page_and_phone(
+    browser: Browser, platform: Platform
+) -> None:
+    with paired(browser, platform, xr=True, width=390, height=844) as phone:
+        phone.start()
+        operator, partner = phone.operator, phone.operator.locator("#partners li")
+        expect(partner).to_contain_text("Script")
+        phone.page.get_by_role("button", name="Other arm").click()  # of the script, which gets it back
+        for page in (phone.page, operator):
+            expect(page.locator("#arm")).to_have_text("Orange arm")
+        expect(phone.page.locator("#link")).to_contain_text("tracking good")
+        expect(operator.locator("#picture.live")).to_be_visible()
+        expect(partner).to_contain_text("Nobody")
+        phone.is_fine("phone-other-arm")
+        operator.screenshot(path=SCREENSHOTS / "operator-other-arm.png")
+        operator.keyboard.press("t")
+        for page in (phone.page, operator):
+            expect(page.locator("#arm")).to_have_text("Blue arm")
+        expect(operator.locator("#picture.live")).to_be_visible()
+        expect(partner).to_contain_text("Script")
+        assert operator.url.endswith("/arms/arm0")
+
+
+SWITCHES = """({ SwitchedSeat }, steps) => {
+  const switched = new SwitchedSeat();
+  return steps.map(([mine, nowMs]) => {
+    const seats = ["arm0", "arm1"].map((arm) => ({ arm, mine: mine.includes(arm) }));
+    return switched.see(seats, "arm0", nowMs)?.arm ?? "";
+  });
+}"""
+
+
+@pytest.mark.parametrize(
+    ("steps", "went"),
+    [
+        ([("arm0", 0), ("arm0 arm1", 100), ("arm1", 200)], "arm1"),
+        ([("arm0", 0), ("arm1", 200)], ""),  # never both: they did not come from here
+        ([("arm0", 0), ("arm0 arm1", 100), ("arm1", 9000)], ""),  # they have had both for long
+        ([("arm0 arm1", 0), ("arm1", 100)], ""),  # both from the beginning: two pages of one person
+        ([("arm0", 0), ("arm0 arm1", 100), ("", 200)], ""),
+    ],
+)
+def test_a_page_goes_on_with_its_person_alone(run: Run, steps: list[tuple[str, int]], went: str) -> None:
+    told = run("hud/switched-seat.js", SWITCHES, [[mine.split(), now_ms] for mine, now_ms in steps])
+    assert told[-1] == went
+    assert not any(told[:-1])
+
+
+def partner_says(platform: Platform, arm: str, cue: Cue) -> None:
+    event = Event(room=platform.options.room, wall_ns=clock.wall_ns())
+    event.cue_given.arm, event.cue_given.cue = arm, cue
+    with contextlib.closing(platform.bus.publisher(keys.event(platform.options.room))) as events:
+        events.put(codec.encode(event))
 
 
 def test_the_gripper_bar_slides_and_taps(browser: Browser, platform: Platform) -> None:

@@ -10,7 +10,7 @@ from playwright.sync_api import Browser, Page, expect
 from mart.platform.collect.browser import ARGUMENTS, chromium_path
 from mart.platform.run.running import Platform
 from tests.browser.pages.conftest import Run
-from tests.browser.pages.visits import Visit, driving, visit
+from tests.browser.pages.visits import SCREENSHOTS, Visit, driving, visit, window
 
 # What each connection of the page hears and sends; and whether a microphone was ever asked for.
 WATCH = """
@@ -93,6 +93,31 @@ def test_who_holds_v_is_heard_by_a_spectator_who_has_no_such_key(
             page.wait_for_timeout(300)
             assert stat(page, SENT) == sent
             assert page.evaluate("() => window.asked") == 1
+            page.get_by_role("button", name="Pair a phone").click()
+            expect(page.locator("#qr")).to_be_visible()
+            code = str(page.locator("#qr").get_attribute("title")).partition("#")[2]
+            with window(talking_browser, "narrow", "dark") as context:
+                talks_by_phone(context.new_page(), f"{platform.url}phone#{code}", page, eve.page)
+
+
+def talks_by_phone(phone: Page, url: str, operator: Page, spectator: Page) -> None:
+    """Ana is heard by all but herself, on the laptop beside the phone."""
+    phone.add_init_script(WATCH)
+    phone.goto(url)
+    talk = phone.get_by_role("button", name="Talk", exact=True)
+    phone.get_by_role("button", name="Start").click()
+    expect(talk).to_be_visible()
+    assert phone.evaluate("() => window.asked") == 0
+    before = stat(spectator, HEARD)
+    talk.hover()
+    phone.mouse.down()
+    expect(phone.get_by_role("button", name="Talking")).to_have_attribute("aria-pressed", "true")
+    expect(spectator.get_by_text("Ana speaks")).to_be_visible()
+    wait_heard(spectator, before + 0.0001)
+    assert stat(operator, HEARD) == 0
+    phone.screenshot(path=SCREENSHOTS / "phone-talking.png")
+    phone.mouse.up()
+    expect(spectator.get_by_text("Ana speaks")).to_be_hidden()
 
 
 @pytest.mark.parametrize(("size", "scheme"), [("narrow", "dark")])

@@ -42,17 +42,18 @@ def test_pairing_and_offering() -> None:
     assert ask(lobby) == (PAIRING, "answer")
 
 
-def test_a_pairing_is_renewed_for_the_seat_as_it_is_now() -> None:
+@pytest.mark.parametrize(("told", "arm"), [({}, "arm0"), ({"arm": "arm1"}, "arm1")])
+def test_a_pairing_is_renewed_for_the_seat_where_its_person_is_now(told: dict[str, str], arm: str) -> None:
     def lobby(request: httpx.Request) -> httpx.Response:
         assert (request.method, request.url.path) == ("GET", "/api/rooms/room-1/seats/arm0/phone-token")
         assert request.headers["authorization"] == "Bearer t0ken"
-        return httpx.Response(200, json={"token": "newer", "epoch": 5})
+        return httpx.Response(200, json={"token": "newer", "epoch": 5, **told})
 
     async def run() -> PhonePairing:
         async with PairingClient(URL, insecure=True, transport=httpx.MockTransport(lobby)) as client:
             return await client.renew(PAIRING)
 
-    assert asyncio.run(run()) == PhonePairing("newer", "room-1", "arm0", 5, "Ana")
+    assert asyncio.run(run()) == PhonePairing("newer", "room-1", arm, 5, "Ana")
 
 
 def test_a_refusal_is_passed_on() -> None:

@@ -63,7 +63,7 @@ def test_each_seat_sees_its_arm_from_its_own_side(
 ) -> None:
     """The seats look along directions of their own; both lie well within a turn of the arm's own forward axis."""
     for arm in model_message.arms:
-        azimuth_rad = camera_azimuth_rad(model_message, model, arm)
+        azimuth_rad = camera_azimuth_rad(model, arm)
         camera = world.model.camera(arm)
         rotation = np.zeros(9)
         mujoco.mju_quat2Mat(rotation, camera.quat)

@@ -22,6 +22,7 @@ from mart.teleop_gateway.voice.speech_bounds import MAX_BYTES, MAX_PER_S
 @dataclass(eq=False)
 class Person:
     speaks_as: str
+    holder_id: str = ""
 
 
 @dataclass

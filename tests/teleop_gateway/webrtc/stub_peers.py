@@ -10,6 +10,7 @@ from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryNetwork
 from mart.teleop_gateway.video.encoder import Audience, Codec, Stream
+from mart.teleop_gateway.voice.lanes import LanePacket
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peers import Peers
 
@@ -27,11 +28,13 @@ class StubPeer:
     ) -> None:
         self.role = role
         self.holder_id = holder_id
+        self.speaks_as = speaks_as
         self.heard_s = 0.0
         self.is_connected = False
         self.is_closed = False
         self.draws = False
         self.poses = b""
+        self.played: list[LanePacket] = []
         self.audience = Audience.EVERYONE
         self.limit_bps = math.inf
 
@@ -55,6 +58,9 @@ class StubPeer:
 
     def set_draws(self, draws: bool) -> None:
         self.draws = draws
+
+    def play(self, packet: LanePacket) -> None:
+        self.played.append(packet)
 
     def send_poses(self, message: bytes) -> None:
         self.poses = message

@@ -116,6 +116,14 @@ async def test_a_page_that_wants_sound_alone_gets_it() -> None:
         assert peer.stream is None
 
 
+@pytest.mark.anyio
+async def test_a_phone_is_heard_and_hears_nothing() -> None:
+    peer = Peer(Role.PHONE, cast("PeerListener", SpeechListener()), speaks_as="Ana")
+    answer = await peer.answer(await offer(audio=1, direction="sendonly"))
+    assert ["a=recvonly" in section for section in sections(answer, "audio")] == [True]
+    await peer.close()
+
+
 async def offer(audio: int = 0, video: int = 0, direction: str = "recvonly") -> str:
     connection = RTCPeerConnection(RTCConfiguration([]))
     connection.createDataChannel("status")
@@ -130,7 +138,7 @@ async def offer(audio: int = 0, video: int = 0, direction: str = "recvonly") -> 
 @pytest.mark.anyio
 @pytest.mark.parametrize(
     ("role", "audio", "video"),
-    [(Role.BROWSER, 3, 1), (Role.VIEWER, 0, 2), (Role.PHONE, 1, 0), (Role.PHONE, 0, 1)],
+    [(Role.BROWSER, 3, 1), (Role.VIEWER, 0, 2), (Role.PHONE, 2, 0), (Role.PHONE, 0, 1)],
 )
 async def test_more_than_a_peer_can_get_is_refused(role: Role, audio: int, video: int) -> None:
     peer = Peer(role, cast("PeerListener", SpeechListener()), speaks_as="Ana")

@@ -18,6 +18,7 @@ from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peer_messages import PeerMessages
+from mart.teleop_gateway.webrtc.speech_rights import SpeechRights
 from tests.support.fuzzing import fuzzing
 from tests.teleop_gateway.input.strategies import phone_frame
 from tests.teleop_gateway.input.test_driving import HOME
@@ -28,7 +29,7 @@ NUMBERS = st.one_of(
     st.sampled_from([2**53, 2**63 - 1, 2**63, -(2**63), 10**400, 1e306, 1.7e308, True, None, "7"]),
 )
 MESSAGES = st.fixed_dictionaries(
-    {"type": st.sampled_from(["ping", "clock", "seen", "drawing", "input", "cue", "other"])},
+    {"type": st.sampled_from(["ping", "clock", "seen", "drawing", "input", "cue", "token", "other"])},
     optional={
         "t_us": NUMBERS,
         "offset_ns": NUMBERS,
@@ -39,6 +40,7 @@ MESSAGES = st.fixed_dictionaries(
         "per_s": NUMBERS,
         "input": st.sampled_from(["phone", "keyboard", "", 7]),
         "cue": st.sampled_from(["wait", "go", "", 7]),
+        "token": st.sampled_from(["", "a.b.c", 7]) | st.text(),
     },
 )
 
@@ -70,6 +72,7 @@ def test_no_message_is_more_than_a_seat_can_take(said: list[dict[str, Any]], now
         events=nobody,
         broadcaster=nobody,
         voice=nobody,
+        speech=SpeechRights(SeatAddress("room-1", "arm0"), b"s" * 32),
     )
     peer = cast("Peer", mock.MagicMock(role=Role.BROWSER, clock_offset_ns=None, limit_bps=3e5))
     for message in said:

@@ -22,6 +22,7 @@ from mart.protocol.tokens import Role
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.memory import MemoryNetwork
 from mart.teleop_gateway.video.encoder import RECORDED, Codec
+from mart.teleop_gateway.voice.lanes import LanePacket
 from mart.teleop_gateway.webrtc import peers as module
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peers import MAX_VIEWERS, SILENT_S, Peers
@@ -103,6 +104,19 @@ def test_a_view_rests_where_pages_draw_and_nobody_watches(
         broadcaster.status = RoomStatus(episode={"phase": phase})
         broadcaster.rest_where_unneeded()
         views.set_resting.assert_called_once_with(rests)
+
+    asyncio.run(body())
+
+
+def test_what_one_says_is_heard_on_no_device_of_ones_own_and_on_no_phone() -> None:
+    async def body() -> None:
+        peers, _ = await seated()
+        await peers.answer(Role.VIEWER, CONNECTS, "ben")
+        browser, phone, own, ben = cast("list[StubPeer]", list(peers))
+        peers.play(LanePacket(0, "said-by-ana", 1, b"hello"), cast("Peer", phone))
+        assert [len(peer.played) for peer in (browser, phone, own, ben)] == [0, 0, 0, 1]
+        peers.play(LanePacket(0, "said-elsewhere", 1, b"hello"), None)
+        assert [len(peer.played) for peer in (browser, phone, own, ben)] == [1, 0, 1, 2]
 
     asyncio.run(body())
 

@@ -30,6 +30,7 @@ from mart.teleop_gateway.input.tool_motion import ToolMotion
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 from mart.teleop_gateway.voice.lanes import LANES, Speaker
 from mart.teleop_gateway.webrtc import status_channel
+from mart.teleop_gateway.webrtc.said_cues import SaidCue
 from tests.teleop_gateway.input.strategies import phone_frame
 from tests.teleop_gateway.input.test_driving import HOME
 
@@ -55,7 +56,9 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         seats=[Seat(arm="arm1", operator=OPERATOR_HOLD), Seat(arm="arm0", ready=True)],
         episode=Episode(phase=EPISODE_PHASE_RECORDING),
     )
-    text = status_channel.tick(state, room, driving(), 10.016, frames_per_s=19.98, latency=LATENCY)
+    text = status_channel.tick(
+        state, room, driving(), 10.016, frames_per_s=19.98, latency=LATENCY, tools={"arm1": (500, 250)}
+    )
     assert json.loads(text) == {
         "type": "tick",
         "tick": 182,
@@ -71,6 +74,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "ready": True,
         "practises_only": False,
         "partners": False,
+        "others": True,
         "barrier": "stalled",
         "stopped_by": "",
         "paused_by_host": False,
@@ -79,6 +83,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "phone": {"age_ms": 16, "tracking": True, "started": True},
         "rejected": {},
         "no_picture": "",
+        "tools": {"arm1": [500, 250]},
         "fps": 20.0,
         "latency": {
             "p50_ms": 45.0,
@@ -96,8 +101,9 @@ def test_the_longest_tick_message_fits_one_packet() -> None:
     slow = LatencySummary(9999.94, 9999.94, 300, (1999.94,) * len(STAGES))
     room = RoomStatus(barrier=BARRIER_PHASE_STALLED, waiting_for=waiting)
     room.stop.name = "\N{SNOWMAN}" * 64
+    tools = {f"arm{index}": (1000, 1000) for index in range(MAX_ARMS)}
     text = status_channel.tick(
-        state, room, hand, 1e4, frames_per_s=119.9, latency=slow, no_picture="x" * 1000
+        state, room, hand, 1e4, frames_per_s=119.9, latency=slow, no_picture="x" * 1000, tools=tools
     )
     assert len(text.encode()) <= status_channel.MAX_CHARACTERS, len(text.encode())
 
@@ -112,6 +118,23 @@ def test_who_speaks_fits_one_packet_however_they_are_called() -> None:
         "speakers": [{"arm": "arm3", "name": "🤖" * 32}] * LANES,
         "heard": False,
     }
+
+
+def test_what_all_arms_say_fits_one_packet() -> None:
+    said = [SaidCue(f"arm{index}", "🤖" * 24, "come_closer", 2**53) for index in range(MAX_ARMS)]
+    text = status_channel.cues(said)
+    assert len(text.encode()) <= status_channel.MAX_CHARACTERS
+    assert json.loads(text)["said"][0] == {
+        "arm": "arm0",
+        "name": "🤖" * 24,
+        "cue": "come_closer",
+        "number": 2**53,
+    }
+
+
+def test_who_spoke_too_soon_is_told_which_press_was_not_said() -> None:
+    refused = json.loads(status_channel.cue_refused(status_channel.CueMessage(CUE_WAIT, 7.5)))
+    assert refused == {"type": "cue_refused", "cue": "wait", "t_us": 7.5}
 
 
 @pytest.mark.parametrize(
@@ -158,6 +181,7 @@ def test_nothing_is_made_up_before_there_is_anything() -> None:
         ),
         ('{"type":"input","input":"keyboard"}', status_channel.SelectInputMessage(InputDevice.KEYBOARD)),
         ('{"type":"cue","cue":"wait","t_us":7.5}', status_channel.CueMessage(CUE_WAIT, 7.5)),
+        ('{"type":"token","token":"a.b.c"}', status_channel.TokenMessage("a.b.c")),
     ],
 )
 def test_what_peers_say_is_understood(text: str, message: object) -> None:
@@ -189,7 +213,7 @@ def test_what_peers_say_is_understood(text: str, message: object) -> None:
         '{"type":"cue","cue":["go"],"t_us":1}',
         '{"type":"cue","cue":"go","t_us":true}',
         '{"type":"tick"}',
-        '{"type":"ping","t_us":1,"more":"' + "x" * 1100 + '"}',
+        '{"type":"ping","t_us":1,"more":"' + "x" * status_channel.MAX_CHARACTERS + '"}',
     ],
 )
 def test_nonsense_is_refused(text: str) -> None:

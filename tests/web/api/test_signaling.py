@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from mart.protocol import codec, keys
+from mart.protocol import clock, codec, keys
 from mart.protocol.errors import Conflict
 from mart.protocol.messages import Answer, Offer, OpenSeat, OpenSeatReply, error_message
 from mart.protocol.tokens import Role, SeatToken, sign, verify
@@ -84,6 +84,10 @@ async def test_the_holder_and_a_host_may_speak_and_another_guest_only_hears(
         told = (await person.get(f"{SEAT}/token")).json()
         assert verify(told["token"], app_state.secret).speaks_as == speaks_as
         assert told["speaks_as"] == speaks_as
+    claims = verify(told["token"], app_state.secret)  # Hanna's: whoever hosts no more soon speaks no more
+    assert claims.expires_s < clock.wall_ns() * 1e-9 + 30
+    assert (await hanna.delete("/api/me")).status_code == 200
+    assert (await hanna.get(f"{SEAT}/token")).status_code == 401
 
 
 async def test_an_offer_reaches_the_gateway_and_its_answer_comes_back(enter: Enter, gateway: Gateway) -> None:
@@ -177,7 +181,8 @@ async def test_a_phone_is_paired_once_and_drives(enter: Enter, gateway: Gateway,
     paired = await phone.post("/api/pair", json={"code": pairing["code"]})
     told = paired.json()
     assert (told["room"], told["arm"], told["name"], told["role"]) == ("room-1", "arm0", "Ana", "phone")
-    assert verify(told["token"], app_state.secret).role is Role.PHONE
+    signed = verify(told["token"], app_state.secret)
+    assert (signed.role, signed.speaks_as, told["speaks_as"]) == (Role.PHONE, "Ana", "Ana")
     assert (await offer(phone, told["token"]))[0] == 200
     again = await phone.post("/api/pair", json={"code": pairing["code"]})
     assert again.status_code == 403

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 
 from mart.protocol import clock, keys
-from mart.protocol.messages import ArmState, RoomStatus, State, pose_from_message
+from mart.protocol.messages import ArmState, Event, RoomStatus, State, pose_from_message
 from mart.protocol.pose import Pose
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import Closable
@@ -42,9 +42,11 @@ class RoomFeed:
     def subscribe(self, bus: AsyncBus) -> list[Closable]:
         """Listen until what is returned is closed."""
         on_status = DecodingSubscriber(RoomStatus, self._on_status)
+        on_event = DecodingSubscriber(Event, self._broadcaster.on_event)
         on_state = DecodingSubscriber(State, self._on_state_arrival)
         return [
             bus.subscribe(keys.status(self._seat.room).key, on_status),
+            bus.subscribe(keys.event(self._seat.room).key, on_event),
             # Not over the event loop: the view's thread must have the state before the loop finds time for it.
             bus.bus.subscribe(keys.state(self._seat.room).key, on_state),
         ]

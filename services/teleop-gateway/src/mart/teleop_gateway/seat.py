@@ -37,6 +37,7 @@ from mart.teleop_gateway.webrtc.ice_watch import IceWatch
 from mart.teleop_gateway.webrtc.offer_handler import OfferHandler
 from mart.teleop_gateway.webrtc.peer_messages import PeerMessages
 from mart.teleop_gateway.webrtc.peers import Peers
+from mart.teleop_gateway.webrtc.speech_rights import SpeechRights
 from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
 
 _log = logging.getLogger(__name__)
@@ -99,6 +100,7 @@ class Seat:
                 events=self._events,
                 broadcaster=self._broadcaster,
                 voice=self._voice,
+                speech=SpeechRights(address, secret),
             )
         )
         self._feed = self._made_feed()

@@ -101,4 +101,4 @@ class EmulatedPhone:
     async def _camera_azimuth_rad(self) -> float:
         answer = await self._bus.query(keys.model(self.room), b"", _MODEL_TIMEOUT_S)
         message = decode_received(Model, answer)
-        return camera_azimuth_rad(message, load_room_model(message), self.arm)
+        return camera_azimuth_rad(load_room_model(message), self.arm)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import OrderedDict
+from enum import Enum, auto
 
 from mart.runtime.rate_limit import RateLimit
 
@@ -10,16 +11,27 @@ MAX_PER_S = 2
 _REMEMBERED = 8
 
 
+class PressVerdict(Enum):
+    """Tell what comes of a press."""
+
+    SAID = auto()
+    KNOWN = auto()  # it has been said
+    TOO_SOON = auto()
+
+
 class CueFilter:
     """Remember the presses of one seat's holder, and let each through once."""
 
     def __init__(self) -> None:
         self._rate = RateLimit(MAX_PER_S)
-        self._known: deque[float] = deque(maxlen=_REMEMBERED)
+        self._known: OrderedDict[float, PressVerdict] = OrderedDict()
 
-    def allow(self, press_us: float, now_s: float) -> bool:
-        """Tell whether this press is new and not one too many; such a one stays refused, however often it is told."""
-        if press_us in self._known:
-            return False
-        self._known.append(press_us)
-        return self._rate.allows(now_s)
+    def judge(self, press_us: float, now_s: float) -> PressVerdict:
+        """Tell what comes of this press; one too many stays so, however often it is told."""
+        if press_us not in self._known:
+            allowed = self._rate.allows(now_s)
+            self._known[press_us] = PressVerdict.KNOWN if allowed else PressVerdict.TOO_SOON
+            if len(self._known) > _REMEMBERED:
+                self._known.popitem(last=False)
+            return PressVerdict.SAID if allowed else PressVerdict.TOO_SOON
+        return self._known[press_us]

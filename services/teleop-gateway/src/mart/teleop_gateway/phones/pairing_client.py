@@ -47,10 +47,14 @@ class PairingClient:
             )
 
     async def renew(self, pairing: PhonePairing) -> PhonePairing:
-        """Return the pairing for the seat as it is now; raises Conflict while somebody else holds it."""
+        """Return the pairing for the seat as it is now, or for the one to which its person switched.
+
+        Raises Conflict while they hold neither.
+        """
         answer = await self._ask("GET", f"{_seat(pairing)}/phone-token", None, _bearer(pairing))
         with self._complete():
-            return replace(pairing, token=answer["token"], epoch=int(answer["epoch"]))
+            arm = str(answer.get("arm", pairing.arm))  # lobbies of earlier versions say none
+            return replace(pairing, arm=arm, token=answer["token"], epoch=int(answer["epoch"]))
 
     async def offer(self, pairing: PhonePairing, sdp: str) -> str:
         """Return the gateway's answer to an offer, both as SDP."""

@@ -45,16 +45,30 @@ def drawn_model(model: mujoco.MjModel, quality: Quality) -> mujoco.MjModel:
     return model
 
 
-def camera_azimuth_rad(message: Model, model: mujoco.MjModel, arm: str) -> float:
+def camera_azimuth_rad(model: mujoco.MjModel, arm: str) -> float:
     """Return where the camera of `arm`'s seat looks, as an angle about the z axis of the arm's base frame."""
+    data = _placed(model)
+    base = data.body(f"{arm}/base")
+    base_in_world = Pose.from_matrix(base.xmat.reshape(3, 3), base.xpos)
+    return azimuth_of_camera_rad(base_in_world.inverse() @ _camera(model, data, arm))
+
+
+def camera_in_world(model: mujoco.MjModel, arm: str) -> Pose:
+    """Return where the camera of `arm`'s seat hangs. Raises NotFound where the model has none of that name."""
+    return _camera(model, _placed(model), arm)
+
+
+def _placed(model: mujoco.MjModel) -> mujoco.MjData:
+    """Return the world as the model describes it, with everything in its place."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_camlight(model, data)
+    return data
+
+
+def _camera(model: mujoco.MjModel, data: mujoco.MjData, arm: str) -> Pose:
     camera = viewpoint_id(model, arm)
-    camera_in_world = Pose.from_matrix(data.cam_xmat[camera].reshape(3, 3), data.cam_xpos[camera])
-    base = data.body(f"{arm}/base")
-    base_in_world = Pose.from_matrix(base.xmat.reshape(3, 3), base.xpos)
-    return azimuth_of_camera_rad(base_in_world.inverse() @ camera_in_world)
+    return Pose.from_matrix(data.cam_xmat[camera].reshape(3, 3), data.cam_xpos[camera])
 
 
 def task_of(message: Model) -> Task | None:

@@ -24,6 +24,7 @@ from mart.teleop_gateway.video.seat_renderer import (
     load_plain_model,
     task_of,
 )
+from mart.teleop_gateway.video.tool_projection import ToolPlaces, ToolProjection
 
 _log = logging.getLogger(__name__)
 
@@ -56,6 +57,7 @@ class ViewManager:
         self._sha256 = ""
         self._limits_bps: Mapping[Stream, float] = {}
         self._view: LiveView | None = None
+        self._projection: ToolProjection | None = None
         self._fetching: asyncio.Task[None] | None = None
         self._stopping: asyncio.Future[None] | None = None  # the view before
 
@@ -104,6 +106,10 @@ class ViewManager:
         """Return why nothing can be drawn, in a sentence; empty where it can, or nothing is known yet."""
         return self._view.failure if self._view is not None else ""
 
+    def tool_places(self, state: State) -> ToolPlaces:
+        """Return where in the picture of this state the tools are; nothing where there is no model yet."""
+        return self._projection.places(state) if self._projection is not None else {}
+
     async def close(self) -> None:
         """Return when no picture will come any more."""
         if self._fetching is not None:
@@ -133,9 +139,10 @@ class ViewManager:
 
     async def _use(self, message: Model) -> None:
         model = await asyncio.to_thread(load_plain_model, message)
-        azimuth_rad = camera_azimuth_rad(message, model, self._seat.arm)
+        azimuth_rad = camera_azimuth_rad(model, self._seat.arm)
         task, arm = task_of(message), self._seat.arm
         self._pages.use(model, task)
+        self._projection = ToolProjection.of(model, task, arm) if task is not None else None
         drawn, ghosts = drawn_model(model, self._quality), ghosts_for(task, arm)
         view = LiveView(drawn, arm, message.control_hz, self._sink, self._quality, ghost_in=ghosts)
         view.set_streams(self._limits_bps)

@@ -24,16 +24,17 @@ _NAME_CHARACTERS = 32
 
 
 class Talker(Protocol):
-    """Somebody who may speak: `speaks_as` is their name."""
+    """Somebody who may speak: `speaks_as` is their name, `holder_id` who they are on every device of theirs."""
 
     speaks_as: str
+    holder_id: str
 
 
 class VoiceSink(Protocol):
     """Whoever hears. Called on the event loop."""
 
     def play(self, packet: LanePacket, but: Talker | None) -> None:
-        """Let everybody hear a packet, except for who said it."""
+        """Let everybody hear a packet, except for who said it, on whichever of their devices."""
 
     def tell_voices(self, speakers: Sequence[Speaker], unheard: Collection[Talker]) -> None:
         """Tell everybody who speaks, and those who speak and are not heard that it is so."""

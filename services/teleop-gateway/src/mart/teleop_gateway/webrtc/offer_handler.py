@@ -57,4 +57,5 @@ class OfferHandler:
         claims = authorize_offer(offer.token, self._secret, self._seat, role)
         driving = await self._input.await_driving(claims.epoch, _READY_TIMEOUT_S)
         authorize_holder(claims, driving.seat_epoch)
-        return Answer(sdp=await self._peers.answer(role, offer.sdp, claims.holder_id, claims.speaks_as))
+        sdp = await self._peers.answer(role, offer.sdp, claims.holder_id, claims.speaks_as, claims.expires_s)
+        return Answer(sdp=sdp)

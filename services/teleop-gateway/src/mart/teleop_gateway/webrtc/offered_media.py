@@ -25,7 +25,7 @@ def offered_media(sdp: str, *, phone: bool) -> OfferedMedia:
     if not kinds:
         raise InvalidInput("An offer without any section was given; a data channel is needed at least.")
     video, audio = kinds.count("video"), kinds.count("audio")
-    most_video, most_audio = (0, 0) if phone else (1, LANES)
+    most_video, most_audio = (0, 1) if phone else (1, LANES)
     if video > most_video or audio > most_audio:
         raise InvalidInput(
             f"{video} video and {audio} audio sections were given; {most_video} and {most_audio} are allowed."

@@ -86,6 +86,7 @@ class Peer:
         self.role = role
         self.holder_id = holder_id
         self.speaks_as = speaks_as
+        self.speaks_until_s = math.inf  # Unix time; counts for who does not drive
         self.codec: Codec | None = None
         self.track: EncodedTrack | None = None
         self._audience = Audience.EVERYONE

@@ -6,9 +6,9 @@ import logging
 from collections.abc import Mapping
 
 from mart.protocol import clock
-from mart.protocol.errors import InvalidInput
+from mart.protocol.errors import Forbidden, InvalidInput
 from mart.protocol.tokens import Role
-from mart.teleop_gateway.input.cues import CueFilter
+from mart.teleop_gateway.input.cues import CueFilter, PressVerdict
 from mart.teleop_gateway.input.driving import InputDevice
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.seat_events import SeatEvents
@@ -20,6 +20,7 @@ from mart.teleop_gateway.voice.room_voice import RoomVoice
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
 from mart.teleop_gateway.webrtc.peers import Peers
+from mart.teleop_gateway.webrtc.speech_rights import SpeechRights
 from mart.teleop_gateway.webrtc.status_broadcaster import StatusBroadcaster
 
 _log = logging.getLogger(__name__)
@@ -41,8 +42,10 @@ class PeerMessages:
         events: SeatEvents,
         broadcaster: StatusBroadcaster,
         voice: RoomVoice,
+        speech: SpeechRights,
     ) -> None:
-        self._peers, self._pages, self._voice = peers, pages, voice
+        self._peers, self._pages = peers, pages
+        self._voice, self._speech = voice, speech
         self._input, self._views, self._latency = seat_input, views, latency
         self._events, self._broadcaster = events, broadcaster
         self._cues = CueFilter()
@@ -75,8 +78,9 @@ class PeerMessages:
         self._broadcaster.tell_changes()
 
     def on_speech(self, peer: Peer, timestamp: int, opus: bytes) -> None:
-        """Let the room hear what a peer says."""
-        self._voice.say(peer, drives=peer.role is Role.BROWSER, timestamp=timestamp, opus=opus)
+        """Let the room hear what a peer says, as long as it may speak."""
+        if self._speech.may_speak(peer, clock.wall_ns() * 1e-9):
+            self._voice.say(peer, drives=peer.role in _DEVICES, timestamp=timestamp, opus=opus)
 
     def on_status(self, peer: Peer, text: str) -> None:
         """Do what a message on the status channel asks; one that nobody understands is left out."""
@@ -95,8 +99,16 @@ class PeerMessages:
                     self._latency.on_seen(tick, int(t_us * 1000) + peer.clock_offset_ns)
             case status_channel.DrawingMessage():
                 self._on_drawing(peer, message)
+            case status_channel.TokenMessage(token):
+                self._renew_speech(peer, token)
         if peer.role in _DEVICES:
-            self._do_for_holder(_DEVICES[peer.role], message)
+            self._do_for_holder(peer, _DEVICES[peer.role], message)
+
+    def _renew_speech(self, peer: Peer, token: str) -> None:
+        try:
+            self._speech.renew(peer, token)
+        except Forbidden as error:
+            _log.info("A %s may not speak on: %s", peer.role, error)
 
     def _on_drawing(self, peer: Peer, message: status_channel.DrawingMessage) -> None:
         if peer.role is Role.PHONE:
@@ -105,7 +117,7 @@ class PeerMessages:
         if peer.role is Role.BROWSER:
             self._latency.draws = PageDraws(message.on, message.p50_ms, message.p95_ms, message.per_s)
 
-    def _do_for_holder(self, device: InputDevice, message: status_channel.PeerMessage) -> None:
+    def _do_for_holder(self, peer: Peer, device: InputDevice, message: status_channel.PeerMessage) -> None:
         match message:
             case status_channel.ClockMessage(offset_ns):
                 self._input.set_clock(device, offset_ns)
@@ -115,5 +127,8 @@ class PeerMessages:
                 self._input.select(chosen)
                 self._broadcaster.tell_changes()
             case status_channel.CueMessage(cue, press_us):
-                if self._cues.allow(press_us, clock.monotonic_s()):
+                verdict = self._cues.judge(press_us, clock.monotonic_s())
+                if verdict is PressVerdict.SAID:
                     self._events.cue(cue)
+                elif verdict is PressVerdict.TOO_SOON:
+                    peer.send_status(status_channel.cue_refused(message))

@@ -15,6 +15,7 @@ from mart.runtime.ice_servers import IceServer
 from mart.runtime.rate_limit import RateLimit
 from mart.teleop_gateway.video.encoder import Audience, EncodedPicture, Stream
 from mart.teleop_gateway.voice.lanes import LanePacket, Speaker
+from mart.teleop_gateway.voice.room_voice import Talker
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peer import Peer
 
@@ -73,13 +74,23 @@ class Peers:
         """Tell `listener` what peers do from now on."""
         self._listener = listener
 
-    async def answer(self, role: Role, offer_sdp: str, holder_id: str, speaks_as: str = "") -> str:
+    async def answer(
+        self,
+        role: Role,
+        offer_sdp: str,
+        holder_id: str,
+        speaks_as: str = "",
+        speaks_until_s: float = math.inf,
+    ) -> str:
         """Return the answer's SDP for the person with `holder_id`, who may speak by the name of `speaks_as`, if any.
+
+        Who does not drive speaks until `speaks_until_s`, Unix time, unless that is renewed.
 
         A driving role's earlier peer is replaced once the new one is answered, and so is a person's oldest viewer where
         they watch twice already. Raises InvalidInput where the offer cannot be used, Conflict where too many watch.
         """
         peer = Peer(role, self, self._ice_servers(), holder_id, speaks_as)
+        peer.speaks_until_s = speaks_until_s
         if role is Role.VIEWER:
             self._make_room(holder_id)
             self._viewers.append(peer)  # its place is taken before anything is awaited
@@ -152,22 +163,28 @@ class Peers:
             if peer.draws:
                 peer.send_poses(message)
 
-    def play(self, packet: LanePacket, but: object | None) -> None:
-        """Let everybody hear a packet, except for who said it."""
+    def play(self, packet: LanePacket, but: Talker | None) -> None:
+        """Let everybody hear a packet, except for who said it, on whichever of their devices. Phones hear nothing."""
         for peer in self:
-            if peer is not but:
+            if peer.role is not Role.PHONE and (but is None or peer.holder_id != but.holder_id):
                 peer.play(packet)
 
     def tell_voices(self, speakers: Sequence[Speaker], unheard: Collection[object]) -> None:
         """Tell everybody who speaks, and those who speak and are not heard that it is so."""
         for peer in self:
-            if peer.role is not Role.PHONE:
+            if peer.role is not Role.PHONE or peer.speaks_as:
                 peer.send_status(status_channel.voices(speakers, is_heard=peer not in unheard))
 
     def tell(self, text: str) -> None:
         """Send a message to all on their status channels."""
         for peer in self:
             peer.send_status(text)
+
+    def tell_phones(self, text: str) -> None:
+        """Send a message to phones alone: pages hear it from the web service."""
+        for peer in self:
+            if peer.role is Role.PHONE:
+                peer.send_status(text)
 
     def drop_silent(self, now_s: float) -> None:
         """End the connections of peers that have said nothing for SILENT_S."""

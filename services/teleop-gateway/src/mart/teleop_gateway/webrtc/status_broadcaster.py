@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import itertools
 
 from mart.protocol import clock
-from mart.protocol.messages import RoomStatus, State
+from mart.protocol.messages import Event, RoomStatus, State
 from mart.teleop_gateway.input.driving import Driving
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
@@ -13,8 +14,10 @@ from mart.teleop_gateway.video.recorded_view import RecordedView
 from mart.teleop_gateway.video.view_manager import ViewManager
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.peers import Peers
+from mart.teleop_gateway.webrtc.said_cues import SaidCues
 
 STATUS_EVERY_S = 0.05
+_CUES_EVERY = 4  # statuses
 
 
 class StatusBroadcaster:
@@ -28,6 +31,7 @@ class StatusBroadcaster:
         self._peers, self._input, self._views, self._latency = peers, seat_input, views, latency
         self.recorded_view = RecordedView()
         self._told: tuple[object, ...] = ()
+        self._cues = SaidCues()
 
     def rest_where_unneeded(self) -> None:
         """Let the view rest where all who look draw by themselves, and no file has begun with what it sees."""
@@ -37,11 +41,19 @@ class StatusBroadcaster:
 
     async def run(self) -> None:
         """Tell until cancelled; peers that have been silent for too long are dropped on the way."""
-        while True:
+        for number in itertools.count():
             now_s = clock.monotonic_s()
             self._tell(now_s)
+            if number % _CUES_EVERY == 0:
+                self._tell_cues(now_s)
             self._peers.drop_silent(now_s)
             await asyncio.sleep(STATUS_EVERY_S)
+
+    def on_event(self, event: Event) -> None:
+        """Tell phones at once what somebody says to the partners; as long as it is shown, they are told again."""
+        now_s = clock.monotonic_s()
+        if self._cues.take(event, self.status, now_s):
+            self._tell_cues(now_s)
 
     def tell_changes(self) -> None:
         """Tell now, if something is worth a message of its own."""
@@ -65,8 +77,13 @@ class StatusBroadcaster:
                 latency=latency,
                 frames_per_s=frames_per_s,
                 no_picture=self._views.failure(),
+                tools=self._views.tool_places(self.state),
             )
         )
+
+    def _tell_cues(self, now_s: float) -> None:
+        if said := self._cues.now(now_s):
+            self._peers.tell_phones(status_channel.cues(said))
 
     def _worth_telling(self, driving: Driving, now_s: float) -> tuple[object, ...]:
         waiting = tuple(waiting.arm for waiting in self.status.waiting_for)

@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from mart.protocol.errors import InvalidInput
@@ -18,13 +19,16 @@ from mart.protocol.messages import (
     State,
     barrier_word,
     cue_from_word,
+    cue_word,
     phase_word,
 )
 from mart.teleop_gateway.input.driving import Driving, InputDevice, PhoneState
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
+from mart.teleop_gateway.video.tool_projection import ToolPlaces
 from mart.teleop_gateway.voice.lanes import Speaker
+from mart.teleop_gateway.webrtc.said_cues import SaidCue
 
-MAX_CHARACTERS = 1100  # one SCTP packet
+MAX_CHARACTERS = 1200  # one SCTP packet
 _LARGEST = 2**63 - 1
 _LONGEST_DRAW_MS = 60_000
 _NAME_CHARACTERS = 24
@@ -82,7 +86,16 @@ class CueMessage:
     press_us: float
 
 
-PeerMessage = PingMessage | ClockMessage | SeenMessage | DrawingMessage | SelectInputMessage | CueMessage
+@dataclass(frozen=True)
+class TokenMessage:
+    """Show a newer seat token, with which one may speak on."""
+
+    token: str
+
+
+PeerMessage = (
+    PingMessage | ClockMessage | SeenMessage | DrawingMessage | SelectInputMessage | CueMessage | TokenMessage
+)
 
 
 def parse(text: str | bytes) -> PeerMessage:
@@ -92,25 +105,31 @@ def parse(text: str | bytes) -> PeerMessage:
             f"A status message of {len(text)} characters was given; {MAX_CHARACTERS} are allowed."
         )
     try:
-        message = json.loads(text)
-        match message:
-            case {"type": "ping", "t_us": t_us}:
-                return PingMessage(_finite(t_us))
-            case {"type": "clock", "offset_ns": offset_ns}:
-                return ClockMessage(int(_finite(offset_ns)))
-            case {"type": "seen", "tick": int(tick), "t_us": t_us} if 0 <= tick <= _LARGEST:
-                return SeenMessage(tick, _finite(t_us))
-            case {"type": "drawing", "on": bool(on), "p50_ms": p50, "p95_ms": p95, "per_s": per_s}:
-                return DrawingMessage(on, *(_bounded(value) for value in (p50, p95, per_s)))
-            case {"type": "input", "input": name}:
-                return SelectInputMessage(InputDevice(name))
-            case {"type": "cue", "cue": str(word), "t_us": t_us}:
-                return CueMessage(cue_from_word(word), _finite(t_us))
+        return _parsed(json.loads(text))
     except (ValueError, OverflowError, RecursionError) as error:
         raise InvalidInput(f"A status message was given that cannot be read: {error}.") from error
-    raise InvalidInput(
-        "A status message was given that is none of ping, clock, seen, drawing, input and cue."
-    )
+
+
+def _parsed(message: object) -> PeerMessage:
+    parsed: PeerMessage
+    match message:
+        case {"type": "ping", "t_us": t_us}:
+            parsed = PingMessage(_finite(t_us))
+        case {"type": "clock", "offset_ns": offset_ns}:
+            parsed = ClockMessage(int(_finite(offset_ns)))
+        case {"type": "seen", "tick": int(tick), "t_us": t_us} if 0 <= tick <= _LARGEST:
+            parsed = SeenMessage(tick, _finite(t_us))
+        case {"type": "drawing", "on": bool(on), "p50_ms": p50, "p95_ms": p95, "per_s": per_s}:
+            parsed = DrawingMessage(on, *(_bounded(value) for value in (p50, p95, per_s)))
+        case {"type": "input", "input": name}:
+            parsed = SelectInputMessage(InputDevice(name))
+        case {"type": "cue", "cue": str(word), "t_us": t_us}:
+            parsed = CueMessage(cue_from_word(word), _finite(t_us))
+        case {"type": "token", "token": str(token)}:
+            parsed = TokenMessage(token)
+        case _:
+            raise ValueError("it is none of ping, clock, seen, drawing, input, cue and token")
+    return parsed
 
 
 def pong(ping: PingMessage, gateway_ns: int, limit_bps: float = math.inf) -> str:
@@ -128,6 +147,17 @@ def voices(speakers: Sequence[Speaker], *, is_heard: bool) -> str:
     """Return who speaks now, and whether the peer is heard where it does."""
     told = [{"arm": speaker.arm, "name": speaker.name} for speaker in speakers]
     return _text({"type": "voices", "speakers": told, "heard": is_heard})
+
+
+def cues(said: Sequence[SaidCue]) -> str:
+    """Return what the drivers of the room's arms say to each other now."""
+    told = [{"arm": one.arm, "name": one.name, "cue": one.cue, "number": one.number} for one in said]
+    return _text({"type": "cues", "said": told})
+
+
+def cue_refused(message: CueMessage) -> str:
+    """Return the word to whoever gave cues too soon after each other that this one was not said."""
+    return _text({"type": "cue_refused", "cue": cue_word(message.cue), "t_us": message.press_us})
 
 
 def ping(t_us: float) -> str:
@@ -149,6 +179,7 @@ def tick(
     frames_per_s: float,
     latency: LatencySummary | None,
     no_picture: str = "",
+    tools: ToolPlaces = MappingProxyType({}),
 ) -> str:
     """Return what a page shows, at most MAX_CHARACTERS long."""
     sequence = next((arm.sequence for arm in state.arms if arm.arm == driving.arm), 0)
@@ -169,6 +200,7 @@ def tick(
             "ready": any(seat.ready for seat in room.seats if seat.arm == driving.arm),
             "practises_only": _practises_only(room, driving.arm),
             "partners": any(seat.operator in _DRIVING for seat in room.seats if seat.arm != driving.arm),
+            "others": any(seat.operator != OPERATOR_HUMAN for seat in room.seats if seat.arm != driving.arm),
             "barrier": barrier_word(room.barrier),
             "stopped_by": room.stop.name[:_NAME_CHARACTERS],
             "paused_by_host": room.stop.by_host,
@@ -177,6 +209,7 @@ def tick(
             "phone": phone and _phone(phone),
             "rejected": dict(driving.rejected()),
             "no_picture": no_picture[:_REASON_CHARACTERS],
+            "tools": dict(tools),
             "fps": round(frames_per_s, 1),
             "latency": latency and _latency(latency),
         }

@@ -146,6 +146,18 @@ class UserSessions:
             ).fetchone()
         return row is not None
 
+    def find_passed(self, is_them: Callable[[str], bool]) -> User | None:
+        """Return who has passed the practice course and is known by a holder id that is theirs; None for nobody.
+
+        Raises Unavailable as `find`.
+        """
+        with _told():
+            passed = self._database.execute(
+                "SELECT holder_id, name FROM joined WHERE holder_id IN (SELECT holder_id FROM passed_course)"
+            ).fetchall()
+        them = next((row for row in passed if is_them(row[0])), None)
+        return User(them[0], them[1], passed_course=True) if them else None
+
     def host(self, user: User) -> User:
         """Let a user who joined host from now on, until they leave; return them so. Raises Unavailable as `join`."""
         with _told():

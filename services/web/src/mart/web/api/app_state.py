@@ -6,19 +6,23 @@ import functools
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from mart.protocol import clock
+from mart.protocol.messages import Seat
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.ice_servers import IceSettings
 from mart.web.access.pairing_codes import PairingCodes
 from mart.web.access.request_limits import AtOnceLimit, FailureDelay, RequestLimit, TurnLimit
+from mart.web.access.seat_switches import SeatSwitches
 from mart.web.access.site_names import SiteNames
-from mart.web.access.user_sessions import UserSessions
+from mart.web.access.user_sessions import User, UserSessions
 from mart.web.clients.catalogue_client import CatalogueClient
 from mart.web.clients.gateway_client import GatewayClient
 from mart.web.clients.platform_client import PlatformClient
 from mart.web.clients.query_pools import QueryPools
 from mart.web.clients.room_client import RoomRequester
 from mart.web.clients.scene_store import SceneStore
+from mart.web.clients.seat_switch import switch_seat
 from mart.web.clients.trainer_client import TrainerClient
 from mart.web.lobby.health_findings import RelayCheck
 from mart.web.lobby.lobby import Lobby
@@ -71,6 +75,7 @@ class AppState:
     data_dir: Path
     certificate: Path
     pairing_codes: PairingCodes = field(default_factory=PairingCodes)
+    seat_switches: SeatSwitches = field(default_factory=SeatSwitches)
     wrong_codes: FailureDelay = field(default_factory=_wrong_codes)
     wrong_host_codes: FailureDelay = field(default_factory=_wrong_codes)
     joins: RequestLimit = field(default_factory=_joins)
@@ -97,6 +102,16 @@ class AppState:
     def rooms(self) -> RoomRequester:
         """The client through which seats are taken and episodes begun and ended."""
         return RoomRequester(self.pools.bus(ServiceKind.SIM), self.lobby)
+
+    async def switch_seat(self, room: str, arm: str, user: User) -> Seat:
+        """Give `user` the next arm that no other person drives instead of `arm`, and return its seat.
+
+        Their phone goes with them. Raises what `mart.web.clients.seat_switch.switch_seat` raises.
+        """
+        seats = list(self.lobby.rooms.status(room, clock.monotonic_s()).seats)
+        taken = await switch_seat(self.rooms, room, arm, user, seats)
+        self.seat_switches.note(room, user.holder_id, arm, taken.arm)
+        return taken
 
     @property
     def platform(self) -> PlatformClient:

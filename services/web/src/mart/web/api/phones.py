@@ -55,6 +55,16 @@ async def act(
     return {"room": room}
 
 
+@router.post("/phone-switch")
+async def switch(room: str, arm: str, app: App, authorization: Authorization = "") -> Json:
+    """Give whoever paired the phone the next arm that no other person drives instead of this one; send its name.
+
+    A renewed token of the phone is for that arm.
+    """
+    taken = await app.switch_seat(room, arm, _person(app, room, arm, authorization))
+    return {"arm": taken.arm}
+
+
 def _person(app: AppState, room: str, arm: str, authorization: str) -> User:
     """Return who paired the phone, by the name that the room knows them by. Raises what `claims_of` raises."""
     paired = claims_of(app, room, arm, authorization)

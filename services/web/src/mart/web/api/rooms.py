@@ -117,6 +117,12 @@ async def hand_back(room: str, arm: str, app: App, user: JoinedUser) -> Json:
     return {"seat": seat_json(await app.rooms.hand_back_seat(room, arm, user), user.holder_id)}
 
 
+@router.post("/rooms/{room}/seats/{arm}/switch")
+async def switch(room: str, arm: str, app: App, user: JoinedUser) -> Json:
+    """Give the user the next arm that no other person drives instead of this one, and send its seat."""
+    return {"seat": seat_json(await app.switch_seat(room, arm, user), user.holder_id)}
+
+
 @router.post("/rooms/{room}/episode")
 async def act(room: str, body: EpisodeActionRequest, app: App, user: JoinedUser) -> Json:
     """Do what is wanted with the episode and send the room."""

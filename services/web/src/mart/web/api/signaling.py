@@ -31,6 +31,7 @@ Authorization = Annotated[str, Header()]
 MaybeAuthorization = Annotated[str | None, Header()]
 
 _BROWSER_TOKEN_S = 300.0  # a page asks for a new one whenever it connects
+_SPEAKING_VIEWER_TOKEN_S = 20.0  # of a host, whose page asks for a new one while they talk
 _SEEN_OPERATORS = (OPERATOR_HUMAN, OPERATOR_POLICY)  # whose seats gateways draw
 _PHONE_TOKEN_S = 12 * 3600.0  # however often it is renewed
 
@@ -76,7 +77,13 @@ async def redeem(body: PairingRequest, app: App) -> Json:
     """Send the phone that gives a code its token. Nobody guesses 128 bits in two minutes, however often they try."""
     pairing = app.pairing_codes.redeem(body.code, clock.monotonic_s())
     seat = SeatToken(
-        pairing.room, pairing.arm, pairing.epoch, Role.PHONE, pairing.holder_id, now_unix_s() + _PHONE_TOKEN_S
+        pairing.room,
+        pairing.arm,
+        pairing.epoch,
+        Role.PHONE,
+        pairing.holder_id,
+        now_unix_s() + _PHONE_TOKEN_S,
+        speaks_as=pairing.name,
     )
     return {
         "token": _sign(app, seat),
@@ -85,6 +92,7 @@ async def redeem(body: PairingRequest, app: App) -> Json:
         "epoch": pairing.epoch,
         "name": pairing.name,
         "role": Role.PHONE.value,
+        "speaks_as": pairing.name,
         "ice_servers": ice_servers_json(app),
     }
 
@@ -93,19 +101,28 @@ async def redeem(body: PairingRequest, app: App) -> Json:
 async def phone_token(room: str, arm: str, app: App, authorization: Authorization = "") -> Json:
     """Send a phone its renewed token.
 
-    It stays with the user who paired it: its token is renewed while, and whenever, they hold the seat.
+    It stays with the user who paired it: its token is renewed while, and whenever, they hold the seat, and is for the
+    arm that they went on to from there, where they did.
     """
     paired = claims_of(app, room, arm, authorization)
     if paired.role is not Role.PHONE:
         raise Forbidden(f"The token of a {paired.role} was given; only a phone's is renewed here.")
     seat = _seat(app, room, arm)
     if not is_held_by(seat, paired.holder_id):
+        seat = _seat(app, room, app.seat_switches.arm_of(room, paired.holder_id, arm))
+    if not is_held_by(seat, paired.holder_id):
         driver = "Nobody" if seat.operator == OPERATOR_HOLD else seat.name or "A script"
         raise Conflict(
-            f"{driver} drives {arm} now; this phone goes on when the person who paired it takes the seat again."
+            f"{driver} drives {seat.arm} now; this phone goes on when the person who paired it takes the seat again."
         )
-    renewed = _sign(app, replace(paired, epoch=seat.epoch))
-    return {"token": renewed, "epoch": seat.epoch, "ice_servers": ice_servers_json(app)}
+    renewed = replace(paired, arm=seat.arm, epoch=seat.epoch)
+    return {
+        "token": _sign(app, renewed),
+        "arm": seat.arm,
+        "epoch": seat.epoch,
+        "speaks_as": renewed.speaks_as,
+        "ice_servers": ice_servers_json(app),
+    }
 
 
 @router.post("/rooms/{room}/seats/{arm}/offer")
@@ -151,7 +168,8 @@ def _page_claims(app: AppState, room: str, arm: str, user: User) -> SeatToken:
     seat = _seat(app, room, arm)
     role = Role.BROWSER if is_held_by(seat, user.holder_id) else Role.VIEWER
     speaks = role is Role.BROWSER or user.hosts
-    expires_s = now_unix_s() + _BROWSER_TOKEN_S
+    renews = speaks and role is Role.VIEWER
+    expires_s = now_unix_s() + (_SPEAKING_VIEWER_TOKEN_S if renews else _BROWSER_TOKEN_S)
     return SeatToken(
         room, arm, seat.epoch, role, user.holder_id, expires_s, speaks_as=user.name if speaks else ""
     )

@@ -36,7 +36,7 @@ _HEADERS = {
 }
 
 
-_TALKING_PAGES = re.compile(r"/rooms/[^/]+/arms/[^/]+|/watch|/host")
+_TALKING_PAGES = re.compile(r"/rooms/[^/]+/arms/[^/]+|/watch|/host|/phone")
 
 
 class SecurityMiddleware:

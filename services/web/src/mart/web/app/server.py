@@ -34,6 +34,7 @@ from mart.web.app.relay_checks import keep_checking
 from mart.web.app.security_middleware import MAX_BODY_BYTES
 from mart.web.app.settings import WebSettings
 from mart.web.clients.missed_saves import MissedSaves
+from mart.web.clients.untold_passes import UntoldPasses
 from mart.web.lobby.bus_feed import LobbyFeed
 from mart.web.lobby.lobby import Lobby
 
@@ -96,6 +97,7 @@ async def serve(
             feed.keep_looking(),
             guarded.keep_ending(),
             _missed(state),
+            UntoldPasses(lobby, user_sessions, state.rooms).keep_telling(),
             keep_checking(settings, state.relays),
         ]
         tasks += [service.bus.spawn(work) for work in background]

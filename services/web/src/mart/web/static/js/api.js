@@ -58,7 +58,7 @@ export async function request(method, path, body, headers = {}) {
 const encoded = encodeURIComponent;
 
 /** @type {(token: string) => Record<string, string>} */
-const bearer = (token) => ({ Authorization: `Bearer ${token}` });
+export const bearer = (token) => ({ Authorization: `Bearer ${token}` });
 
 // People
 
@@ -118,7 +118,7 @@ export const letGoOfStop = (room) => request("DELETE", `${roomPath(room)}/stop`)
 /** @typedef {Promise<{ seat: Api.Seat }>} SeatAnswer */
 
 /** @type {(room: string, arm: string) => string} */
-const seatPath = (room, arm) => `${roomPath(room)}/seats/${encoded(arm)}`;
+export const seatPath = (room, arm) => `${roomPath(room)}/seats/${encoded(arm)}`;
 
 /**
  * Takes a seat for oneself, or gives it to a machine; `policy` names a promoted one.
@@ -130,6 +130,9 @@ export const takeSeat = (room, arm, operator = "human", policy = "") =>
 /** Leaves one's own seat. @type {(room: string, arm: string) => SeatAnswer} */
 export const leaveSeat = (room, arm) => request("DELETE", seatPath(room, arm));
 
+/** Leaves one's seat for the next arm that no other person drives. @type {(room: string, arm: string) => SeatAnswer} */
+export const switchSeat = (room, arm) => request("POST", `${seatPath(room, arm)}/switch`);
+
 /** Gives one's seat back to the machine that had it. @type {(room: string, arm: string) => SeatAnswer} */
 export const handBack = (room, arm) => request("POST", `${seatPath(room, arm)}/hand-back`);
 
@@ -138,31 +141,6 @@ export const seatToken = (room, arm) => request("GET", `${seatPath(room, arm)}/t
 
 /** A code that makes a phone the hand of one's seat. @type {(room: string, arm: string) => Promise<Api.Pairing>} */
 export const pairPhone = (room, arm) => request("POST", `${seatPath(room, arm)}/pair`);
-
-/** Stops everything, from a paired phone. @type {(room: string, arm: string, token: string) => Promise<unknown>} */
-export const stopByPhone = (room, arm, token) =>
-  request("POST", `${seatPath(room, arm)}/stop`, undefined, bearer(token));
-
-/**
- * Says how an episode goes on, from a paired phone.
- * @type {(room: string, arm: string, token: string, action: "ready" | "unready" | "discard") => Promise<unknown>}
- */
-export const actByPhone = (room, arm, token, action) =>
-  request("POST", `${seatPath(room, arm)}/episode`, { action }, bearer(token));
-
-/** Lets everything go on, from a phone. @type {(room: string, arm: string, token: string) => Promise<unknown>} */
-export const letGoByPhone = (room, arm, token) =>
-  request("DELETE", `${seatPath(room, arm)}/stop`, undefined, bearer(token));
-
-/** What a phone gets for a pairing code, once. @type {(code: string) => Promise<Api.PairedPhone>} */
-export const redeemPairing = (code) => request("POST", "/pair", { code });
-
-/**
- * Renews a paired phone's token.
- * @type {(room: string, arm: string, token: string) => Promise<Omit<Api.SeatToken, "role">>}
- */
-export const phoneToken = (room, arm, token) =>
-  request("GET", `${seatPath(room, arm)}/phone-token`, undefined, bearer(token));
 
 /**
  * Hands a page's WebRTC offer to the seat's gateway; the answer is the gateway's, with what one may do there.
@@ -181,13 +159,6 @@ export async function fetchScene(room, arm) {
   if (!response.ok) throw new ApiError(response.status, "", `The scene could not be had (${response.status}).`);
   return { sha256, bytes: await response.arrayBuffer() };
 }
-
-/**
- * Hands a phone's WebRTC offer to the seat's gateway; the answer is the gateway's.
- * @type {(room: string, arm: string, token: string, sdp: string) => Promise<{ sdp: string }>}
- */
-export const sendOffer = (room, arm, token, sdp) =>
-  request("POST", `${seatPath(room, arm)}/offer`, { sdp }, bearer(token));
 
 /** How others come in. @type {() => Promise<Api.Invitation>} */
 export const invitation = () => request("GET", "/invitation");

@@ -14,15 +14,54 @@ const WORDS = {
 };
 
 const SENT_AT_MS = [0, 80, 160]; // the channel may lose a message; the gateway counts a press once
+const HEARD_WITHIN_MS = 2000;
 
-/**
- * Tells the gateway of one press.
- * @param {Messages.Cue} cue
- * @param {(message: StatusChannel.ToGateway) => void} send
- */
-export function sendCue(cue, send) {
-  const message = /** @type {const} */ ({ type: "cue", cue, t_us: nowUs() });
-  for (const afterMs of SENT_AT_MS) setTimeout(() => send(message), afterMs);
+/** Gives words to the partners, and tells of each that nobody may have heard. */
+export class GivenCues {
+  #send;
+  #onUnsaid;
+  /** Presses that nothing is known of yet, by their times. @type {Map<number, { cue: Messages.Cue, timer: number }>} */
+  #open = new Map();
+
+  /**
+   * @param {(message: StatusChannel.ToGateway) => void} send
+   * @param {(why: string) => void} onUnsaid
+   */
+  constructor(send, onUnsaid) {
+    this.#send = send;
+    this.#onUnsaid = onUnsaid;
+  }
+
+  /** Tells the gateway of one press. @param {Messages.Cue} cue */
+  give(cue) {
+    const pressUs = nowUs();
+    const message = /** @type {const} */ ({ type: "cue", cue, t_us: pressUs });
+    for (const afterMs of SENT_AT_MS) setTimeout(() => this.#send(message), afterMs);
+    const unheard = `No answer to “${cueText(cue)}”: perhaps nobody heard it. Press it again.`;
+    this.#open.set(pressUs, { cue, timer: setTimeout(() => this.#end(pressUs, unheard), HEARD_WITHIN_MS) });
+  }
+
+  /** One's own word has come back from the room. @param {string} said */
+  onHeard(said) {
+    for (const [pressUs, { cue }] of this.#open) if (cue === said) this.#end(pressUs, "");
+  }
+
+  /** The gateway has not passed it on. @param {StatusChannel.CueRefused} refused */
+  onRefused({ cue, t_us: pressUs }) {
+    this.#end(pressUs, `“${cueText(cue)}” was not said: two words a second at most.`);
+  }
+
+  /**
+   * @param {number} pressUs
+   * @param {string} why
+   */
+  #end(pressUs, why) {
+    const press = this.#open.get(pressUs);
+    if (!press) return; // its copies were answered, too
+    clearTimeout(press.timer);
+    this.#open.delete(pressUs);
+    if (why) this.#onUnsaid(why);
+  }
 }
 
 /** A cue as people say it; one that this page does not know, as it is. @type {(cue: string) => string} */

@@ -3,7 +3,7 @@
 import * as api from "./api.js";
 import { hasPicture } from "./arms.js";
 import { coursePath, courseRoom } from "./course.js";
-import { byId, letGoOfButton, letGoOnEscape } from "./dom.js";
+import { byId, letGoOfButton, letGoOnEscape, setShown } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
 import { KeyboardMouseInput } from "./drive/keyboard-mouse-input.js";
 import { Headset } from "./headset/headset.js";
@@ -11,22 +11,19 @@ import { isCue, isOffered } from "./hud/command-kinds.js";
 import { Confirm } from "./hud/confirm.js";
 import { Cues } from "./hud/cues.js";
 import { onDeviceButtons } from "./hud/device-buttons.js";
-import { DisplayedTicks } from "./hud/displayed-ticks.js";
 import { showHealth } from "./hud/health-figure.js";
 import { showHolder } from "./hud/holder.js";
 import { InputPanel } from "./hud/input-panel.js";
 import { keepDiscarded } from "./hud/keep-discarded.js";
 import { showNotice } from "./hud/notice.js";
 import { showPartners } from "./hud/partners.js";
-import { showPicture } from "./hud/picture.js";
+import { SeatPicture } from "./hud/seat-picture.js";
 import { showSeatTitle } from "./hud/seat-title.js";
 import { StatusBar } from "./hud/status-bar.js";
+import { othersOf, SwitchedSeat } from "./hud/switched-seat.js";
 import { showWaiting } from "./hud/waiting.js";
 import { approachAsPage } from "./link/page-approach.js";
-import { DrawnPicture } from "./scene/drawn-picture.js";
-import { pictureChoice } from "./scene/picture-choice.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
-import { watchTicks } from "./link/tickcode.js";
 import { followRooms } from "./live.js";
 import { toLobby } from "./member.js";
 import { inPlainWords } from "./plain-words.js";
@@ -39,8 +36,8 @@ const AGE_MS = 500;
 const NO_NEWS_MS = 2500; // rooms are told once a second at least
 const RECORDED_KEY = "mart.recorded";
 const FINGERS = matchMedia("(hover: none) and (pointer: coarse)");
-const [, , roomName = "", , armId = ""] = location.pathname.split("/").map(decodeURIComponent);
-const video = byId("video", HTMLVideoElement);
+const [, , roomName = "", , firstArm = ""] = location.pathname.split("/").map(decodeURIComponent);
+const own = { room: roomName, arm: firstArm }; // the seat; its person may go on to another arm
 
 /** @type {Api.Room | null} */
 let room = null;
@@ -50,37 +47,35 @@ let status = null;
 let course = null;
 let followed = 0; // the seat epoch that the connection is for
 let heardMs = -Infinity; // when the rooms were last told
-let pictured = false; // by the present connection: its picture comes a round trip before its first word
 let beganMs = -Infinity; // when the gateway first told of this holder's seat
 
-const displayed = new DisplayedTicks();
+const switched = new SwitchedSeat();
 const confirm = new Confirm(() => render());
 const statusBar = new StatusBar((command) => press(command));
-const panel = new InputPanel(roomName, armId, fail);
+const panel = new InputPanel(own, fail);
 const input = new KeyboardMouseInput(byId("picture"), (command, hasMoved) => {
   if (!hasMoved || room?.episode.phase !== "recording") onKey(command); // a key that has just moved is still meant to
 }, () => confirm.withdraw());
 const link = new SeatLink({
-  approach: () => approachAsPage(roomName, armId),
+  approach: () => approachAsPage(roomName, own.arm),
   wantsVideo: true,
   onState: onLinkState,
   onStatus,
-  onTrack: (stream) => (video.srcObject = stream),
-  onPoses: (message) => drawn.onPoses(message),
+  onTrack: (stream) => picture.show(stream),
+  onPoses: (message) => picture.drawn.onPoses(message),
+  onCues: (told) => cues.onTold(told),
   voice: { onTrack: (track) => voice.onTrack(track), onVoices: (told) => voice.onVoices(told) },
 });
-const voice = new VoicePanel(link, armId);
-const drawn = new DrawnPicture({
-  host: byId("picture"),
-  room: roomName,
-  arm: armId,
-  choice: pictureChoice(),
+const voice = new VoicePanel(link, own);
+const picture = new SeatPicture({
+  own,
   send: (message) => link.send(message),
-  onShown,
+  onSeen: (tick) => (input.seenTick = tick),
   onChange: () => render(),
   commanded: () => input.commandedSince(status),
 });
-const headset = new Headset({ room: roomName, arm: armId, picture: drawn, input, onCommand: onKey, onFailure: fail });
+const { drawn } = picture;
+const headset = new Headset({ own, picture: drawn, input, onCommand: onKey, onFailure: fail });
 const stop = emergencyStop({
   label: roomName,
   id: "stop",
@@ -88,14 +83,14 @@ const stop = emergencyStop({
   onStop: () => run("stop"),
   onLetGo: () => run("goOn"),
 });
-const cues = new Cues(armId, (message) => link.send(message), () => render());
+const cues = new Cues(own, (message) => link.send(message), showNotice, () => render());
 
 begin();
 
 function begin() {
-  showSeatTitle(roomName, armId);
+  showSeatTitle(roomName, own.arm);
   byId("edge").prepend(voice.node);
-  for (const command of /** @type {const} */ (["gripper", "leave"])) {
+  for (const command of /** @type {const} */ (["gripper", "leave", "other"])) {
     byId(command).addEventListener("click", () => run(command));
   }
   onDeviceButtons({
@@ -105,20 +100,28 @@ function begin() {
   });
   byId("emergency").append(stop.node);
   byId("health").addEventListener("toggle", () => render());
-  video.addEventListener("resize", () => {
-    pictured = true;
-    render();
-  });
   document.addEventListener("click", letGoOfButton);
   document.addEventListener("keydown", (event) => letGoOnEscape(event, () => panel.hideHelp()));
-  watchTicks(video, onShown);
   setInterval(render, AGE_MS); // what grows old says so without any news
   input.start((frame) => link.sendFrame(frame), () => ({ epoch: link.epoch, drives: drives(), nowUs: nowUs() }));
   followRooms({ onRooms, onEvent, onEnded: toLobby });
   link.connect(); // the seat's picture is wanted in nearly all cases: what the rooms say comes three round trips later
 }
 
-const ownSeat = () => room?.seats.find((seat) => seat.arm === armId);
+/** Goes on to another arm of the room, in this page. @param {Api.Seat} seat */
+function goTo(seat) {
+  own.arm = seat.arm;
+  history.replaceState(null, "", `/rooms/${encodeURIComponent(roomName)}/arms/${encodeURIComponent(seat.arm)}`);
+  showSeatTitle(roomName, seat.arm);
+  panel.onSwitched();
+  status = null;
+  followed = seat.epoch;
+  drawn.rest();
+  link.connect();
+  render();
+}
+
+const ownSeat = () => room?.seats.find((seat) => seat.arm === own.arm);
 const drives = () => link.role === "browser" && status !== null;
 
 /** @param {Api.Room[]} rooms */
@@ -127,6 +130,8 @@ function onRooms(rooms) {
   heardMs = performance.now();
   room = rooms.find((one) => one.room === roomName) ?? (room && { ...room, stale: true });
   course = courseRoom(rooms);
+  const went = switched.see(room?.seats ?? [], own.arm, heardMs);
+  if (went) goTo(went);
   follow(ownSeat());
   render();
 }
@@ -155,25 +160,13 @@ function onEvent(event) {
 }
 
 function onLinkState() {
-  if (link.state === LinkState.CONNECTING) pictured = false;
-  if (link.state === LinkState.LIVE) drawn.onLive();
+  picture.onLinkState(link.state);
   render();
-}
-
-/**
- * A tick is seen, in the video or drawn.
- * @param {number} tick
- * @param {number} nowMs
- */
-function onShown(tick, nowMs) {
-  displayed.see(tick, nowMs);
-  input.seenTick = tick;
-  link.send({ type: "seen", tick, t_us: nowMs * 1000 });
 }
 
 /** @param {StatusChannel.Tick} tick */
 function onStatus(tick) {
-  drawn.onTick(tick.tick);
+  picture.onStatus(tick);
   input.adoptGripper(tick, status);
   headset.onStatus(tick, status);
   if (status === null) beganMs = performance.now();
@@ -181,9 +174,6 @@ function onStatus(tick) {
   if (tick.engaged && room?.episode.phase === "recording") localStorage.setItem(RECORDED_KEY, "yes");
   render();
 }
-
-/** Whether pictures come, or the last ones are still worth showing. */
-const isLive = () => link.state === LinkState.LIVE || (link.state === LinkState.CONNECTING && pictured);
 
 /** Whether the room is heard now. */
 const isTold = () => performance.now() - heardMs < NO_NEWS_MS && room !== null && !room.stale;
@@ -194,23 +184,25 @@ function render() {
   const isNew = !localStorage.getItem(RECORDED_KEY);
   statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches, course });
   const told = isTold();
-  const still = displayed.standStill(status?.tick ?? 0, performance.now());
+  const still = picture.standsStill(status);
   const forMs = performance.now() - beganMs;
-  showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn, link }, video);
+  showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn, link }, picture.video);
   stop.update(room?.stop ?? null);
   panel.update(status, input.view(status));
   cues.update(room, mine && drives());
   voice.update();
   if (room) showRoom({ ...room, stale: !told });
-  showPicture(seat, status, isLive(), drawn.isShown);
+  picture.update(seat, status, link.state);
   showHolder(mine, status, link.state, confirm.pending);
   headset.update(mine && drives(), room);
+  setShown(byId("other"), mine && othersOf(room, own.arm).length > 0);
 }
 
 /** @param {Api.Room} shown */
 function showRoom(shown) {
   drawn.onProgress(shown.progress.subtasks);
-  showPartners(shown, armId, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
+  picture.tell(shown, (arm) => cues.of(arm));
+  showPartners(shown, own.arm, (arm) => attempt(() => api.takeSeat(roomName, arm, "script")), cues);
   showWaiting(shown);
 }
 
@@ -245,15 +237,22 @@ const ACTIONS = {
   lobby: toLobby,
   here: () => link.connect(),
   keep: () => keepDiscarded(room),
-  take: () => api.takeSeat(roomName, armId),
-  back: () => api.handBack(roomName, armId),
+  take: () => api.takeSeat(roomName, own.arm),
+  other: takeOther,
+  back: () => api.handBack(roomName, own.arm),
   course: () => leaveFor(coursePath(course)),
   leave: () => leaveFor("/"),
 };
 
+/** One press, and no other page: solo, one person drives one arm after another. */
+async function takeOther() {
+  if (headset.isWorn) throw new Error("Take the headset off before you switch to another arm.");
+  goTo((await api.switchSeat(roomName, own.arm)).seat);
+}
+
 /** @param {string} path */
 async function leaveFor(path) {
-  if (ownSeat()?.mine) await api.leaveSeat(roomName, armId);
+  if (ownSeat()?.mine) await api.leaveSeat(roomName, own.arm);
   location.assign(path);
 }
 
@@ -277,7 +276,7 @@ async function run(command) {
 function perform(command) {
   if (isCue(command)) return cues.give(command);
   if (isPageCommand(command)) return ACTIONS[command]();
-  return api.actOnEpisode(roomName, command, armId);
+  return api.actOnEpisode(roomName, command, own.arm);
 }
 
 /** @param {string} command @returns {command is PageCommand} */

@@ -1,7 +1,7 @@
 // The phone: a hand that is usable without looking.
 
-import { actByPhone, letGoByPhone, messageOf, stopByPhone } from "./api.js";
-import { armName, theArm } from "./arms.js";
+import { messageOf } from "./api.js";
+import { armName } from "./arms.js";
 import { byId, setShown, setText } from "./dom.js";
 import { encodeFrame, Flag } from "./drive/frame.js";
 import { letGoText } from "./drive/let-go.js";
@@ -10,11 +10,15 @@ import { everyFrame } from "./drive/ticker.js";
 import { approachAsPhone } from "./link/phone-approach.js";
 import { LinkState, nowUs, SeatLink } from "./link/seat-link.js";
 import { ClutchPad, GripperBar, StopButton } from "./phone/controls.js";
-import { EpisodeButton, episodeText } from "./phone/episode-button.js";
+import { EpisodeButton } from "./phone/episode-button.js";
 import { keepScreenOn, vibrate, vibrationsFor } from "./phone/feedback.js";
+import { statusText } from "./phone/line-words.js";
 import { takePairing } from "./phone/pairing.js";
+import { actByPhone, letGoByPhone, stopByPhone, switchByPhone } from "./phone/phone-api.js";
 import { PhoneCues } from "./phone/phone-cues.js";
-import { stoppedByText, stoppedHoldText } from "./phone/stop-words.js";
+import { PhoneVoice } from "./phone/phone-voice.js";
+import { HOW } from "./phone/start-words.js";
+import { stoppedHoldText } from "./phone/stop-words.js";
 import { TouchTracker } from "./phone/touch-tracker.js";
 import { Tutorial } from "./phone/tutorial.js";
 import { canTrack, XrTracker } from "./phone/xr.js";
@@ -36,10 +40,14 @@ const episode = new EpisodeButton(byId("episode"), (action) =>
 
 /** @type {SeatLink | null} */
 let seatLink = null;
-const cues = new PhoneCues((message) => seatLink?.send(message), (what) => {
-  if (what === "open") clutch.release(); // the sheet covers what moves the arm
-  else vibrate("step");
+const cues = new PhoneCues((message) => seatLink?.send(message), {
+  onOpen: () => clutch.release(), // the sheet covers what moves the arm
+  onSay: () => vibrate("step"),
+  onHear: () => vibrate("word"),
+  onUnsaid: tellProblem,
 });
+
+const voice = new PhoneVoice(byId("talk", HTMLButtonElement), () => seatLink, tellProblem);
 
 /** @type {XrTracker | TouchTracker | null} */
 let tracker = null;
@@ -71,10 +79,7 @@ async function begin() {
     return;
   }
   paired = pairing;
-  arm = pairing.arm;
-  document.body.dataset.arm = arm;
-  document.title = `${armName(arm)} · Phone · MART`;
-  setText(byId("arm"), armName(arm));
+  showArm(pairing.arm);
   /** @type {Mode} */
   const mode = (await canTrack()) ? "xr" : "touch";
   document.body.dataset.mode = mode;
@@ -83,30 +88,32 @@ async function begin() {
   setShown(byId("start"), true);
   const link = connect(pairing);
   byId("start").addEventListener("click", () => start(mode, link));
+  byId("switch").addEventListener("click", () => ask(switchByPhone));
   document.addEventListener("visibilitychange", () => document.hidden && clutch.release());
 }
 
-/** @type {Record<Mode, string>} */
-const HOW = {
-  xr:
-    "Look at the laptop. Hold the coloured area, and the arm follows this phone. It asks for the camera to know " +
-    "where it is; no picture leaves the phone.",
-  touch:
-    "This browser cannot follow the phone through the room, so the coloured area is a touch pad, and tilting the " +
-    "phone turns the hand.",
-};
+/** @param {string} now */
+function showArm(now) {
+  arm = now;
+  document.body.dataset.arm = arm;
+  document.title = `${armName(arm)} · Phone · MART`;
+  setText(byId("arm"), armName(arm));
+}
 
 /** @param {Api.PairedPhone} pairing */
 function connect(pairing) {
   const link = new SeatLink({
     approach: () =>
       approachAsPhone(pairing, (renewed) => {
-        if (renewed.epoch !== link.epoch) status = null; // somebody else drove: the gripper is as they left it
+        if (renewed.epoch !== link.epoch || renewed.arm !== arm) status = null; // the gripper is as another left it
+        if (renewed.arm !== arm) showArm(renewed.arm); // its person went on to this one
         paired = { ...pairing, ...renewed };
       }),
     wantsVideo: false,
     onState: () => onLinkState(link),
     onStatus: (tick) => onStatus(tick, link),
+    onCues: (told) => cues.onTold(told, arm),
+    onVoices: (told) => voice.onVoices(told),
   });
   seatLink = link;
   link.connect();
@@ -197,9 +204,14 @@ async function ask(request) {
   try {
     if (paired) await request(paired.room, paired.arm, paired.token);
   } catch (error) {
-    problem = messageOf(error);
-    problemUntilMs = performance.now() + PROBLEM_MS;
+    tellProblem(messageOf(error));
   }
+}
+
+/** @param {string} text */
+function tellProblem(text) {
+  problem = text;
+  problemUntilMs = performance.now() + PROBLEM_MS;
 }
 
 /** @param {Sample} pose */
@@ -238,26 +250,28 @@ function onStatus(tick, link) {
 
 /** @param {SeatLink} link */
 function showLink(link) {
-  const live = link.state === LinkState.LIVE && status !== null;
-  const stopped = live && status?.barrier === "stopped";
-  if (live) stop.update(stopped);
-  episode.update(live ? status : null);
-  cues.update(live ? status : null);
+  const told = link.state === LinkState.LIVE ? status : null;
+  const stopped = told?.barrier === "stopped";
+  if (told) stop.update(stopped);
+  episode.update(told);
+  cues.update(told);
+  voice.update();
+  setShown(byId("switch"), told?.others ?? false);
   if (performance.now() > problemUntilMs) problem = "";
   byId("app").classList.toggle("stopped", stopped);
   setText(byId("link"), problem || linkText(link));
-  setText(byId("hold-text"), holdText(live));
+  setText(byId("hold-text"), holdText(told));
 }
 
 /**
  * What the large area says: why nothing moves, what to do next, or that it moves.
- * @param {boolean} live
+ * @param {StatusChannel.Tick | null} told
  */
-function holdText(live) {
-  if (!live || !status) return "No connection. The arm holds still.";
-  if (status.barrier === "stopped") return stoppedHoldText(status);
+function holdText(told) {
+  if (!told) return "No connection. The arm holds still.";
+  if (told.barrier === "stopped") return stoppedHoldText(told);
   if (tracker && !tracking) return "Tracking lost. Let the camera see more of the room.";
-  return (clutch.held && letGoText(status.let_go)) || tutorial?.tip || movingText(status);
+  return (clutch.held && letGoText(told.let_go)) || tutorial?.tip || movingText(told);
 }
 
 /** @param {StatusChannel.Tick} tick */
@@ -267,17 +281,7 @@ const movingText = ({ engaged }) => (engaged ? "Moving" : "Hold to move");
 function linkText(link) {
   if (link.state === LinkState.SILENT) return "Connection lost";
   if (link.state !== LinkState.LIVE || !status) return link.problem || "Connecting…";
-  return statusText(status);
-}
-
-/** @param {StatusChannel.Tick} tick */
-function statusText(tick) {
-  if (tick.barrier === "stopped") return stoppedByText(tick);
-  if (tick.input !== "phone") return "The keyboard drives";
-  const other = tick.waiting.find((one) => one.arm !== arm);
-  if (other) return `Waiting for ${theArm(other.arm)}`;
-  const delay = tick.latency ? `${Math.round(tick.latency.p50_ms)} ms` : "connected";
-  return `${episodeText(tick)}${delay}${tracker ? `, ${trackingText()}` : ". Press Start to drive."}`;
+  return statusText(status, arm, tracker ? trackingText() : "");
 }
 
 function trackingText() {

@@ -11,7 +11,7 @@ import { followRooms } from "./live.js";
 import { DrawnPicture } from "./scene/drawn-picture.js";
 import { FreeCamera } from "./scene/free-camera.js";
 import { pictureChoice } from "./scene/picture-choice.js";
-import { ToolLabels } from "./scene/tool-labels.js";
+import { toldPlaces, ToolLabels } from "./scene/tool-labels.js";
 import { VoicePanel } from "./voice/voice-panel.js";
 
 /** @import { SceneView } from "./scene/scene-view.js" */
@@ -33,7 +33,7 @@ const link = new SeatLink({
   approach: () => approachAsPage(rooms.value, views.value),
   wantsVideo: true,
   onState: onLinkState,
-  onStatus: ({ tick }) => drawn?.onTick(tick),
+  onStatus,
   onTrack: (stream) => (video.srcObject = stream),
   onPoses: (message) => drawn?.onPoses(message),
   voice: { onTrack: (track) => voice.onTrack(track), onVoices: (told) => voice.onVoices(told) },
@@ -68,6 +68,12 @@ async function begin() {
   byId("nearer").addEventListener("click", () => camera.step(true));
   byId("farther").addEventListener("click", () => camera.step(false));
   followRooms({ onRooms: show, onEvent, onEnded: () => location.reload() });
+}
+
+/** @param {StatusChannel.Tick} status */
+function onStatus(status) {
+  drawn?.onTick(status.tick);
+  if (!drawn?.isShown) labels.place(toldPlaces(status));
 }
 
 /** @param {Api.RoomEvent} event */
@@ -154,7 +160,7 @@ function showPicture() {
   const isDrawn = drawn?.isShown ?? false;
   const seen = watched !== "" && (isDrawn || video.videoWidth > 0);
   setShown(video, seen && !isDrawn);
-  setShown(byId("labels"), isDrawn);
+  setShown(byId("labels"), seen);
   showCamera(isDrawn);
   setShown(byId("no-picture"), !seen);
   const waiting = link.problem || "Connecting to the scene…";

@@ -7,8 +7,8 @@ import { CUES } from "../facts.js";
 /** @typedef {"success" | "failure" | "discard"} Ending */
 
 /**
- * What a key asks for that is no motion; a cue is said, the others are done.
- * @typedef {"next" | "back" | "leave" | "gripper" | "stop" | "help" | Ending | Messages.Cue} Command
+ * What a key asks for that is no motion; a cue is said, the others are done. other: to switch to another arm.
+ * @typedef {"next" | "back" | "leave" | "gripper" | "stop" | "help" | "other" | Ending | Messages.Cue} Command
  */
 
 /** @typedef {{ kind: "move" | "turn", axis: 0 | 1 | 2, sign: 1 | -1 }} Motion */
@@ -40,6 +40,7 @@ const COMMANDS = {
   KeyG: "gripper",
   KeyK: "gripper",
   KeyP: "stop",
+  KeyT: "other",
   Slash: "help",
   ...Object.fromEntries(CUES.map((cue, index) => [`Digit${index + 1}`, cue])),
 };

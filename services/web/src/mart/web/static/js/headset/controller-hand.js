@@ -1,9 +1,10 @@
 // The controllers of a headset as an operator's hand. Pure; times are arguments, milliseconds.
 
 import { IDENTITY } from "../drive/quaternion.js";
-import { CueWheel } from "./cue-wheel.js";
+import { CUES } from "../facts.js";
+import { StickWheel } from "./stick-wheel.js";
 
-/** @import { Command } from "../drive/keys.js" */
+/** @import { Command, Ending } from "../drive/keys.js" */
 /** @import { Quaternion, Vector } from "../drive/quaternion.js" */
 
 /** @typedef {"left" | "right"} Side */
@@ -11,6 +12,7 @@ import { CueWheel } from "./cue-wheel.js";
 /**
  * What one controller says. The pose is its grip's, in level axes (x right, y up, z towards the person, metres), null
  * where it is not known; squeeze, trigger: 0 … 1; stick: right and down, -1 … 1; `lower`: A or X, `upper`: B or Y.
+ * `stickPressed`: the stick is pressed down.
  * @typedef {object} Controller
  * @property {Side} side
  * @property {{ position: Vector, quaternionWxyz: Quaternion } | null} pose
@@ -19,6 +21,7 @@ import { CueWheel } from "./cue-wheel.js";
  * @property {[right: number, down: number]} stick
  * @property {boolean} lower
  * @property {boolean} upper
+ * @property {boolean} stickPressed
  */
 
 /**
@@ -31,6 +34,9 @@ import { CueWheel } from "./cue-wheel.js";
  * @property {number | null} gripper
  */
 
+/** What the stick asks for that is pressed down, from up on clockwise. @type {readonly (Ending | "leave" | "")[]} */
+export const ENDINGS = ["success", "", "failure", "", "discard", "", "leave", ""];
+
 const SQUEEZED = 0.6;
 const OPENED = 0.3;
 const STOP_HOLD_MS = 500;
@@ -40,7 +46,10 @@ const SWITCHED_MS = 50; // frames of the other controller's place go ahead of it
 
 /** One hand: of either controller, the one whose squeeze was pressed while no other was held. */
 export class ControllerHand {
-  wheel = new CueWheel();
+  /** Words to the partners. @type {StickWheel<Messages.Cue | "next">} */
+  words = new StickWheel("lower", CUES, "next");
+  /** @type {StickWheel<Ending | "leave">} */
+  endings = new StickWheel("stickPressed", ENDINGS, null);
   /** @type {Side} */
   side = "right";
   #engaged = false;
@@ -75,8 +84,8 @@ export class ControllerHand {
       this.#seenMs = -Infinity;
     }
     this.#grip(mine?.trigger ?? 0, gripper);
-    const chosen = this.wheel.see(controllers);
-    return [...(chosen ? [chosen] : []), ...this.#stop(controllers, nowMs)];
+    const chosen = [this.words.see(controllers), this.endings.see(controllers)].filter((one) => one !== null);
+    return [...chosen, ...this.#stop(controllers, nowMs)];
   }
 
   /**
@@ -103,7 +112,8 @@ export class ControllerHand {
     this.#squeezed.clear();
     this.#seenMs = -Infinity;
     this.#stopSinceMs = null;
-    this.wheel.close();
+    this.words.close();
+    this.endings.close();
   }
 
   /**

@@ -1,7 +1,7 @@
 // A VR headset at the operator's page: the scene around the person, and the controllers as the hands that drive.
 
 import { messageOf } from "../api.js";
-import { theArm } from "../arms.js";
+import { isMachine, theArm } from "../arms.js";
 import { byId, setShown, setText } from "../dom.js";
 import { boardLines } from "./board-text.js";
 import { ControllerHand } from "./controller-hand.js";
@@ -29,8 +29,7 @@ export const canImmerse = async () =>
 
 /**
  * @typedef {object} HeadsetOptions
- * @property {string} room
- * @property {string} arm
+ * @property {{ room: string, arm: string }} own the page's seat, now
  * @property {DrawnPicture} picture
  * @property {KeyboardMouseInput} input that sends the hand of the page's own arm
  * @property {(command: Command) => void} onCommand
@@ -67,14 +66,19 @@ export class Headset {
    * @param {Api.Room | null} room
    */
   update(drives, room) {
-    const { arm } = this.#options;
+    const { arm } = this.#options.own;
     const others = (room?.seats ?? []).filter((seat) => seat.arm !== arm);
-    this.#free = others.find((seat) => seat.mine || seat.operator === "hold")?.arm ?? "";
+    this.#free = besides(others);
     const enters = drives && this.#isThere && this.#session === null;
     setShown(byId("headset"), enters);
     setShown(byId("headset-both"), enters && this.#free !== "");
     setText(byId("headset-both"), `Enter VR with ${theArm(this.#free)} too`);
     if (this.#side) this.#second?.follow(room).catch(this.#options.onFailure);
+  }
+
+  /** Whether somebody wears it now. */
+  get isWorn() {
+    return this.#session !== null;
   }
 
   /**
@@ -138,11 +142,11 @@ export class Headset {
    * @param {ImmersiveView} view
    */
   async #take(arm, view) {
-    const [own, other] = [view.cameraOf(this.#options.arm), view.cameraOf(arm)];
+    const [own, other] = [view.cameraOf(this.#options.own.arm), view.cameraOf(arm)];
     if (!own || !other) return;
     if (this.#second?.arm !== arm) {
       const turn = turnBetween(own.quaternionWxyz, other.quaternionWxyz);
-      this.#second = new SecondArm(this.#options, arm, turn, (...told) => this.#feel(...told));
+      this.#second = new SecondArm(this.#options.own, arm, turn, (...told) => this.#feel(...told));
     }
     [this.#side, this.#second.hand.side] = isRight(own, other.position) ? ["left", "right"] : ["right", "left"];
     this.#hand.letGo();
@@ -182,17 +186,27 @@ export class Headset {
     const commands = this.#hand.see(own, input.gripper, nowMs);
     if (side && this.#second) commands.push(...this.#second.hand.see(others, this.#second.gripper, nowMs));
     commands.forEach(onCommand);
-    const open = this.#hands.find((hand) => hand.wheel.isOpen) ?? this.#hand;
-    this.#view?.show(controllers, this.#colours(), boardLines(open.wheel));
+    const open = this.#hands.find((hand) => hand.words.isOpen || hand.endings.isOpen) ?? this.#hand;
+    this.#view?.show(controllers, this.#colours(), boardLines(open));
   }
 
   /** By the controllers that lead. @returns {Map<Side, string>} */
   #colours() {
-    const { arm } = this.#options;
+    const { arm } = this.#options.own;
     const leading = new Map([[this.#hand.side, colourOf(arm)]]);
     if (this.#side && this.#second) leading.set(this.#second.hand.side, colourOf(this.#second.arm));
     return leading;
   }
+}
+
+/**
+ * Which arm could be driven beside one's own: one that is one's own already, else one that holds still, else one that a
+ * machine drives, which gets it back. Empty: none.
+ * @param {Api.Seat[]} others
+ */
+function besides(others) {
+  const held = others.find(({ mine }) => mine) ?? others.find(({ operator }) => operator === "hold");
+  return (held ?? others.find(isMachine))?.arm ?? "";
 }
 
 /** An arm's colour, from what shows it on the page. @param {string} arm */

@@ -1,10 +1,11 @@
 // Another arm of whoever wears a headset: the other controller leads it, as a phone of theirs does.
 
-import { actOnEpisode, leaveSeat, pairPhone, redeemPairing, takeSeat } from "../api.js";
+import { actOnEpisode, handBack, leaveSeat, pairPhone, takeSeat } from "../api.js";
 import { encodeFrame, Flag } from "../drive/frame.js";
 import { everyFrame } from "../drive/ticker.js";
 import { approachAsPhone } from "../link/phone-approach.js";
 import { nowUs, SeatLink } from "../link/seat-link.js";
+import { redeemPairing } from "../phone/phone-api.js";
 import { ControllerHand } from "./controller-hand.js";
 import { turned } from "./stand.js";
 
@@ -21,6 +22,7 @@ export class SecondArm {
   #arm;
   #turn;
   #onStatus;
+  #relieves = false; // a machine gets the seat back
   #sequence = 0;
   /** Whether one is ready, as was said and is not told yet. @type {boolean | null} */
   #said = null;
@@ -57,19 +59,21 @@ export class SecondArm {
 
   /** Takes the seat, where it is not one's own yet, and begins to drive. */
   async take() {
-    await takeSeat(this.#room, this.#arm);
+    const { seat } = await takeSeat(this.#room, this.#arm);
+    this.#relieves = seat.relieved !== "";
     this.#pairing = await redeemPairing((await pairPhone(this.#room, this.#arm)).code);
     this.#link.connect();
     this.#rest = everyFrame((nowMs) => this.#send(nowMs));
   }
 
-  /** Leaves the seat: with no headset there is no hand for it. */
+  /** Leaves the seat, to the machine that had it: with no headset there is no hand for it. */
   async leave() {
     this.#rest();
     this.#link.close();
     this.hand.lose();
     this.#status = null;
-    if (this.#pairing) await leaveSeat(this.#room, this.#arm);
+    const leave = this.#relieves ? handBack : leaveSeat;
+    if (this.#pairing) await leave(this.#room, this.#arm);
     this.#pairing = null;
   }
 

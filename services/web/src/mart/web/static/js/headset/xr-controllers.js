@@ -4,6 +4,7 @@
 
 const TRIGGER = 0;
 const SQUEEZE = 1;
+const STICK = 3;
 const LOWER = 4;
 const UPPER = 5;
 const STICK_X = 2;
@@ -36,6 +37,7 @@ function pressedOf({ buttons, axes }) {
     stick: [axes[STICK_X] ?? 0, axes[STICK_Y] ?? 0],
     lower: pressed(LOWER),
     upper: pressed(UPPER),
+    stickPressed: pressed(STICK),
   };
 }
 

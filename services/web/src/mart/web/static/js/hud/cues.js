@@ -1,16 +1,18 @@
 // Words to one's partners: a button each, and what was said, for a few seconds.
 
 import { armName, holderName } from "../arms.js";
-import { cueText, sendCue, waitsAfter } from "../cues.js";
+import { cueText, GivenCues, waitsAfter } from "../cues.js";
 import { byId, element, setShown, setText } from "../dom.js";
 import { CUES } from "../facts.js";
 
 const SHOWN_MS = 4000;
+const NOBODY = "Nobody hears a word now: it goes from who drives an arm to the others who do.";
 
 /** The buttons for cues, and the newest cue of each arm. */
 export class Cues {
-  #ownArm;
-  #send;
+  #own;
+  #given;
+  #tell;
   #onChange;
   /** @type {Map<Messages.Cue, HTMLButtonElement>} */
   #buttons = new Map();
@@ -21,13 +23,15 @@ export class Cues {
   #episode = "";
 
   /**
-   * @param {string} ownArm
+   * @param {{ arm: string }} own one's own seat, now
    * @param {(message: StatusChannel.ToGateway) => void} send
+   * @param {(notice: string) => void} tell what became of a word that nobody heard
    * @param {() => void} onChange called when something else is to be shown
    */
-  constructor(ownArm, send, onChange) {
-    this.#ownArm = ownArm;
-    this.#send = send;
+  constructor(own, send, tell, onChange) {
+    this.#own = own;
+    this.#given = new GivenCues(send, tell);
+    this.#tell = tell;
     this.#onChange = onChange;
     CUES.forEach((cue, index) => this.#buttons.set(cue, this.#button(cue, String(index + 1))));
     byId("cues").append(...this.#buttons.values());
@@ -38,7 +42,13 @@ export class Cues {
    * @param {Messages.Cue} cue
    */
   give(cue) {
-    if (!byId("cues").hidden) sendCue(cue, this.#send);
+    if (byId("cues").hidden) this.#tell(NOBODY);
+    else this.#given.give(cue);
+  }
+
+  /** Takes what the gateway says of words. @param {StatusChannel.Cues | StatusChannel.CueRefused} told */
+  onTold(told) {
+    if (told.type === "cue_refused") this.#given.onRefused(told);
   }
 
   /**
@@ -50,11 +60,12 @@ export class Cues {
     clearTimeout(this.#said.get(arm)?.timer);
     const timer = setTimeout(() => this.#forget(arm), SHOWN_MS);
     this.#said.set(arm, { cue, timer });
+    if (arm === this.#own.arm) this.#given.onHeard(cue);
     const seat = room?.seats.find((one) => one.arm === arm);
     const name = seat ? holderName(seat) : armName(arm);
-    if (cue === "wait") this.#waitsFor = arm === this.#ownArm ? "you" : name;
+    if (cue === "wait") this.#waitsFor = arm === this.#own.arm ? "you" : name;
     else if (!waitsAfter(this.#waitsFor !== "", cue)) this.#waitsFor = "";
-    if (arm !== this.#ownArm) setText(byId("cue-heard"), `${name}: ${cueText(cue)}`);
+    if (arm !== this.#own.arm) setText(byId("cue-heard"), `${name}: ${cueText(cue)}`);
   }
 
   /**
@@ -82,14 +93,14 @@ export class Cues {
     if (episode !== this.#episode) this.#waitsFor = ""; // no word outlives a reset of the world
     this.#episode = episode;
     setShown(byId("cues"), drives && partners);
-    const mine = this.#said.get(this.#ownArm)?.cue;
+    const mine = this.#said.get(this.#own.arm)?.cue;
     for (const [cue, button] of this.#buttons) button.classList.toggle("said", cue === mine);
   }
 
   /** @param {string} arm */
   #forget(arm) {
     this.#said.delete(arm);
-    if (arm !== this.#ownArm) setText(byId("cue-heard"), "");
+    if (arm !== this.#own.arm) setText(byId("cue-heard"), "");
     this.#onChange();
   }
 

@@ -28,6 +28,7 @@ const KEYS = [
   ["R", "In practice: reset the scene"],
   ["S F R", "While it records, with space let go, twice: success, failed, discard"],
   ["B", "Hand the arm back to the policy or script"],
+  ["T", "Take another arm that no person drives; yours holds still, or goes back to its script"],
   ["P", "Stop everything; once it is stopped, twice: go on"],
   ["Q", "With space let go, twice: leave the seat"],
   [CUES.map((_, index) => index + 1).join(" "), `To your partners, scripts too: ${CUES.map(cueText).join(", ")}`],
@@ -51,19 +52,16 @@ const MARK = "The mark on the table in your colour says whose side it is. Nothin
 
 /** Shows the input of one's own arm, pairs phones, and lists the keys. */
 export class InputPanel {
-  #room;
-  #arm;
+  #seat;
   #onFailure;
   #countdown = 0; // the timer of the code that is shown
 
   /**
-   * @param {string} room
-   * @param {string} arm
+   * @param {{ room: string, arm: string }} seat one's own, now
    * @param {(error: unknown) => void} onFailure
    */
-  constructor(room, arm, onFailure) {
-    this.#room = room;
-    this.#arm = arm;
+  constructor(seat, onFailure) {
+    this.#seat = seat;
     this.#onFailure = onFailure;
     byId("pair").addEventListener("click", () => this.#pair());
     byId("pairing-copy").addEventListener("click", () => this.#copy());
@@ -96,9 +94,14 @@ export class InputPanel {
     showKeys(false);
   }
 
+  /** The seat is another one now: a code that is shown is of the one before. */
+  onSwitched() {
+    this.#closePairing();
+  }
+
   async #pair() {
     try {
-      const { url, qr_svg: svg, expires_s: expiresS, hint } = await pairPhone(this.#room, this.#arm);
+      const { url, qr_svg: svg, expires_s: expiresS, hint } = await pairPhone(this.#seat.room, this.#seat.arm);
       const image = byId("qr", HTMLImageElement);
       showQrCode(image, svg);
       image.title = url;

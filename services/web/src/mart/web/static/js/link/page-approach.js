@@ -10,6 +10,7 @@ export async function approachAsPage(room, arm) {
   const iceServers = keptIceServers() ?? (await seatToken(room, arm)).ice_servers;
   return {
     iceServers,
+    renew: () => seatToken(room, arm),
     exchange: async (sdp) => {
       const answer = await offer(room, arm, sdp);
       keepIceServers(answer.ice_servers); // the site may have others meanwhile

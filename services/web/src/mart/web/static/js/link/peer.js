@@ -1,6 +1,6 @@
 // One WebRTC connection to a seat's gateway: video in, voices in and out, data channels that may lose messages.
 
-import { addVoiceLanes } from "./voice-lanes.js";
+import { addTalkingLane, addVoiceLanes } from "./voice-lanes.js";
 
 /**
  * @typedef {object} PeerOptions
@@ -8,7 +8,8 @@ import { addVoiceLanes } from "./voice-lanes.js";
  * @property {RTCIceServer[]} iceServers STUN and TURN servers; none on one network
  * @property {(sdp: string) => Promise<string>} exchange takes the offer to the gateway and returns its answer
  * @property {(stream: MediaStream) => void} onTrack
- * @property {((track: MediaStreamTrack) => void) | undefined} onVoice told of each lane; without it, there is no sound
+ * @property {((track: MediaStreamTrack) => void) | undefined} onVoice told of each lane; without it, nothing is heard
+ * @property {boolean} talks one may want to be heard, where nothing is
  * @property {() => void} onOpen messages can be sent from now on
  * @property {(message: StatusChannel.FromGateway) => void} onMessage
  * @property {(message: ArrayBuffer) => void} onPoses where the bodies are, for a page that draws
@@ -55,7 +56,7 @@ export class Peer {
   }
 
   /** @param {PeerOptions} options */
-  async #connect({ wantsVideo, exchange, onTrack, onVoice, onOpen, onMessage, onPoses, onClosed }) {
+  async #connect({ wantsVideo, exchange, onTrack, onVoice, talks, onOpen, onMessage, onPoses, onClosed }) {
     const connection = this.#connection;
     this.#status.addEventListener("message", ({ data }) => onMessage(JSON.parse(data)));
     if (wantsVideo) {
@@ -63,6 +64,7 @@ export class Peer {
       receiveVideo(connection);
     }
     if (onVoice) this.#talking = addVoiceLanes(connection);
+    else if (talks) this.#talking = addTalkingLane(connection);
     connection.addEventListener("track", ({ track }) => {
       if (track.kind === "video") onTrack(new MediaStream([track]));
       else onVoice?.(track);
@@ -96,7 +98,7 @@ export class Peer {
 
   /** Whether what one says is heard by the room. */
   get maySpeak() {
-    return this.#talking?.currentDirection === "sendrecv";
+    return ["sendrecv", "sendonly"].includes(this.#talking?.currentDirection ?? "");
   }
 
   /** Says what a microphone hears from now on, or nothing. @param {MediaStreamTrack | null} track */

@@ -30,6 +30,7 @@ export const LinkState = Object.freeze({
  * @typedef {object} Approach
  * @property {RTCIceServer[]} iceServers
  * @property {(sdp: string) => Promise<Admitted>} exchange
+ * @property {() => Promise<Api.SeatToken>} [renew] what one is let in for now
  */
 
 /**
@@ -37,6 +38,9 @@ export const LinkState = Object.freeze({
  * @property {(track: MediaStreamTrack) => void} onTrack
  * @property {(told: StatusChannel.Voices) => void} onVoices
  */
+
+const TOKEN_AT_MS = [0, 80, 160]; // the channel may lose a message
+const NO_VOICE = "You do not host any more, so nobody hears you. Give the host code again to speak.";
 
 /**
  * @typedef {object} LinkOptions
@@ -46,7 +50,9 @@ export const LinkState = Object.freeze({
  * @property {(status: StatusChannel.Tick) => void} onStatus
  * @property {(stream: MediaStream) => void} [onTrack]
  * @property {(message: ArrayBuffer) => void} [onPoses]
- * @property {VoiceListener} [voice] whoever hears the room; nobody: there is no sound
+ * @property {VoiceListener} [voice] whoever hears the room; nobody: nothing is heard
+ * @property {(told: StatusChannel.Voices) => void} [onVoices] of one that does not hear the room and may speak to it
+ * @property {(told: StatusChannel.Cues | StatusChannel.CueRefused) => void} [onCues]
  */
 
 /**
@@ -67,6 +73,8 @@ export class SeatLink {
   #peer = null;
   /** What is said, on this connection and those after it. @type {MediaStreamTrack | null} */
   #said = null;
+  /** @type {Approach["renew"]} */
+  #renew;
   #clock = new ClockOffset();
   #patience = new Patience();
   #retryMs = FIRST_RETRY_MS;
@@ -115,6 +123,16 @@ export class SeatLink {
     return this.#peer?.maySpeak ?? false;
   }
 
+  /**
+   * Has the gateway know that one may speak on, where that is not known by the seat; raises an Error where one may not.
+   */
+  async renewSpeech() {
+    if (this.role !== "viewer" || !this.#renew) return;
+    const { token, speaks_as: speaksAs } = await this.#renew();
+    if (!speaksAs) throw new Error(NO_VOICE);
+    for (const afterMs of TOKEN_AT_MS) setTimeout(() => this.send({ type: "token", token }), afterMs);
+  }
+
   /** Lets the room hear a microphone, or nothing. @param {MediaStreamTrack | null} track */
   say(track) {
     this.#said = track;
@@ -161,8 +179,9 @@ export class SeatLink {
    * @param {Approach} approach
    * @param {number} attempt
    */
-  #reach({ iceServers, exchange }, attempt) {
-    const { wantsVideo, voice, onTrack = () => {}, onPoses = () => {} } = this.#options;
+  #reach({ iceServers, exchange, renew }, attempt) {
+    this.#renew = renew;
+    const { wantsVideo, voice, onVoices, onTrack = () => {}, onPoses = () => {} } = this.#options;
     return Peer.connect({
       wantsVideo,
       iceServers,
@@ -172,6 +191,7 @@ export class SeatLink {
         return sdp;
       },
       onTrack,
+      talks: onVoices !== undefined,
       onVoice: voice && ((track) => attempt === this.#attempt && voice.onTrack(track)),
       onOpen: () => attempt === this.#attempt && this.#ping(),
       onPoses: (message) => attempt === this.#attempt && onPoses(message),
@@ -182,21 +202,21 @@ export class SeatLink {
 
   /** @param {StatusChannel.FromGateway} message */
   #onMessage(message) {
-    if (message.type === "voices") {
-      this.#options.voice?.onVoices(message);
-      return;
-    }
-    if (message.type === "replaced") {
-      this.close(LinkState.REPLACED);
-      return;
-    }
+    if (message.type === "voices") (this.#options.voice ?? this.#options).onVoices?.(message);
+    else if (message.type === "cues" || message.type === "cue_refused") this.#options.onCues?.(message);
+    else if (message.type === "replaced") this.close(LinkState.REPLACED);
+    else this.#onSign(message);
+  }
+
+  /** Takes what is told in any case, time after time. @param {StatusChannel.Tick | StatusChannel.Pong} message */
+  #onSign(message) {
     this.#patience.heard(performance.now());
     this.#retryMs = FIRST_RETRY_MS;
     this.#setState(LinkState.LIVE);
     if (message.type === "pong") {
       this.pictureKbitS = message.picture_kbit_s ?? 0;
       this.send({ type: "clock", offset_ns: Math.round(this.#clock.pong(message, nowUs())) });
-    } else if (message.type === "tick") {
+    } else {
       this.#options.onStatus(message);
     }
   }

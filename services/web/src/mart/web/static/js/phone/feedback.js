@@ -5,6 +5,7 @@ const PATTERNS_MS = {
   engaged: [15],
   grasped: [45],
   step: [15, 60, 15],
+  word: [30, 40, 30, 40, 30],
   late: [20, 60, 20],
   lost: [80, 60, 80],
   stopped: [200],
@@ -12,9 +13,9 @@ const PATTERNS_MS = {
 
 /** @typedef {keyof typeof PATTERNS_MS} Vibration */
 
-/** Buzzes where the phone can; iPhones cannot. @type {(what: Vibration) => void} */
+/** Buzzes where the phone can, and may: after the first touch. iPhones cannot. @type {(what: Vibration) => void} */
 export function vibrate(what) {
-  navigator.vibrate?.(PATTERNS_MS[what]);
+  if (navigator.userActivation?.hasBeenActive ?? true) navigator.vibrate?.(PATTERNS_MS[what]);
 }
 
 /**

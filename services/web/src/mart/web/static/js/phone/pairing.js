@@ -1,6 +1,6 @@
 // How this phone gets to a seat: a code that works once, and what it gave.
 
-import { redeemPairing } from "../api.js";
+import { redeemPairing } from "./phone-api.js";
 
 const PAIRING_KEY = "mart.pairing";
 

@@ -46,7 +46,10 @@ export class SceneCanvas {
   async load(room, arm) {
     if (!webglRenderer()) throw new WebGLMissing("this browser has no WebGL 2.");
     const { sha256, bytes } = await fetchScene(room, arm);
-    if (sha256 === this.#sha256 && this.view) return this.view;
+    if (sha256 === this.#sha256 && this.view) {
+      this.view.lookThrough(arm); // the seat may be another one of the same room
+      return this.view;
+    }
     const { SceneView: View } = await import("./scene-view.js");
     if (this.view) this.view.change(parseScene(bytes));
     else this.view = this.#made(View, parseScene(bytes));

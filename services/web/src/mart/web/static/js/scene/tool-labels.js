@@ -1,4 +1,4 @@
-// Names and words at the arms, over a picture that the page draws. Whoever hears a page has the list beside it.
+// Names and words at the arms, over a picture. Whoever hears a page has the list beside it.
 
 import { badge } from "../arms.js";
 import { element, keepChildren, setShown, setText } from "../dom.js";
@@ -44,9 +44,17 @@ export class ToolLabels {
       setShown(node, isShown);
       if (!place || !isShown) continue;
       node.style.left = `${(100 * place.x).toFixed(2)}%`;
-      node.style.top = `${(100 * place.y).toFixed(2)}%`;
+      node.style.setProperty("--down", `${(100 * place.y).toFixed(2)}%`);
     }
   }
+}
+
+/** Where the tools are in a video, as its gateway tells. @param {StatusChannel.Tick} status */
+export function toldPlaces({ tools }) {
+  const places = Object.entries(tools ?? {}).map(([arm, [right, down]]) => {
+    return /** @type {const} */ ([arm, { x: right / 1000, y: down / 1000, isSeen: true }]);
+  });
+  return new Map(places);
 }
 
 /** @type {(arm: string) => Label} */

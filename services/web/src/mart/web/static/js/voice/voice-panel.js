@@ -4,32 +4,22 @@ import { badge } from "../arms.js";
 import { element, setShown, setText } from "../dom.js";
 import { holdToTalk } from "./hold.js";
 import { Loudspeaker } from "./loudspeaker.js";
-import { Microphone, microphoneProblem } from "./microphone.js";
+import { PushToTalk } from "./push-to-talk.js";
+
+/** @import { SpeechLink } from "./push-to-talk.js" */
 
 const MUTED_KEY = "mart.voices-muted";
 const SILENT_MS = 1000;
-const READY = "The microphone is ready: hold the button, or V, while you talk.";
-const microphone = new Microphone();
 
-/**
- * What a panel needs of the connection to a seat.
- * @typedef {object} TalkLink
- * @property {boolean} maySpeak
- * @property {string} speaksAs one's name
- * @property {string} role
- * @property {(track: MediaStreamTrack | null) => void} say
- */
+/** @typedef {SpeechLink & { speaksAs: string, role: string }} TalkLink */
 
 /** A panel, and what it does with the room's voices. Nothing is sent, and no microphone opened, before a press. */
 export class VoicePanel {
   node;
   #link;
-  #arm;
+  #own;
   #loudspeaker = new Loudspeaker(() => this.update());
-  #held = false;
-  /** @type {"" | "asking" | "talking"} */
-  #doing = "";
-  #problem = "";
+  #talking;
   /** @type {StatusChannel.Speaker[]} */
   #speakers = [];
   #isHeard = true;
@@ -41,18 +31,19 @@ export class VoicePanel {
 
   /**
    * @param {TalkLink} link
-   * @param {string} [arm] whose page it is, where it is an arm's
+   * @param {{ arm: string }} [own] whose page it is now, where it is an arm's
    */
-  constructor(link, arm = "") {
+  constructor(link, own = { arm: "" }) {
     this.#link = link;
-    this.#arm = arm;
+    this.#own = own;
+    this.#talking = new PushToTalk(link, () => this.update());
     this.#talk.append("Hold to talk", element("kbd", { "aria-hidden": "true" }, "V"));
     this.#loudspeaker.mute(sessionStorage.getItem(MUTED_KEY) === "yes");
     const buttons = element("div", { class: "buttons" }, this.#talk, this.#mute);
     const parts = [this.#list, buttons, this.#message];
     this.node = element("section", { class: "voice glass", "aria-label": "Voices" }, ...parts);
     this.#mute.addEventListener("click", () => this.#toggleMute());
-    holdToTalk(this.#talk, (held) => this.#hold(held));
+    holdToTalk(this.#talk, (held) => this.#talking.hold(held));
     this.update();
   }
 
@@ -76,7 +67,7 @@ export class VoicePanel {
   /** Shows what holds now; the connection may have changed. */
   update() {
     setShown(this.#talk, this.#link.maySpeak);
-    this.#talk.setAttribute("aria-pressed", String(this.#doing === "talking"));
+    this.#talk.setAttribute("aria-pressed", String(this.#talking.doing === "talking"));
     this.#mute.setAttribute("aria-pressed", String(this.#loudspeaker.muted));
     setText(this.#message, this.#text());
     setShown(this.#message, this.#message.textContent !== "");
@@ -84,9 +75,10 @@ export class VoicePanel {
   }
 
   #text() {
-    if (this.#problem) return this.#problem;
-    if (this.#doing === "asking") return "Asking for the microphone…";
-    if (this.#doing === "talking" && !this.#isHeard) return "Two people speak already: nobody hears you yet.";
+    const { problem, doing } = this.#talking;
+    if (problem) return problem;
+    if (doing === "asking") return "Asking for the microphone…";
+    if (doing === "talking" && !this.#isHeard) return "Two people speak already: nobody hears you yet.";
     if (this.#loudspeaker.isBlocked && !this.#loudspeaker.muted) return "Press any key or button to hear the others.";
     return "";
   }
@@ -110,43 +102,7 @@ export class VoicePanel {
    */
   #isMe({ arm, name }) {
     const { role, speaksAs } = this.#link;
-    return name === speaksAs && arm === (role === "browser" ? this.#arm : "");
-  }
-
-  /** @param {boolean} held */
-  #hold(held) {
-    if (held === this.#held || (held && !this.#link.maySpeak)) return;
-    this.#held = held;
-    if (held) void this.#start();
-    else this.#end();
-    this.update();
-  }
-
-  async #start() {
-    this.#problem = "";
-    this.#doing = "asking";
-    try {
-      const track = await microphone.open();
-      if (this.#held) {
-        this.#doing = "talking";
-        this.#link.say(track);
-      } else {
-        this.#problem = READY; // whoever was asked has let go meanwhile
-        microphone.rest();
-      }
-    } catch (error) {
-      this.#doing = "";
-      this.#held = false;
-      this.#problem = microphoneProblem(error);
-    }
-    this.update();
-  }
-
-  #end() {
-    if (this.#doing === "talking") microphone.rest();
-    this.#doing = "";
-    this.#isHeard = true;
-    this.#link.say(null);
+    return name === speaksAs && arm === (role === "browser" ? this.#own.arm : "");
   }
 
   #toggleMute() {

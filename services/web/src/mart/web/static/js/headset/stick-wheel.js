@@ -1,39 +1,56 @@
-// What a controller's lower button asks for: what comes next, or with the stick, a word to the partners. Pure.
-
-import { CUES } from "../facts.js";
+// What a controller's button asks for together with the stick: a word to the partners, or an end. Pure.
 
 /** @import { Controller, Side } from "./controller-hand.js" */
 
-const PUSHED = 0.6;
-const DIRECTIONS = 8; // the first is up, and on clockwise; the last says nothing
+/** @typedef {"lower" | "stickPressed"} WheelButton */
 
-/** Opens while the button is held; what the stick was pushed to last is said when it is let go. */
-export class CueWheel {
+const PUSHED = 0.6;
+const DIRECTIONS = 8; // the first is up, and on clockwise
+
+/**
+ * Opens while the button is held; what the stick was pushed to last is asked for when it is let go.
+ * @template {string} Choice
+ */
+export class StickWheel {
+  #button;
+  #choices;
+  #onTap;
   /** Whose button is held. @type {Side | null} */
   #side = null;
   /** Where the stick was pushed to; null while it was not. @type {number | null} */
   #direction = null;
   #isOld = true; // the button has been held since before anybody looked
 
+  /**
+   * @param {WheelButton} button
+   * @param {readonly (Choice | "")[]} choices by direction; empty, or none: there it asks for nothing
+   * @param {Choice | null} onTap what a press without the stick asks for
+   */
+  constructor(button, choices, onTap) {
+    this.#button = button;
+    this.#choices = choices;
+    this.#onTap = onTap;
+  }
+
   /** Whether the button is held. */
   get isOpen() {
     return this.#side !== null;
   }
 
-  /** What would be said now; nothing most of the time. @returns {Messages.Cue | ""} */
+  /** What would be asked for now; nothing most of the time. @returns {Choice | ""} */
   get chosen() {
-    return (this.#direction !== null && CUES[this.#direction]) || "";
+    return (this.#direction !== null && this.#choices[this.#direction]) || "";
   }
 
   /**
    * Takes what the controllers say now; the answer is what was asked for by letting go.
    * @param {Controller[]} controllers
-   * @returns {Messages.Cue | "next" | null}
+   * @returns {Choice | null}
    */
   see(controllers) {
-    const holding = controllers.find(({ lower, side }) => lower && (this.#side ?? side) === side);
+    const holding = controllers.find((one) => one[this.#button] && (this.#side ?? one.side) === one.side);
     if (!holding) {
-      const asked = this.#direction === null ? "next" : this.chosen;
+      const asked = this.#direction === null ? this.#onTap : this.chosen;
       const isAsked = this.#side !== null && controllers.some(({ side }) => side === this.#side);
       this.close();
       this.#isOld = false;
@@ -46,7 +63,7 @@ export class CueWheel {
     return null;
   }
 
-  /** Says nothing, also where the button is held still. */
+  /** Asks for nothing, also where the button is held still. */
   close() {
     this.#side = null;
     this.#direction = null;

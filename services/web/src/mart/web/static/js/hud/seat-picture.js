@@ -1,0 +1,108 @@
+// The picture of one's seat, as video or drawn in the page: what of it is seen, and who drives which arm in it.
+
+import { holderName } from "../arms.js";
+import { byId, setShown } from "../dom.js";
+import { LinkState } from "../link/seat-link.js";
+import { watchTicks } from "../link/tickcode.js";
+import { DrawnPicture } from "../scene/drawn-picture.js";
+import { pictureChoice } from "../scene/picture-choice.js";
+import { toldPlaces, ToolLabels } from "../scene/tool-labels.js";
+import { DisplayedTicks } from "./displayed-ticks.js";
+import { showPicture } from "./picture.js";
+
+/** @import { State } from "../link/seat-link.js" */
+
+/**
+ * @typedef {object} SeatPictureOptions
+ * @property {{ room: string, arm: string }} own one's own seat, now
+ * @property {(message: StatusChannel.ToGateway) => void} send
+ * @property {(tick: number) => void} onSeen a tick is on the screen
+ * @property {() => void} onChange
+ * @property {() => readonly [number, number, number] | null} commanded
+ */
+
+/** What shows the seat's view. `drawn`: the part of it that draws. */
+export class SeatPicture {
+  drawn;
+  video = byId("video", HTMLVideoElement);
+  #own;
+  #labels = new ToolLabels(byId("labels"));
+  #displayed = new DisplayedTicks();
+  #pictured = false; // by the present connection: its picture comes a round trip before its first word
+
+  /** @param {SeatPictureOptions} options */
+  constructor({ own, send, onSeen, onChange, commanded }) {
+    this.#own = own;
+
+    /** @type {(tick: number, nowMs: number) => void} */
+    const onShown = (tick, nowMs) => {
+      this.#displayed.see(tick, nowMs);
+      onSeen(tick);
+      send({ type: "seen", tick, t_us: nowMs * 1000 });
+    };
+    this.drawn = new DrawnPicture({
+      host: byId("picture"),
+      room: own.room,
+      get arm() {
+        return own.arm;
+      },
+      choice: pictureChoice(),
+      send,
+      onShown,
+      onChange,
+      commanded,
+      onDraw: (view) => this.#labels.place(view.toolPlaces()),
+    });
+    this.video.addEventListener("resize", () => {
+      this.#pictured = true;
+      onChange();
+    });
+    watchTicks(this.video, onShown);
+  }
+
+  /** Shows the stream of a new connection. @param {MediaStream} stream */
+  show(stream) {
+    this.video.srcObject = stream;
+  }
+
+  /** The connection's state may have changed. @param {State} state */
+  onLinkState(state) {
+    if (state === LinkState.CONNECTING) this.#pictured = false;
+    if (state === LinkState.LIVE) this.drawn.onLive();
+  }
+
+  /** Takes what the gateway tells: of a video also where the tools are in it. @param {StatusChannel.Tick} status */
+  onStatus(status) {
+    this.drawn.onTick(status.tick);
+    if (!this.drawn.isShown) this.#labels.place(toldPlaces(status));
+  }
+
+  /** Whether nothing newer is displayed while the world goes on. @param {StatusChannel.Tick | null} status */
+  standsStill(status) {
+    return this.#displayed.standStill(status?.tick ?? 0, performance.now());
+  }
+
+  /**
+   * Shows it, or why there is none.
+   * @param {Api.Seat | undefined} seat
+   * @param {StatusChannel.Tick | null} status
+   * @param {State} state of the connection
+   */
+  update(seat, status, state) {
+    const isLive = state === LinkState.LIVE || (state === LinkState.CONNECTING && this.#pictured);
+    showPicture(seat, status, isLive, this.drawn.isShown);
+    setShown(byId("labels"), state === LinkState.LIVE && !status?.no_picture);
+  }
+
+  /**
+   * Says at the arms who drives them, and what they say; at one's own while practising alone, where nothing is to be
+   * hidden by it.
+   * @param {Api.Room} room
+   * @param {(arm: string) => string} wordsOf
+   */
+  tell({ seats, episode }, wordsOf) {
+    const arms = seats.map((seat) => ({ arm: seat.arm, name: holderName(seat), words: wordsOf(seat.arm) }));
+    const isNamed = episode.phase === "practice" || episode.phase === "countdown";
+    this.#labels.tell(arms.filter(({ arm, words }) => isNamed || arm !== this.#own.arm || words !== ""));
+  }
+}
