@@ -11,12 +11,13 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from mart.protocol.errors import Corrupt, NotFound
 from mart.render import load_model, model_probe, probe_script, viewpoint_id
 from mart.sim.world import World
+from tests.support.fuzzing import fuzzing
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +73,7 @@ def test_a_model_over_which_the_loader_hangs_is_refused(monkeypatch: pytest.Monk
         load(mjb, hashlib.sha256(mjb).hexdigest())
 
 
-@settings(max_examples=25)
+@fuzzing(examples=12)  # each is tried in a process of its own
 @given(changes=st.lists(st.tuples(st.integers(0, 3000), st.integers(0, 255)), min_size=1, max_size=3))
 def test_a_spoilt_model_is_refused_or_loaded_and_never_takes_this_process_along(
     changes: list[tuple[int, int]],

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -22,46 +23,43 @@ from mart.runtime.ports import free_port
 from tests.support.message_collector import MessageCollector
 
 _MART = str(Path(sys.executable).with_name("mart"))
+_LAB_TASK = "two_arm_drink_tray_lifting"
 
 
-def test_it_serves_until_its_terminal_is_closed_and_leaves_nothing_behind(tmp_path: Path) -> None:
+@pytest.mark.timeout(240)
+def test_it_serves_until_its_terminal_is_closed_or_it_is_killed_and_leaves_nothing_in_the_way_of_the_next(
+    tmp_path: Path,
+) -> None:
+    """Three in the same folder: the first is ended, the second killed, the third loses its supervisor."""
     port = free_port()
+    command = [_MART, "run", "--json", "--port", str(port)]
     environment = _environment(tmp_path)
-    with _running([_MART, "run", "--json", "--port", str(port)], environment) as process:
-        assert process.stdout is not None
-        told = json.loads(process.stdout.readline())
+    with _running(command, environment) as process:
+        told = _told(process)
         assert told["url"] == f"https://localhost:{port}/"
         assert told["join_code"]
+        assert len(_supervised(tmp_path)) == 10
+        a_second_one_is_refused(process, port, environment)
+        with _lab_statuses(environment) as (bus, statuses):
+            wanted = RoomsRequest.Open(room="lab", task=_LAB_TASK, episodes=50)
+            bus.query(keys.rooms("platform-1"), codec.encode(RoomsRequest(open=wanted)), timeout_s=45.0)
+            a_room_has_its_plan(statuses)
         doctor = subprocess.run(
             [_MART, "doctor", "--json"], env=environment, capture_output=True, check=False
         )
         assert json.loads(doctor.stdout)["ok"], doctor.stdout
-        second = subprocess.run(
-            [_MART, "run", "--port", str(port)], env=environment, capture_output=True, text=True, check=False
-        )
-        assert second.returncode != 0
-        assert f"process {process.pid} at https://localhost:{port}/" in second.stderr
-        assert len(_supervised(tmp_path)) == 10
-        mark = _mark(tmp_path)
+        ended = _mark(tmp_path)
         process.send_signal(signal.SIGHUP)
         assert process.wait(60) == 0
-    assert not processes_of(mark)
-
-
-@pytest.mark.timeout(180)
-def test_a_killed_one_leaves_nothing_in_the_way_of_the_next_and_a_killed_supervisor_is_told(
-    tmp_path: Path,
-) -> None:
-    command = [_MART, "run", "--json", "--port", str(free_port())]
-    environment = _environment(tmp_path)
+    assert not processes_of(ended)
     with _running(command, environment) as process:
-        assert process.stdout is not None
-        assert json.loads(process.stdout.readline())["url"]
+        assert _told(process)["room"] == "room-1"
+        with _lab_statuses(environment) as (_, statuses):
+            a_room_has_its_plan(statuses)
         killed = _mark(tmp_path)
         process.kill()
     with _running(command, environment) as process:
-        assert process.stdout is not None
-        assert json.loads(process.stdout.readline())["url"]
+        assert _told(process)["url"]
         assert not processes_of(killed)
         mark = _mark(tmp_path)
         os.kill(int((tmp_path / "run" / "supervisord.pid").read_text()), signal.SIGKILL)
@@ -71,23 +69,35 @@ def test_a_killed_one_leaves_nothing_in_the_way_of_the_next_and_a_killed_supervi
     assert not processes_of(mark)
 
 
-def test_a_room_that_was_opened_comes_back_with_its_plan(tmp_path: Path) -> None:
-    environment = _environment(tmp_path)
-    wanted = RoomsRequest.Open(room="lab", task="two_arm_drink_tray_lifting", episodes=50)
-    for request in (RoomsRequest(open=wanted), None):
-        with _running([_MART, "run", "--json", "--port", str(free_port())], environment) as process:
-            assert process.stdout is not None
-            assert json.loads(process.stdout.readline())["room"] == "room-1"
-            with (
-                ZenohBus.connect(environment["MART_ROUTER"]) as bus,
-                MessageCollector(bus, keys.status("lab").key, RoomStatus) as statuses,
-            ):
-                if request is not None:
-                    bus.query(keys.rooms("platform-1"), codec.encode(request), timeout_s=45.0)
-                status = statuses.wait_for(lambda status: status.task == wanted.task, timeout_s=45.0)
-                assert (status.plan.episodes, status.plan.good) == (50, 0)
-            process.terminate()
-            assert process.wait(60) == 0
+def a_second_one_is_refused(process: subprocess.Popen[str], port: int, environment: dict[str, str]) -> None:
+    second = subprocess.run(
+        [_MART, "run", "--port", str(port)], env=environment, capture_output=True, text=True, check=False
+    )
+    assert second.returncode != 0
+    assert f"process {process.pid} at https://localhost:{port}/" in second.stderr
+
+
+def a_room_has_its_plan(statuses: MessageCollector[RoomStatus]) -> None:
+    status = statuses.wait_for(lambda status: status.task == _LAB_TASK, timeout_s=45.0)
+    assert (status.plan.episodes, status.plan.good) == (50, 0)
+
+
+@contextlib.contextmanager
+def _lab_statuses(
+    environment: dict[str, str],
+) -> Iterator[tuple[ZenohBus, MessageCollector[RoomStatus]]]:
+    with (
+        ZenohBus.connect(environment["MART_ROUTER"]) as bus,
+        MessageCollector(bus, keys.status("lab").key, RoomStatus) as statuses,
+    ):
+        yield bus, statuses
+
+
+def _told(process: subprocess.Popen[str]) -> dict[str, Any]:
+    """What it prints when it is up."""
+    assert process.stdout is not None
+    told: dict[str, Any] = json.loads(process.stdout.readline())
+    return told
 
 
 def _environment(data_dir: Path) -> dict[str, str]:

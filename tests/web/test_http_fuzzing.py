@@ -93,7 +93,8 @@ class Site:
     def send(self, **request: Any) -> httpx.Response:
         """The answer to a request of somebody who has joined."""
         answer = self._loop.run_until_complete(asyncio.wait_for(self._client.request(**request), LONGEST_S))
-        if answer.status_code == 401 or request["method"] == "DELETE":
+        has_left = request["method"] == "DELETE" and request["url"].endswith("/api/me")
+        if answer.status_code == 401 or has_left:
             self._loop.run_until_complete(self._client.aclose())
             self._client = self._loop.run_until_complete(self._joined())
         return answer

@@ -18,13 +18,16 @@ SERIOUS = """async () => {
 }"""
 
 
+IS_DARK = "() => matchMedia('(prefers-color-scheme: dark)').matches"
+
+
 def faults(page: Page) -> list[str]:
     """Return a sentence for each fault; axe-core's serious and critical findings among them.
 
     What axe-core looks at is the same in the dark, so it looks by light alone.
     """
     found: list[str] = page.evaluate(INSPECT)
-    if page.evaluate("() => matchMedia('(prefers-color-scheme: dark)').matches"):
+    if page.evaluate(IS_DARK):
         return found
     if not page.evaluate("() => 'axe' in window"):
         page.evaluate(AXE)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mart.platform.run.running import Platform
-from tests.browser.pages.visits import driving, visit
+from tests.browser.pages.visits import driving, seen_in, visit
 
 _ON_TOP = """
 () => {
@@ -23,23 +22,29 @@ def within_reach(page: Page) -> None:
     assert page.evaluate(_ON_TOP)
 
 
-@pytest.mark.parametrize("size", ["narrow", "sideways", "small", "wide"])
-def test_it_is_within_reach_with_any_panel_open(browser: Browser, platform: Platform, size: str) -> None:
-    with visit(browser, platform, size) as ana, driving(ana) as page:
-        within_reach(page)
-        ana.is_fine(f"stop-{size}")
+LOOKS = [(size, "light") for size in ("narrow", "sideways", "small", "wide")]
+
+
+def test_it_is_within_reach_with_any_panel_open(browser: Browser, platform: Platform) -> None:
+    with visit(browser, platform) as ana, driving(ana) as page:
+        for what in seen_in(page, LOOKS, "stop"):
+            within_reach(page)
+            ana.is_fine(what)
         page.get_by_role("button", name="Pair a phone").click()
         expect(page.locator("#qr")).to_be_visible()
         expect(page.locator("#pairing-address")).to_contain_text("/phone#")
-        within_reach(page)
-        expect(page.locator("#gripper")).to_be_visible()
-        ana.is_fine(f"stop-pairing-{size}")
+        for what in seen_in(page, LOOKS, "stop-pairing"):
+            within_reach(page)
+            expect(page.locator("#gripper")).to_be_visible()
+            ana.is_fine(what)
         page.keyboard.press("?")
         expect(page.locator("#keys")).to_be_visible()
-        within_reach(page)
+        for _ in seen_in(page, LOOKS, "stop-keys"):
+            within_reach(page)
         page.keyboard.press("?")
         page.locator("#health summary").click()
-        within_reach(page)
+        for _ in seen_in(page, LOOKS, "stop-health"):
+            within_reach(page)
 
 
 def test_it_latches_names_who_pressed_and_anybody_lets_it_go(browser: Browser, platform: Platform) -> None:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect
 
 from mart.platform.run.running import Platform
-from tests.browser.pages.legibility import faults
+from tests.browser.pages.legibility import IS_DARK, faults
 
 HERE = Path(__file__).parent
 SCREENSHOTS = Path("test-output/browser/pages")
+# What observes its size has done so by then.
+NEXT_FRAME = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 SIZES = {
     "narrow": (360, 740),
     "sideways": (740, 360),
@@ -21,7 +23,15 @@ SIZES = {
     "wide": (1440, 900),
     "wall": (3840, 2160),
 }
-LOOKS = [("narrow", "dark"), ("narrow", "light"), ("wide", "dark"), ("wide", "light"), ("wall", "light")]
+Look = tuple[str, str]  # one of SIZES; dark or light
+LOOKS: list[Look] = [
+    ("narrow", "dark"),
+    ("narrow", "light"),
+    ("wide", "dark"),
+    ("wide", "light"),
+    ("wall", "light"),
+]
+FEW_LOOKS: list[Look] = [("narrow", "dark"), ("wide", "light")]
 
 
 @dataclass
@@ -44,10 +54,38 @@ class Visit:
         expect(self.page.locator("#picture.live")).to_be_visible()
 
     def is_fine(self, what: str) -> None:
-        SCREENSHOTS.mkdir(parents=True, exist_ok=True)
-        self.page.screenshot(path=SCREENSHOTS / f"{what}.png", full_page=True)
-        assert (found := faults(self.page)) == [], found  # said here: only test files explain their asserts
+        is_legible(self.page, what)
         assert self.noise == [], self.noise
+
+    def is_fine_in(self, looks: Sequence[Look], what: str) -> None:
+        """At every size and by light and dark; the page then is as it was."""
+        for name in seen_in(self.page, looks, what):
+            self.is_fine(name)
+
+
+def is_legible(page: Page, what: str) -> None:
+    SCREENSHOTS.mkdir(parents=True, exist_ok=True)
+    page.screenshot(path=SCREENSHOTS / f"{what}.png", full_page=True)
+    assert (found := faults(page)) == [], (what, found)  # said here: only test files explain their asserts
+
+
+def seen_in(page: Page, looks: Sequence[Look], what: str) -> Iterator[str]:
+    """Let the page look so, one after the other, and say what that is called; then it is as it was."""
+    before, was_dark = page.viewport_size, page.evaluate(IS_DARK)
+    assert before is not None
+    for size, scheme in looks:
+        look_so(page, size, scheme)
+        yield f"{what}-{size}-{scheme}"
+    page.set_viewport_size(before)
+    page.emulate_media(color_scheme="dark" if was_dark else "light")
+
+
+def look_so(page: Page, size: str, scheme: str) -> None:
+    """`size`: one of SIZES; scheme: dark or light."""
+    width, height = SIZES[size]
+    page.set_viewport_size({"width": width, "height": height})
+    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.evaluate(NEXT_FRAME)
 
 
 @contextlib.contextmanager

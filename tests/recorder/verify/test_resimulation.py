@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.errors import Corrupt
+from mart.protocol.errors import Corrupt, Unavailable
 from mart.protocol.keys import alive, rollout
 from mart.protocol.messages import Error, RolloutReply, RolloutRequest, State
 from mart.protocol.recording import RoomRecord, VerificationRecord
@@ -217,6 +217,26 @@ def test_a_replica_of_which_the_router_knows_nothing_for_a_moment_is_awaited(tmp
     for _ in range(2):
         said = verify(recorded(tmp_path, synthetic.states(3)), _ROOM, ask)
         assert said.verdict is Verdict.VERIFIED, said.detail
+
+
+def test_a_router_that_is_away_when_the_first_file_is_verified_is_awaited(tmp_path: Path) -> None:
+    class Away(DeafBus):
+        asked = 0
+
+        def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
+            self.asked += 1
+            if self.asked == 1:
+                raise Unavailable("The router is away.")
+            return super().alive(alive_expression, timeout_s)
+
+    network = MemoryNetwork()
+    server = network.connect()
+    server.serve(
+        rollout("replica-1"), lambda request: request.reply(synthetic.rollout_reply(request.payload))
+    )
+    server.announce(alive(ServiceKind.REPLICA, "replica-1"))
+    said = verify(recorded(tmp_path, synthetic.states(3)), _ROOM, replica(Away(network), "replica-1"))
+    assert said.verdict is Verdict.VERIFIED, said.detail
 
 
 def test_what_a_replica_refuses_is_said(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import pytest
 from mart.protocol import keys
 from mart.protocol.errors import Unavailable
 from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.alive_wait import await_alive
 from mart.runtime.bus.base import Bus, Request, Sample
 from mart.runtime.bus.memory import MemoryNetwork
 from mart.runtime.bus.zenoh_bus import ZenohBus
@@ -210,6 +211,21 @@ def test_a_router_that_says_nothing_is_not_a_system_without_services() -> None:
         pytest.raises(Unavailable, match="who is alive"),
     ):
         bus.alive(keys.EVERY_ALIVE)
+
+
+@pytest.mark.system
+def test_a_router_that_is_away_is_not_a_system_without_services() -> None:
+    port = free_port()
+    key = keys.alive(ServiceKind.SIM, "room-1")
+    with running_router(port) as endpoint:
+        a, b = ZenohBus.connect(endpoint), ZenohBus.connect(endpoint)
+        a.announce(key)
+        assert await_alive(b, key, {key}, WAIT_S)
+    with a, b:
+        with pytest.raises(Unavailable, match="who is alive"):
+            b.alive(keys.EVERY_ALIVE)
+        with running_router(port):
+            assert await_alive(b, key, {key}, WAIT_S) == {key}
 
 
 @pytest.mark.system

@@ -61,11 +61,8 @@ def perform(world: World, seed: int, skill: str, late_ticks: int = 0, most_ticks
 
 @pytest.mark.slow
 @pytest.mark.parametrize("skill", skill_names())
-@pytest.mark.parametrize("late_ticks", [0, 4])
-def test_experts_succeed_even_when_they_see_late(
-    worlds: dict[int, World], skill: str, late_ticks: int
-) -> None:
-    assert [perform(worlds[2], seed, skill, late_ticks).success for seed in range(5)] == [True] * 5
+def test_experts_succeed_even_when_they_see_late(worlds: dict[int, World], skill: str) -> None:
+    assert [perform(worlds[2], seed, skill, late_ticks=4).success for seed in range(5)] == [True] * 5
 
 
 def test_three_experts_share_a_world(worlds: dict[int, World]) -> None:
@@ -73,8 +70,10 @@ def test_three_experts_share_a_world(worlds: dict[int, World]) -> None:
 
 
 @pytest.mark.slow
-def test_better_skill_is_faster(worlds: dict[int, World]) -> None:
-    means = [np.mean([perform(worlds[2], seed, skill).ticks for seed in range(3)]) for skill in skill_names()]
+def test_experts_succeed_and_better_skill_is_faster(worlds: dict[int, World]) -> None:
+    ended = [[perform(worlds[2], seed, skill) for seed in range(5)] for skill in skill_names()]
+    assert all(one.success for of_skill in ended for one in of_skill)
+    means = [np.mean([one.ticks for one in of_skill]) for of_skill in ended]
     assert means[0] * 1.2 < means[1]
     assert means[1] * 1.2 < means[2]
     assert means[0] < 100

@@ -31,7 +31,7 @@ class Gateway:
         self.opened: list[OpenSeat] = []
         self.offers: list[Offer] = []
         self.refusal: Conflict | None = None
-        bus.announce(keys.alive(ServiceKind.GATEWAY, "gateway-1"))
+        self.alive = bus.announce(keys.alive(ServiceKind.GATEWAY, "gateway-1"))
         bus.serve(keys.open_seat("gateway-1"), self._open)
         for role in roles:
             bus.serve(keys.signal("room-1", "arm0", role), self._answer)
@@ -164,6 +164,18 @@ async def test_without_a_gateway_the_page_is_told_what_to_start(enter: Enter, ro
     status, error = await offer(ana, (await ana.get(f"{SEAT}/token")).json()["token"])
     assert status == 503
     assert "mart gateway" in error["message"]
+
+
+async def test_a_gateway_that_is_away_for_a_moment_is_awaited(
+    enter: Enter, gateway: Gateway, bus: MemoryBus
+) -> None:
+    """Its link broke, or the router was started anew: it is there again within seconds, and the page need not ask."""
+    ana = await seated(enter)
+    token = (await ana.get(f"{SEAT}/token")).json()["token"]
+    gateway.alive.close()
+    await asyncio.sleep(0)  # the site has heard of it
+    asyncio.get_running_loop().call_later(0.1, bus.announce, keys.alive(ServiceKind.GATEWAY, "gateway-1"))
+    assert (await offer(ana, token))[0] == 200
 
 
 async def test_what_the_gateway_reports_reaches_the_page(enter: Enter, gateway: Gateway) -> None:

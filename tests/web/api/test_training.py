@@ -8,6 +8,7 @@ import pytest
 
 from mart.runtime.bus.memory import MemoryBus
 from mart.web.api.app_state import AppState
+from mart.web.clients import running_services
 from tests.web.conftest import Enter
 from tests.web.trainer import VIDEO, Trainer
 
@@ -135,7 +136,10 @@ async def test_a_video_comes_in_pieces_once_it_is_rendered(enter: Enter, trainer
     assert answer.content == VIDEO
 
 
-async def test_a_trainer_that_went_away_is_told(enter: Enter, trainer: Trainer) -> None:
+async def test_a_trainer_that_went_away_is_told(
+    enter: Enter, trainer: Trainer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(running_services, "AWAY_S", 0.0)
     ana = await enter("Ana")
     trainer.close()
     await asyncio.sleep(0)

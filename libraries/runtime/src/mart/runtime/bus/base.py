@@ -80,7 +80,7 @@ class Bus(ABC):
     def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
         """The liveliness keys that exist now, sorted; one announced just now may be missing: `watch` misses none.
 
-        Raises Unavailable where the router does not answer.
+        Raises Unavailable where the router does not answer, or is away.
         """
 
     @abstractmethod

@@ -43,8 +43,8 @@ _PRIORITY = {
 
 
 class ZenohBus(Bus):
-    def __init__(self, session: zenoh.Session) -> None:
-        self._session = session
+    def __init__(self, session: zenoh.Session, *, routes: bool = False) -> None:
+        self._session, self._routes = session, routes
         self._declared: set[_Declared] = set()  # a handle that nobody holds would undeclare itself
 
     @classmethod
@@ -65,11 +65,11 @@ class ZenohBus(Bus):
         Raises Unavailable where the address is taken.
         """
         if secret is None:
-            return cls(_open(zenoh_settings.router(endpoint), endpoint))
+            return cls(_open(zenoh_settings.router(endpoint), endpoint), routes=True)
         with tempfile.NamedTemporaryFile(prefix="mart-") as users:  # readable by this user alone
             users.write(zenoh_settings.users(secret))
             users.flush()
-            return cls(_open(zenoh_settings.router(endpoint, users.name), endpoint))
+            return cls(_open(zenoh_settings.router(endpoint, users.name), endpoint), routes=True)
 
     def publisher(self, topic: Topic) -> Publisher:
         control = zenoh.CongestionControl.BLOCK if topic.must_arrive else zenoh.CongestionControl.DROP
@@ -181,19 +181,26 @@ class ZenohBus(Bus):
         return self._keep(subscriber)
 
     def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
-        found = []
+        found, was_linked = [], self._is_linked()
         for reply in self._session.liveliness().get(alive_expression, timeout=timeout_s):
             if reply.ok is None:
                 raise Unavailable(
                     f"The router did not say within {timeout_s:g} s who is alive; see `mart doctor`."
                 )
             found.append(str(reply.ok.key_expr))
+        if not found and not (
+            was_linked and self._is_linked()
+        ):  # a session without a link finds nobody, and at once
+            raise Unavailable("The router is away, so nobody can say who is alive; see `mart doctor`.")
         return sorted(found)
 
     def close(self) -> None:
         for declared in list(self._declared):
             declared.close()
         self._session.close()
+
+    def _is_linked(self) -> bool:
+        return self._routes or bool(self._session.info.routers_zid())
 
     def _keep(self, handle: Any) -> Closable:
         declared = _Declared(handle, self._declared.discard)

@@ -24,14 +24,21 @@ AskReplica = Callable[[RolloutRequest], RolloutReply]
 def replica(bus: Bus, name: str, patience_s: float = _PATIENCE_S) -> AskReplica:
     """Ask the replica called `name`. Raises Unavailable, at once where there was none, or where it does not answer.
 
-    One that was there is awaited for `patience_s`: a router that is started anew forgets for about 2 s who is alive.
+    One that was there is awaited for `patience_s`, as is a router that is away: one that is started anew forgets for
+    about 2 s who is alive.
     """
     token = keys.alive(ServiceKind.REPLICA, name)
     was_up = False
 
     def ask(request: RolloutRequest) -> RolloutReply:
         nonlocal was_up
-        is_up = token in await_alive(bus, token, {token}, patience_s) if was_up else bool(bus.alive(token))
+        try:
+            is_up = bool(bus.alive(token))
+            is_known = is_up or not was_up
+        except Unavailable:
+            is_up = is_known = False
+        if not is_known:
+            is_up = token in await_alive(bus, token, {token}, patience_s)
         was_up = is_up
         if not is_up:
             raise Unavailable(f"No replica {name!r} is up; start one with `mart replica --name {name}`.")

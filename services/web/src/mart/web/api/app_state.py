@@ -116,19 +116,19 @@ class AppState:
     @property
     def platform(self) -> PlatformClient:
         """The client through which rooms are opened and closed."""
-        return PlatformClient(self.pools.bus(ServiceKind.PLATFORM), self.lobby.services)
+        return PlatformClient(self.pools.bus(ServiceKind.PLATFORM), self.lobby)
 
     @property
     def gateways(self) -> GatewayClient:
         """The client that has peers' offers answered."""
-        return GatewayClient(self.pools.bus(ServiceKind.GATEWAY), self.lobby.services)
+        return GatewayClient(self.pools.bus(ServiceKind.GATEWAY), self.lobby)
 
     @property
     def catalogue(self) -> CatalogueClient:
         """The client that tells of recorded episodes."""
-        return CatalogueClient(self.pools.bus(ServiceKind.CATALOGUE), self.lobby.services)
+        return CatalogueClient(self.pools.bus(ServiceKind.CATALOGUE), self.lobby)
 
     @property
     def trainer(self) -> TrainerClient:
         """The client through which policies are trained and promoted."""
-        return TrainerClient(self.pools.bus(ServiceKind.TRAINER), self.lobby.services)
+        return TrainerClient(self.pools.bus(ServiceKind.TRAINER), self.lobby)

@@ -22,7 +22,7 @@ class CatalogueClient(ServiceClient):
         """Return the catalogue's answer; raises Unavailable where none runs, and what the catalogue reports."""
         return await ask_async(
             self._bus,
-            keys.catalogue(self._running_id()),
+            keys.catalogue(await self._running_id()),
             request,
             CatalogueReply,
             timeout_s=_TIMEOUT_S,

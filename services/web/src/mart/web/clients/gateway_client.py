@@ -11,7 +11,8 @@ from mart.protocol.tokens import SeatToken
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.ask import ask_async
 from mart.runtime.bus.aio import AsyncBus
-from mart.web.lobby.live_services import LiveServices
+from mart.web.clients.running_services import running_ids
+from mart.web.lobby.lobby import Lobby
 
 _OPEN_TIMEOUT_S = 20.0  # a gateway may have to fetch and load the room's model first
 _OFFER_TIMEOUT_S = 10.0
@@ -25,8 +26,8 @@ _MAX_SCENE_REPLY_BYTES = 16 * 1024 * 1024
 class GatewayClient:
     """Requests to the gateways."""
 
-    def __init__(self, bus: AsyncBus, services: LiveServices) -> None:
-        self._bus, self._services = bus, services
+    def __init__(self, bus: AsyncBus, lobby: Lobby) -> None:
+        self._bus, self._lobby = bus, lobby
 
     async def answer_offer(self, seat: SeatToken, token: str, sdp: str) -> str:
         """Return the SDP of the answer to the offer `sdp`, which `token`, saying `seat`, came with.
@@ -43,7 +44,7 @@ class GatewayClient:
 
         Raises Unavailable where no gateway runs, and whatever the gateway reports.
         """
-        gateway = gateway_of(self._services.ids(ServiceKind.GATEWAY), _CHECKED, _CHECKED)
+        gateway = await self._gateway(_CHECKED, _CHECKED)
         topic = keys.connection_check(gateway)
         return (await ask_async(self._bus, topic, Offer(sdp=sdp), Answer, timeout_s=_OFFER_TIMEOUT_S)).sdp
 
@@ -62,6 +63,9 @@ class GatewayClient:
 
     async def _open(self, room: str, arm: str, seat_epoch: int) -> None:
         """Return when the seat's process is there, for the holder of this epoch or a later one."""
-        gateway = gateway_of(self._services.ids(ServiceKind.GATEWAY), room, arm)
+        gateway = await self._gateway(room, arm)
         opening = OpenSeat(room=room, arm=arm, seat_epoch=seat_epoch)
         await ask_async(self._bus, keys.open_seat(gateway), opening, OpenSeatReply, timeout_s=_OPEN_TIMEOUT_S)
+
+    async def _gateway(self, room: str, arm: str) -> str:
+        return gateway_of(await running_ids(self._lobby, ServiceKind.GATEWAY), room, arm)

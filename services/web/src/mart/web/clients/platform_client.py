@@ -26,6 +26,6 @@ class PlatformClient(ServiceClient):
         return await self._ask(RoomsRequest(close=RoomsRequest.Close(room=room, with_people=with_people)))
 
     async def _ask(self, request: RoomsRequest) -> str:
-        topic = keys.rooms(self._running_id())
+        topic = keys.rooms(await self._running_id())
         reply = await ask_async(self._bus, topic, request, RoomReply, timeout_s=_TIMEOUT_S)
         return reply.status.room

@@ -7,7 +7,8 @@ from typing import ClassVar
 from mart.protocol.errors import Unavailable
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
-from mart.web.lobby.live_services import LiveServices
+from mart.web.clients.running_services import running_ids
+from mart.web.lobby.lobby import Lobby
 
 
 class ServiceClient:
@@ -16,16 +17,16 @@ class ServiceClient:
     kind: ClassVar[ServiceKind]
     absence: ClassVar[str]  # one sentence for where none runs
 
-    def __init__(self, bus: AsyncBus, services: LiveServices) -> None:
-        self._bus, self._services = bus, services
+    def __init__(self, bus: AsyncBus, lobby: Lobby) -> None:
+        self._bus, self._lobby = bus, lobby
 
     @property
     def is_running(self) -> bool:
         """Whether a service of this kind is alive."""
-        return bool(self._services.ids(self.kind))
+        return bool(self._lobby.services.ids(self.kind))
 
-    def _running_id(self) -> str:
-        running = self._services.ids(self.kind)
+    async def _running_id(self) -> str:
+        running = await running_ids(self._lobby, self.kind)
         if not running:
             raise Unavailable(self.absence)
         return running[0]

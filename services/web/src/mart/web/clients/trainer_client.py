@@ -22,7 +22,7 @@ class TrainerClient(ServiceClient):
         """Return the trainer's answer; raises Unavailable where none runs, and what the trainer reports."""
         return await ask_async(
             self._bus,
-            keys.training(self._running_id()),
+            keys.training(await self._running_id()),
             request,
             TrainerReply,
             timeout_s=_TIMEOUT_S,

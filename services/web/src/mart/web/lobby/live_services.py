@@ -17,11 +17,13 @@ class LiveServices:
     def __init__(self) -> None:
         self._alive: set[str] = set()
         self._doubted: set[str] = set()
+        self._seen: set[str] = set()  # kinds
 
     def tell(self, key: str, alive: bool) -> None:
         """Take in that the service of the liveliness key `key` came or went."""
         (self._alive.add if alive else self._alive.discard)(key)
         self._doubted.discard(key)
+        self._seen.add(service_of(key)[0])
 
     def compare(self, keys: Iterable[str]) -> dict[str, bool]:
         """Return what was never told: each liveliness key that came (True) or went (False), as `keys` has it.
@@ -38,6 +40,10 @@ class LiveServices:
     def ids(self, kind: ServiceKind) -> list[str]:
         """Return the ids of the services of `kind` that are alive, sorted."""
         return self.by_kind().get(kind, [])
+
+    def were_seen(self, kind: ServiceKind) -> bool:
+        """Return whether a service of `kind` was ever alive."""
+        return kind in self._seen
 
     def by_kind(self) -> dict[str, list[str]]:
         """Return the sorted ids of the services that are alive under each kind that has any."""
