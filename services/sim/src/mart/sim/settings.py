@@ -34,6 +34,9 @@ class SimSettings(_WorldSettings):
     )
     arms: int | None = Field(None, ge=1, description="How many arms; default: the task's own number.")
     arm_kinds: dict[str, str] = Field({}, description="By arm: its kind, where it is no Panda.")
+    drivers: tuple[str, ...] = Field(
+        (), description="Arms that `mart driver` processes drive; others are simulated."
+    )
     pace: float = Field(1.0, gt=0.0, le=1.0, description="Real-time factor that the world may reach at most.")
     seed: int | None = Field(None, ge=0, description="The room's seed; default: drawn once and kept.")
     time_limit_s: float | None = Field(
