@@ -41,8 +41,8 @@ from mart.sim.room.work_queue import WorkQueue
 from mart.sim.settings import SimSettings
 from mart.sim.world import World
 from mart.sim.world.divergence import DivergenceArchive
-from mart.sim.world.reach import require_reach
 from mart.sim.world.driven_world import DrivenWorld
+from mart.sim.world.reach import require_reach
 
 _log = logging.getLogger(__name__)
 
