@@ -88,16 +88,36 @@ class Platform:
 Body = Callable[[Platform, AsyncBus], Awaitable[None]]
 
 
-@pytest.fixture
-def platform(tmp_path: Path) -> Iterator[Platform]:
+@contextlib.contextmanager
+def running_platform(data_dir: Path) -> Iterator[Platform]:
     with (
         running_router() as endpoint,
         running_service(
-            ["sim", "--room", ROOM, "--control-hz", "20"], endpoint, tmp_path, kind="sim", id=ROOM
+            ["sim", "--room", ROOM, "--control-hz", "20"], endpoint, data_dir, kind="sim", id=ROOM
         ),
-        running_service(["gateway"], endpoint, tmp_path, kind="gateway", id="gateway-1") as gateway,
+        running_service(["gateway"], endpoint, data_dir, kind="gateway", id="gateway-1") as gateway,
     ):
-        yield Platform(endpoint, gateway, tmp_path)
+        yield Platform(endpoint, gateway, data_dir)
+
+
+@pytest.fixture(scope="module")
+def shared_platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
+    with running_platform(tmp_path_factory.mktemp("platform")) as running:
+        yield running
+
+
+@pytest.fixture
+def platform(shared_platform: Platform) -> Iterator[Platform]:
+    """Whose seat is free again after the test."""
+    yield shared_platform
+    on_platform(shared_platform, lambda platform, bus: platform.release(bus))
+
+
+@pytest.fixture
+def own_platform(tmp_path: Path) -> Iterator[Platform]:
+    """For a gateway that does not survive the test."""
+    with running_platform(tmp_path) as running:
+        yield running
 
 
 def on_platform(platform: Platform, body: Body) -> None:
@@ -208,7 +228,7 @@ def test_a_killed_seat_is_told_and_comes_back_and_the_phone_goes_on(platform: Pl
     on_platform(platform, body)
 
 
-def test_processes_end_with_the_seat_and_with_the_gateway(platform: Platform) -> None:
+def test_processes_end_with_the_seat_and_with_the_gateway(own_platform: Platform) -> None:
     async def body(platform: Platform, bus: AsyncBus) -> None:
         gone = asyncio.Event()
         seen: list[bool] = []
@@ -224,14 +244,14 @@ def test_processes_end_with_the_seat_and_with_the_gateway(platform: Platform) ->
             await platform.release(bus)
             await asyncio.wait_for(gone.wait(), 30)
 
-    on_platform(platform, body)
-    pids = children(platform.gateway.process.pid)
+    on_platform(own_platform, body)
+    pids = children(own_platform.gateway.process.pid)
     assert pids
-    platform.gateway.terminate()
+    own_platform.gateway.terminate()
     assert not any(Path(f"/proc/{pid}").exists() for pid in pids)
 
 
-def test_seat_processes_do_not_outlive_a_killed_gateway(platform: Platform) -> None:
+def test_seat_processes_do_not_outlive_a_killed_gateway(own_platform: Platform) -> None:
     async def body(platform: Platform, bus: AsyncBus) -> None:
         ended = asyncio.Event()
         await platform.claim(bus)
@@ -245,4 +265,4 @@ def test_seat_processes_do_not_outlive_a_killed_gateway(platform: Platform) -> N
             platform.gateway.kill()
             await asyncio.wait_for(ended.wait(), 30)
 
-    on_platform(platform, body)
+    on_platform(own_platform, body)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page
 
-from tests.browser.pages.visits import listen, window
+from tests.browser.pages.visits import has_joined, listen, window
 
 
 @contextlib.contextmanager
@@ -18,10 +18,7 @@ def joined(
     with window(browser, size, scheme) as context:
         looked_at = context.new_page()
         noise: list[str] = []
-        looked_at.goto(f"{url}#code={join_code}")
-        looked_at.get_by_label("Your name").fill("Ana")
-        looked_at.get_by_role("button", name="Join and choose a seat").click()
-        expect(looked_at.locator("#me")).to_contain_text("Ana")
+        has_joined(context, url, join_code, "Ana")
         listen(looked_at, noise)
         looked_at.goto(f"{url}{page}")
         yield looked_at

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from urllib.parse import urlsplit
 
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect
 
@@ -53,6 +55,15 @@ class Visit:
         self.join(name, "Try it")
         expect(self.page.locator("#picture.live")).to_be_visible()
 
+    def sit(self, name: str) -> None:
+        """The same, without the way through the lobby."""
+        has_joined(self.context, self.platform.url, self.platform.join_code, name)
+        seat = f"{self.platform.url}api/rooms/room-1/seats/arm0"
+        taken = self.context.request.post(seat, data={"operator": "human"}, headers=origin(seat))
+        assert taken.ok, taken.text()
+        self.page.goto(f"{self.platform.url}rooms/room-1/arms/arm0")
+        expect(self.page.locator("#picture.live")).to_be_visible()
+
     def is_fine(self, what: str) -> None:
         is_legible(self.page, what)
         assert self.noise == [], self.noise
@@ -61,6 +72,19 @@ class Visit:
         """At every size and by light and dark; the page then is as it was."""
         for name in seen_in(self.page, looks, what):
             self.is_fine(name)
+
+
+def has_joined(context: BrowserContext, url: str, join_code: str, name: str) -> None:
+    """Somebody has joined the site at `url` in this window, as if by the lobby."""
+    who = {"code": join_code, "name": name}
+    answer = context.request.post(f"{url}api/join", data=who, headers=origin(url))
+    assert answer.ok, answer.text()
+    context.add_init_script(f"if (location.host) localStorage.setItem('mart.name', {json.dumps(name)})")
+
+
+def origin(url: str) -> dict[str, str]:
+    """What a page of this site sends along."""
+    return {"Origin": "{0.scheme}://{0.netloc}".format(urlsplit(url))}
 
 
 def is_legible(page: Page, what: str) -> None:
@@ -129,8 +153,8 @@ def listen(page: Page, noise: list[str]) -> None:
 
 @contextlib.contextmanager
 def driving(visit: Visit, name: str = "Ana") -> Iterator[Page]:
-    """Tries it, and leaves the seat whatever happens."""
-    visit.try_it(name)
+    """Drives arm0, and leaves the seat whatever happens."""
+    visit.sit(name)
     try:
         yield visit.page
     finally:
