@@ -36,12 +36,13 @@ def rights() -> SpeechRights:
 
 
 def test_a_host_who_hosts_no_more_is_heard_until_the_token_ends_and_no_longer(rights: SpeechRights) -> None:
-    hanna = Speaking().peer()
-    assert rights.may_speak(hanna, NOW_S + 19)
-    assert not rights.may_speak(hanna, NOW_S + 21)
-    rights.renew(hanna, sign(replace(HANNA, expires_s=NOW_S + 40), SECRET))
-    assert rights.may_speak(hanna, NOW_S + 21)
-    assert not rights.may_speak(hanna, NOW_S + 41)
+    now_s = clock.wall_ns() * 1e-9
+    hanna = Speaking(speaks_until_s=now_s + 20).peer()
+    assert rights.may_speak(hanna, now_s + 19)
+    assert not rights.may_speak(hanna, now_s + 21)
+    rights.renew(hanna, sign(replace(HANNA, expires_s=now_s + 40), SECRET))
+    assert rights.may_speak(hanna, now_s + 21)
+    assert not rights.may_speak(hanna, now_s + 41)
 
 
 def test_who_drives_speaks_as_long_as_the_seat_is_theirs_and_a_spectator_never(rights: SpeechRights) -> None:

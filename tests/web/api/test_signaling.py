@@ -80,6 +80,7 @@ async def test_the_holder_and_a_host_may_speak_and_another_guest_only_hears(
 ) -> None:
     ana, ben, hanna = await seated(enter), await enter("Ben"), await enter("Hanna")
     assert (await hanna.post("/api/host", json={"code": HOST_CODE})).status_code == 200
+    told = dict[str, str]()
     for person, speaks_as in ((ana, "Ana"), (ben, ""), (hanna, "Hanna")):
         told = (await person.get(f"{SEAT}/token")).json()
         assert verify(told["token"], app_state.secret).speaks_as == speaks_as

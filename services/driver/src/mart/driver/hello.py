@@ -12,7 +12,8 @@ from mart.driver.kinematics import ArmKinematics
 from mart.protocol import codec, keys
 from mart.protocol.errors import Corrupt, InvalidInput
 from mart.protocol.messages import DriverHello, DriverReply, Model
-from mart.protocol.tasks import Workspace, get_task
+from mart.protocol.room_task import task_of_model
+from mart.protocol.tasks import Workspace
 from mart.protocol.wire_version import DRIVER_WIRE_VERSION
 from mart.runtime.ask import ask
 from mart.runtime.bus import Bus
@@ -55,8 +56,7 @@ def say_hello(bus: Bus, room: str, arm: str, driver: Driver, instance: str) -> S
         servo_hz=driver.rate_hz,
     )
     reply = ask(bus, keys.driver(room), hello, DriverReply, _TIMEOUT_S)
-    task = get_task(model.task, len(model.arms))
-    return Session(reply.session, reply.boot, kinematics, task.workspace)
+    return Session(reply.session, reply.boot, kinematics, task_of_model(model).arm(arm).kind.workspace)
 
 
 def _compiled(model: Model, room: str) -> mujoco.MjModel:

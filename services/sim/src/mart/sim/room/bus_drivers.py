@@ -11,8 +11,6 @@ from mart.runtime.bus.base import Publisher
 from mart.sim.room.driven_arms import ArmFacts, DrivenArms
 from mart.sim.world import World
 
-_KIND = "panda"
-
 
 class BusDrivers(DrivenArms):
     """Keep the drivers of `arms`, and publish what they are told once a bus is there.
@@ -45,4 +43,4 @@ class BusDrivers(DrivenArms):
 def _facts(world: World, arm: str) -> ArmFacts:
     names = (world.model.joint(index).name for index in range(world.model.njnt))
     joints = sum(name.startswith(f"{arm}/joint") for name in names)
-    return ArmFacts(_KIND, joints, world.model_sha256)
+    return ArmFacts(world.task.arm(arm).kind.name, joints, world.model_sha256)

@@ -99,7 +99,7 @@ class DrivenWorld(World):
 
     def _target(self, arm: str, action: Array) -> tuple[Pose, float]:
         """Return the absolute target that an action asks for; the action counts from the measured pose."""
-        measured, limits = self.tool_pose_in_base(arm), self.task.limits
+        measured, limits = self.tool_pose_in_base(arm), self.task.arm(arm).kind.limits
         step = np.clip(action, -1.0, 1.0)
         target = Pose(
             measured.position + step[:3] * limits.step_m,
