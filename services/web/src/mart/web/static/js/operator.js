@@ -90,7 +90,7 @@ begin();
 function begin() {
   showSeatTitle(roomName, own.arm);
   byId("edge").prepend(voice.node);
-  for (const command of /** @type {const} */ (["gripper", "leave", "other"])) {
+  for (const command of /** @type {const} */ (["gripper", "leave", "other", "camera"])) {
     byId(command).addEventListener("click", () => run(command));
   }
   onDeviceButtons({
@@ -239,6 +239,7 @@ const ACTIONS = {
   keep: () => keepDiscarded(room),
   take: () => api.takeSeat(roomName, own.arm),
   other: takeOther,
+  camera: () => picture.showNextView(room),
   back: () => api.handBack(roomName, own.arm),
   course: () => leaveFor(coursePath(course)),
   leave: () => leaveFor("/"),
