@@ -83,7 +83,7 @@ const stop = emergencyStop({
   onStop: () => run("stop"),
   onLetGo: () => run("goOn"),
 });
-const cues = new Cues(own, (message) => link.send(message), showNotice, () => render());
+const cues = new Cues(own, (message) => link.sendPress(message), showNotice, () => render());
 
 begin();
 
@@ -96,7 +96,7 @@ function begin() {
   onDeviceButtons({
     spaceMouse: () => attempt(() => input.askForDevice()),
     hold: () => input.toggleHold(),
-    other: () => link.send({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" }),
+    other: () => link.sendPress({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" }),
   });
   byId("emergency").append(stop.node);
   byId("health").addEventListener("toggle", () => render());

@@ -1,6 +1,6 @@
 // A second look at the scene, small in the picture: drawn where the page draws, else another seat's small pictures.
 
-import { theArm } from "../arms.js";
+import { armName } from "../arms.js";
 import { byId, setShown, setText } from "../dom.js";
 import { INSET } from "../scene/inset.js";
 import { seatStillOf } from "../api.js";
@@ -54,7 +54,7 @@ export class SecondView {
     setShown(byId("second"), this.#shown !== "");
     setShown(byId("second-still"), !isDrawn);
     if (!this.#shown) return;
-    setText(byId("second-caption"), this.#shown === OVERVIEW ? "Overview" : `From ${theArm(this.#shown)}`);
+    setText(byId("second-caption"), this.#shown === OVERVIEW ? "Overview" : armName(this.#shown));
     const number = isDrawn ? 0 : (room?.stills[this.#shown] ?? 0);
     const still = byId("second-still", HTMLImageElement);
     const isNew = number !== this.#still || still.dataset.arm !== this.#shown;
