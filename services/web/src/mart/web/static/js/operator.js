@@ -253,6 +253,7 @@ async function takeOther() {
 
 /** @param {string} path */
 async function leaveFor(path) {
+  await headset.end();
   if (ownSeat()?.mine) await api.leaveSeat(roomName, own.arm);
   location.assign(path);
 }
