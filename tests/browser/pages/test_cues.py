@@ -10,6 +10,7 @@ from mart.episodes.reader import EpisodeFile
 from mart.platform.run.running import Platform
 from mart.protocol import codec
 from mart.protocol.messages import CUE_GO, CUE_WAIT, Event
+from tests.browser.pages.conftest import Run
 from tests.browser.pages.visits import Visit, driving, seen_in, visit
 
 
@@ -48,10 +49,41 @@ def test_a_partner_sees_what_is_said_and_for_how_long(browser: Browser, platform
             page.keyboard.press("2")
             expect(chip).to_contain_text("Go")
             ana.is_fine(what)
+        anas.keyboard.press("c")
+        expect(anas.locator("#second-still")).to_have_js_property("naturalWidth", 384)
+        for what in seen_in(anas, LOOKS, "operator-second-view"):
+            ana.is_fine(what)
         expect(chip).not_to_contain_text("Go")
         expect(page.get_by_role("button", name="Go", exact=True)).not_to_have_class("said")
         leaves(page)
         expect(anas.get_by_role("button", name="Wait")).to_be_hidden()
+
+
+GIVEN = """({ GivenCues }, what) => {
+  const [told, sent, timers] = [[], [], []];
+  const real = window.setTimeout;
+  window.setTimeout = (callback) => timers.push(callback);
+  const given = new GivenCues((message) => sent.push(message), (why) => told.push(why));
+  given.give("wait");
+  window.setTimeout = real;
+  if (what === "heard") given.onHeard("wait");
+  const refused = { type: "cue_refused", cue: "wait", t_us: sent[0].t_us };
+  if (what === "refused") [1, 2, 3].forEach(() => given.onRefused(refused));
+  timers.forEach((callback) => callback());
+  return told;
+}"""
+
+
+@pytest.mark.parametrize(
+    ("what", "told"),
+    [
+        ("lost", ["No answer to “Wait”: perhaps nobody heard it. Press it again."]),
+        ("heard", []),
+        ("refused", ["“Wait” was not said: two words a second at most."]),
+    ],
+)
+def test_a_word_that_nobody_heard_is_told_to_who_gave_it(run: Run, what: str, told: list[str]) -> None:
+    assert run("cues.js", GIVEN, what) == told
 
 
 def test_a_script_waits_for_who_says_so_until_told_to_go(browser: Browser, platform: Platform) -> None:

@@ -276,7 +276,7 @@ SWITCHES = """({ SwitchedSeat }, steps) => {
     ("steps", "went"),
     [
         ([("arm0", 0), ("arm0 arm1", 100), ("arm1", 200)], "arm1"),
-        ([("arm0", 0), ("arm1", 200)], ""),  # never both: they did not come from here
+        ([("arm0", 0), ("arm1", 200)], "arm1"),  # rooms are told ten times a second
         ([("arm0", 0), ("arm0 arm1", 100), ("arm1", 9000)], ""),  # they have had both for long
         ([("arm0 arm1", 0), ("arm1", 100)], ""),  # both from the beginning: two pages of one person
         ([("arm0", 0), ("arm0 arm1", 100), ("", 200)], ""),

@@ -20,9 +20,9 @@ def test_the_newest_word_of_each_arm_is_told_until_it_is_old() -> None:
     assert cues.take(said("arm0", CUE_WAIT, 1), ROOM, 0.0)
     assert cues.take(said("arm0", CUE_GO, 2), ROOM, 1.0)
     assert cues.take(said("arm1", CUE_WAIT, 3), ROOM, 2.0)
-    assert cues.now(2.0) == [SaidCue("arm0", "Ana", "go", 2), SaidCue("arm1", "", "wait", 3)]
-    assert [one.arm for one in cues.now(1.0 + SHOWN_S)] == ["arm1"]
-    assert cues.now(2.0 + SHOWN_S) == []
+    assert cues.shown(2.0) == [SaidCue("arm0", "Ana", "go", 2), SaidCue("arm1", "", "wait", 3)]
+    assert [one.arm for one in cues.shown(1.0 + SHOWN_S)] == ["arm1"]
+    assert cues.shown(2.0 + SHOWN_S) == []
 
 
 def test_what_is_no_word_of_anybody_here_is_left_out() -> None:
@@ -30,4 +30,4 @@ def test_what_is_no_word_of_anybody_here_is_left_out() -> None:
     assert not cues.take(Event(), ROOM, 0.0)
     assert not cues.take(said("arm7", CUE_GO), ROOM, 0.0)
     assert not cues.take(said("arm0", 99), ROOM, 0.0)
-    assert cues.now(0.0) == []
+    assert cues.shown(0.0) == []

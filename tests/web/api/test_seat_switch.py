@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from mart.protocol.messages import (
@@ -19,7 +21,7 @@ pytestmark = pytest.mark.anyio
 SEATS = "/api/rooms/room-1/seats"
 
 
-async def switched(person: Client, arm: str) -> tuple[int, dict[str, str]]:
+async def switched(person: Client, arm: str) -> tuple[int, dict[str, Any]]:
     answer = await person.post(f"{SEATS}/{arm}/switch")
     told = answer.json()
     return answer.status_code, told.get("seat") or told["error"]

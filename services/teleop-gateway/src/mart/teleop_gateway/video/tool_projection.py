@@ -28,7 +28,7 @@ class ToolProjection:
     """Project the tools of a task's arms into the picture of one camera that stands still."""
 
     def __init__(self, camera: Pose, fov_y_rad: float, bases_in_world: Mapping[str, Pose]) -> None:
-        """`camera`, `bases_in_world`: poses in the world; `fov_y_rad`: the picture's height as an angle."""
+        """Take where the camera and the arms' bases are in the world, and the picture's height as an angle."""
         self._focal = 0.5 / math.tan(0.5 * fov_y_rad)  # in heights of the picture
         world_in_camera = camera.inverse()
         self._bases = {arm: _rows(world_in_camera @ base) for arm, base in bases_in_world.items()}

@@ -37,7 +37,7 @@ class SaidCues:
         self._said[given.arm] = (said, now_s + SHOWN_S)
         return True
 
-    def now(self, now_s: float) -> list[SaidCue]:
+    def shown(self, now_s: float) -> list[SaidCue]:
         """Return what is still to be shown, one word an arm."""
         self._said = {arm: told for arm, told in self._said.items() if now_s < told[1]}
         return [said for said, _ in self._said.values()]

@@ -82,7 +82,7 @@ class StatusBroadcaster:
         )
 
     def _tell_cues(self, now_s: float) -> None:
-        if said := self._cues.now(now_s):
+        if said := self._cues.shown(now_s):
             self._peers.tell_phones(status_channel.cues(said))
 
     def _worth_telling(self, driving: Driving, now_s: float) -> tuple[object, ...]:

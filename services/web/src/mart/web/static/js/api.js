@@ -127,6 +127,10 @@ export const seatPath = (room, arm) => `${roomPath(room)}/seats/${encoded(arm)}`
 export const takeSeat = (room, arm, operator = "human", policy = "") =>
   request("POST", seatPath(room, arm), { operator, policy });
 
+/** The address of a seat's newest small picture. @type {(room: string, arm: string, number: number) => string} */
+export const seatStillOf = (room, arm, number) =>
+  `/api/rooms/${encoded(room)}/seats/${encoded(arm)}/still?number=${number}`;
+
 /** Leaves one's own seat. @type {(room: string, arm: string) => SeatAnswer} */
 export const leaveSeat = (room, arm) => request("DELETE", seatPath(room, arm));
 

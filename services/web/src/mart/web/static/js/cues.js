@@ -13,7 +13,6 @@ const WORDS = {
   come_closer: "Come closer",
 };
 
-const SENT_AT_MS = [0, 80, 160]; // the channel may lose a message; the gateway counts a press once
 const HEARD_WITHIN_MS = 2000;
 
 /** Gives words to the partners, and tells of each that nobody may have heard. */
@@ -24,7 +23,7 @@ export class GivenCues {
   #open = new Map();
 
   /**
-   * @param {(message: StatusChannel.ToGateway) => void} send
+   * @param {(message: StatusChannel.ToGateway) => void} send which counts a press once
    * @param {(why: string) => void} onUnsaid
    */
   constructor(send, onUnsaid) {
@@ -35,8 +34,7 @@ export class GivenCues {
   /** Tells the gateway of one press. @param {Messages.Cue} cue */
   give(cue) {
     const pressUs = nowUs();
-    const message = /** @type {const} */ ({ type: "cue", cue, t_us: pressUs });
-    for (const afterMs of SENT_AT_MS) setTimeout(() => this.#send(message), afterMs);
+    this.#send({ type: "cue", cue, t_us: pressUs });
     const unheard = `No answer to “${cueText(cue)}”: perhaps nobody heard it. Press it again.`;
     this.#open.set(pressUs, { cue, timer: setTimeout(() => this.#end(pressUs, unheard), HEARD_WITHIN_MS) });
   }

@@ -83,20 +83,20 @@ const stop = emergencyStop({
   onStop: () => run("stop"),
   onLetGo: () => run("goOn"),
 });
-const cues = new Cues(own, (message) => link.send(message), showNotice, () => render());
+const cues = new Cues(own, (message) => link.sendPress(message), showNotice, () => render());
 
 begin();
 
 function begin() {
   showSeatTitle(roomName, own.arm);
   byId("edge").prepend(voice.node);
-  for (const command of /** @type {const} */ (["gripper", "leave", "other"])) {
+  for (const command of /** @type {const} */ (["gripper", "leave", "other", "camera"])) {
     byId(command).addEventListener("click", () => run(command));
   }
   onDeviceButtons({
     spaceMouse: () => attempt(() => input.askForDevice()),
     hold: () => input.toggleHold(),
-    other: () => link.send({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" }),
+    other: () => link.sendPress({ type: "input", input: status?.input === "phone" ? "keyboard" : "phone" }),
   });
   byId("emergency").append(stop.node);
   byId("health").addEventListener("toggle", () => render());
@@ -239,6 +239,7 @@ const ACTIONS = {
   keep: () => keepDiscarded(room),
   take: () => api.takeSeat(roomName, own.arm),
   other: takeOther,
+  camera: () => picture.showNextView(room),
   back: () => api.handBack(roomName, own.arm),
   course: () => leaveFor(coursePath(course)),
   leave: () => leaveFor("/"),
@@ -252,6 +253,7 @@ async function takeOther() {
 
 /** @param {string} path */
 async function leaveFor(path) {
+  await headset.end();
   if (ownSeat()?.mine) await api.leaveSeat(roomName, own.arm);
   location.assign(path);
 }

@@ -40,7 +40,7 @@ const episode = new EpisodeButton(byId("episode"), (action) =>
 
 /** @type {SeatLink | null} */
 let seatLink = null;
-const cues = new PhoneCues((message) => seatLink?.send(message), {
+const cues = new PhoneCues((message) => seatLink?.sendPress(message), {
   onOpen: () => clutch.release(), // the sheet covers what moves the arm
   onSay: () => vibrate("step"),
   onHear: () => vibrate("word"),

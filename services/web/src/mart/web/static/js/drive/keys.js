@@ -7,8 +7,10 @@ import { CUES } from "../facts.js";
 /** @typedef {"success" | "failure" | "discard"} Ending */
 
 /**
- * What a key asks for that is no motion; a cue is said, the others are done. other: to switch to another arm.
- * @typedef {"next" | "back" | "leave" | "gripper" | "stop" | "help" | "other" | Ending | Messages.Cue} Command
+ * What a key asks for that is no motion; a cue is said, the others are done. other: to switch to another arm; camera: a
+ * second view.
+ * @typedef {"next" | "back" | "leave" | "gripper" | "stop" | "help" | "other" | "camera"} Order
+ * @typedef {Order | Ending | Messages.Cue} Command
  */
 
 /** @typedef {{ kind: "move" | "turn", axis: 0 | 1 | 2, sign: 1 | -1 }} Motion */
@@ -41,6 +43,7 @@ const COMMANDS = {
   KeyK: "gripper",
   KeyP: "stop",
   KeyT: "other",
+  KeyC: "camera",
   Slash: "help",
   ...Object.fromEntries(CUES.map((cue, index) => [`Digit${index + 1}`, cue])),
 };

@@ -51,6 +51,9 @@ export class Headset {
   /** Which controller leads the page's own arm, where the other one leads another. @type {Side | null} */
   #side = null;
 
+  /** @type {Promise<void> | undefined} */
+  #left; // the second arm
+
   /** @param {HeadsetOptions} options */
   constructor(options) {
     this.#options = options;
@@ -74,6 +77,12 @@ export class Headset {
     setShown(byId("headset-both"), enters && this.#free !== "");
     setText(byId("headset-both"), `Enter VR with ${theArm(this.#free)} too`);
     if (this.#side) this.#second?.follow(room).catch(this.#options.onFailure);
+  }
+
+  /** Ends the session, if there is one, and returns when its second arm is left. */
+  async end() {
+    await this.#session?.end();
+    await this.#left;
   }
 
   /** Whether somebody wears it now. */
@@ -144,7 +153,7 @@ export class Headset {
   async #take(arm, view) {
     const [own, other] = [view.cameraOf(this.#options.own.arm), view.cameraOf(arm)];
     if (!own || !other) return;
-    if (this.#second?.arm !== arm) {
+    if (!this.#second?.isBeside(this.#options.own.arm, arm)) {
       const turn = turnBetween(own.quaternionWxyz, other.quaternionWxyz);
       this.#second = new SecondArm(this.#options.own, arm, turn, (...told) => this.#feel(...told));
     }
@@ -166,7 +175,7 @@ export class Headset {
     const { input, onFailure } = this.#options;
     this.#session = this.#view = null;
     this.#lose();
-    if (this.#side) this.#second?.leave().catch(onFailure);
+    if (this.#side) this.#left = this.#second?.leave().catch(onFailure);
     this.#side = null;
     setTimeout(() => {
       if (!this.#session) input.headset = null;

@@ -57,6 +57,15 @@ export class SecondArm {
     return this.#arm;
   }
 
+  /**
+   * Whether it is this arm, for whoever sits at that one.
+   * @param {string} ownArm
+   * @param {string} arm
+   */
+  isBeside(ownArm, arm) {
+    return this.#ownArm === ownArm && this.#arm === arm;
+  }
+
   /** Takes the seat, where it is not one's own yet, and begins to drive. */
   async take() {
     const { seat } = await takeSeat(this.#room, this.#arm);

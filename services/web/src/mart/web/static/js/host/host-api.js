@@ -39,7 +39,3 @@ export const requireCourse = (room, required) => request("PUT", hostPath(room, "
 
 /** Closes a room, also where people sit. @type {(room: string) => Promise<{ room: string }>} */
 export const closeWithPeople = (room) => request("DELETE", hostPath(room));
-
-/** The address of a seat's newest small picture. @type {(room: string, arm: string, number: number) => string} */
-export const seatStillOf = (room, arm, number) =>
-  `/api/rooms/${encoded(room)}/seats/${encoded(arm)}/still?number=${number}`;

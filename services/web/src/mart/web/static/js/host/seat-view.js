@@ -3,7 +3,8 @@
 import { armName, badge, hasPicture, holderName, theArm } from "../arms.js";
 import { element, setShown, setText } from "../dom.js";
 import { pressedTwice } from "../pressed-twice.js";
-import { freeSeat, seatStillOf } from "./host-api.js";
+import { seatStillOf } from "../api.js";
+import { freeSeat } from "./host-api.js";
 import { seatNow } from "./room-words.js";
 
 /** @import { Attempt } from "../api.js" */

@@ -29,6 +29,7 @@ const KEYS = [
   ["S F R", "While it records, with space let go, twice: success, failed, discard"],
   ["B", "Hand the arm back to the policy or script"],
   ["T", "Take another arm that no person drives; yours holds still, or goes back to its script"],
+  ["C", "A second view, the next one, none"],
   ["P", "Stop everything; once it is stopped, twice: go on"],
   ["Q", "With space let go, twice: leave the seat"],
   [CUES.map((_, index) => index + 1).join(" "), `To your partners, scripts too: ${CUES.map(cueText).join(", ")}`],

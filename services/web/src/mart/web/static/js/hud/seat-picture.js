@@ -9,6 +9,7 @@ import { pictureChoice } from "../scene/picture-choice.js";
 import { toldPlaces, ToolLabels } from "../scene/tool-labels.js";
 import { DisplayedTicks } from "./displayed-ticks.js";
 import { showPicture } from "./picture.js";
+import { SecondView } from "./second-view.js";
 
 /** @import { State } from "../link/seat-link.js" */
 
@@ -27,12 +28,14 @@ export class SeatPicture {
   video = byId("video", HTMLVideoElement);
   #own;
   #labels = new ToolLabels(byId("labels"));
+  #second;
   #displayed = new DisplayedTicks();
   #pictured = false; // by the present connection: its picture comes a round trip before its first word
 
   /** @param {SeatPictureOptions} options */
   constructor({ own, send, onSeen, onChange, commanded }) {
     this.#own = own;
+    this.#second = new SecondView(own);
 
     /** @type {(tick: number, nowMs: number) => void} */
     const onShown = (tick, nowMs) => {
@@ -51,7 +54,10 @@ export class SeatPicture {
       onShown,
       onChange,
       commanded,
-      onDraw: (view) => this.#labels.place(view.toolPlaces()),
+      onDraw: (view) => {
+        this.#labels.place(view.toolPlaces());
+        this.#second.onDraw(view);
+      },
     });
     this.video.addEventListener("resize", () => {
       this.#pictured = true;
@@ -94,14 +100,24 @@ export class SeatPicture {
     setShown(byId("labels"), state === LinkState.LIVE && !status?.no_picture);
   }
 
+  /** Shows another second view, or none; raises an Error where there is none. @param {Api.Room | null} room */
+  showNextView(room) {
+    const why = this.#second.next(room, this.drawn.isShown);
+    this.drawn.look();
+    if (why) throw new Error(why);
+  }
+
   /**
    * Says at the arms who drives them, and what they say; at one's own while practising alone, where nothing is to be
    * hidden by it.
    * @param {Api.Room} room
    * @param {(arm: string) => string} wordsOf
    */
-  tell({ seats, episode }, wordsOf) {
-    const arms = seats.map((seat) => ({ arm: seat.arm, name: holderName(seat), words: wordsOf(seat.arm) }));
+  tell(room, wordsOf) {
+    const { seats, episode } = room;
+    this.#second.update(room, this.drawn.isShown);
+    const driven = seats.filter(({ operator }) => operator !== "hold");
+    const arms = driven.map((seat) => ({ arm: seat.arm, name: holderName(seat), words: wordsOf(seat.arm) }));
     const isNamed = episode.phase === "practice" || episode.phase === "countdown";
     this.#labels.tell(arms.filter(({ arm, words }) => isNamed || arm !== this.#own.arm || words !== ""));
   }

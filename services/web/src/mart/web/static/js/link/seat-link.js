@@ -39,7 +39,7 @@ export const LinkState = Object.freeze({
  * @property {(told: StatusChannel.Voices) => void} onVoices
  */
 
-const TOKEN_AT_MS = [0, 80, 160]; // the channel may lose a message
+const PRESS_AT_MS = [0, 80, 160];
 const NO_VOICE = "You do not host any more, so nobody hears you. Give the host code again to speak.";
 
 /**
@@ -111,6 +111,14 @@ export class SeatLink {
   }
 
   /**
+   * Sends what is said once, three times: the channel may lose a message, and the gateway does the same of it once.
+   * @param {StatusChannel.ToGateway} message
+   */
+  sendPress(message) {
+    for (const afterMs of PRESS_AT_MS) setTimeout(() => this.send(message), afterMs);
+  }
+
+  /**
    * Sends a phone frame, which may be lost.
    * @param {ArrayBuffer} frame
    */
@@ -130,7 +138,7 @@ export class SeatLink {
     if (this.role !== "viewer" || !this.#renew) return;
     const { token, speaks_as: speaksAs } = await this.#renew();
     if (!speaksAs) throw new Error(NO_VOICE);
-    for (const afterMs of TOKEN_AT_MS) setTimeout(() => this.send({ type: "token", token }), afterMs);
+    this.sendPress({ type: "token", token });
   }
 
   /** Lets the room hear a microphone, or nothing. @param {MediaStreamTrack | null} track */

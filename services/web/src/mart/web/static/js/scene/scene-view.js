@@ -8,6 +8,7 @@ import {
   WebGLRenderer,
 } from "../../vendor/three.mjs";
 import { inWorld } from "./commanded-tool.js";
+import { INSET } from "./inset.js";
 import { place, SceneObjects } from "./scene-objects.js";
 
 /** @import { Place } from "../headset/stand.js" */
@@ -20,9 +21,14 @@ const ASPECT = 4 / 3;
 
 ColorManagement.enabled = false; // MuJoCo computes in gamma space throughout
 
-/** A scene in one canvas. `camera` may be moved by whoever has it. */
+/**
+ * A scene in one canvas. `camera` may be moved by whoever has it; `inset`: which camera of the scene is looked through
+ * in a part of the picture, too; empty: none.
+ */
 export class SceneView {
   camera;
+  inset = "";
+  #second = new PerspectiveCamera();
   #renderer;
   #objects;
 
@@ -86,6 +92,11 @@ export class SceneView {
     const [x = 0, y = 0, z = 0] = found.position_m;
     const [qw = 1, qx = 0, qy = 0, qz = 0] = found.quaternion;
     return { position: [x, y, z], quaternionWxyz: [qw, qx, qy, qz] };
+  }
+
+  /** What the scene's cameras are called. */
+  get cameraNames() {
+    return this.#objects.cameras.map(({ name }) => name);
   }
 
   /** Where the camera stands, metres. @returns {Point} */
@@ -162,6 +173,25 @@ export class SceneView {
   draw(eyes = this.camera) {
     this.camera.getWorldDirection(this.#objects.materials.headlightDirection);
     this.#renderer.render(this.#objects.root, eyes);
+    if (this.inset && eyes === this.camera) this.#drawInset();
+  }
+
+  #drawInset() {
+    const found = this.#objects.cameras.find(({ name }) => name === this.inset);
+    if (!found) return;
+    place(this.#second, found);
+    const { near, far } = this.camera;
+    Object.assign(this.#second, { fov: found.fov_y_deg, aspect: ASPECT, near, far });
+    this.#second.updateProjectionMatrix();
+    const { width, height } = this.#renderer.domElement;
+    const [left, bottom] = [INSET.left * width, (1 - INSET.top - INSET.size) * height];
+    const part = /** @type {const} */ ([left, bottom, INSET.size * width, INSET.size * height]);
+    this.#renderer.setScissorTest(true);
+    this.#renderer.setScissor(...part);
+    this.#renderer.setViewport(...part);
+    this.#renderer.render(this.#objects.root, this.#second);
+    this.#renderer.setScissorTest(false);
+    this.#renderer.setViewport(0, 0, width, height);
   }
 
   /** Gives back what this holds of the graphics card. */
