@@ -27,6 +27,7 @@ from mart.protocol.messages import Numerics
 from mart.protocol.record import ControlHz, Count, Number, Record, Seed, Tick, UnixNs
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 
+WORLD_OF_DRIVERS = "drivers"
 PROFILE = "mart"
 SUFFIX = ".mcap"
 PART_SUFFIX = ".mcap.part"  # until the episode is complete, checked and synced
@@ -75,6 +76,8 @@ class EpisodeRecord(Record):
     control_hz: ControlHz | None = None
     arms: Names
     arm_kinds: Names = ()  # one for each arm; none: all are Pandas
+    world: str | None = None  # "drivers" where arms in it are real
+    measured_arms: Names | None = None  # by drivers; the others are simulated
     seed: Seed | None = None
     mode: str | None = None  # live (paced) or lockstep (as fast as the machine allowed; no video)
     skill: str | None = None  # of the scripts that drove

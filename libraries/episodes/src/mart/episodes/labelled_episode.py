@@ -42,6 +42,8 @@ class LabelledEpisode(BaseModel):
     control_hz: float | None = None
     arms: tuple[str, ...] = ()
     arm_kinds: tuple[str, ...] = ()
+    world: str | None = None
+    measured_arms: tuple[str, ...] | None = None
     outcome: str = EpisodeOutcome.UNSPECIFIED.value
     verdict: str = Verdict.UNVERIFIED.value
     verification_pending: bool = False
