@@ -24,7 +24,9 @@ class SimulatedDriver:
 
     def __init__(self, world: World, arm: str, limits: MotionLimits, seed: int) -> None:
         self.hardware = ArmHardware(HOME_RAD, seed)
-        self._follower = Follower(ArmKinematics(world.model, arm), world.task.workspace, limits, 0.0)
+        self._follower = Follower(
+            ArmKinematics(world.model, arm), world.task.arm(arm).kind.workspace, limits, 0.0
+        )
         self._now_s, self._ticks, self._control_hz = 0.0, 0, world.control_hz
 
     def follow(self, tool_in_base: Pose, gripper: float) -> None:
