@@ -15,6 +15,7 @@ from mart.protocol.arms.robot_file import ArmKind, GripperKind
 from mart.protocol.errors import InvalidInput, NotFound
 
 SUFFIX = ".toml"
+_MENAGERIE = "menagerie:"
 _SHIPPED = Path(__file__).parent
 _MAX_FILE_BYTES = 256 * 1024
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,62}")
@@ -27,9 +28,11 @@ def arms_folder() -> Path:
 
 
 def arm_kind_names() -> tuple[str, ...]:
-    """Return the kinds that there are: those that come with MART, the Panda first, then people's own."""
+    """Return the kinds that there are: those that come with MART, the Panda first, then people's own, then those of
+    MuJoCo Menagerie, which are fetched when one is built."""
     shipped = sorted(_names_in(_SHIPPED), key=lambda name: (name != "panda", name))
-    return (*shipped, *sorted(_names_in(arms_folder()) - set(shipped)))
+    fetched = sorted(f"{_MENAGERIE}{name}" for name in _names_in(_SHIPPED / "menagerie"))
+    return (*shipped, *sorted(_names_in(arms_folder()) - set(shipped)), *fetched)
 
 
 def arm_kind(name: str) -> ArmKind:
@@ -67,10 +70,15 @@ def load_robot_file(path: Path) -> ArmKind:
         raise InvalidInput(f"{path} is not TOML: {error}.") from error
     if "name" in said:
         raise InvalidInput(f"{path} says a name; a robot is called as its file is: leave the line out.")
+    name = f"{_MENAGERIE}{path.stem}" if path.parent == _SHIPPED / "menagerie" else path.stem
     try:
-        return ArmKind.model_validate({**said, "name": path.stem})
+        kind = ArmKind.model_validate({**said, "name": name})
     except ValidationError as error:
         raise InvalidInput(f"{path} cannot be used: {_sentence(error)}") from error
+    if kind.mjcf is None or kind.mjcf.menagerie is not None:
+        return kind
+    beside = str(path.parent.resolve() / kind.mjcf.file)
+    return kind.model_copy(update={"mjcf": kind.mjcf.model_copy(update={"file": beside})})
 
 
 @lru_cache(maxsize=64)
@@ -79,6 +87,10 @@ def _load(path: Path, _modified_ns: int) -> ArmKind:
 
 
 def _path_of(name: str) -> Path | None:
+    if name.startswith(_MENAGERIE):
+        plain = name.removeprefix(_MENAGERIE)
+        path = _SHIPPED / "menagerie" / f"{plain}{SUFFIX}"
+        return path if _NAME.fullmatch(plain) and path.is_file() else None
     if not _NAME.fullmatch(name):
         return None
     paths = (folder / f"{name}{SUFFIX}" for folder in (_SHIPPED, arms_folder()))

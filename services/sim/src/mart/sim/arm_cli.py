@@ -42,10 +42,7 @@ def show(name: str, as_json: bool) -> None:
     space = kind.workspace
     lines = [
         f"{kind.name}: {kind.title}, {kind.joint_count} joints, {kind.gripper}",
-        *(
-            f"joint {number}  {link.range_rad[0]:7.3f} to {link.range_rad[1]:6.3f} rad  {link.torque_nm:5.0f} Nm"
-            for number, link in enumerate(kind.links, start=1)
-        ),
+        *_joints(kind),
         f"workspace  {space.radius_min_m:.2f} m from the axis … {space.reach_m:.2f} m from a point on it,",
         f"           {space.reach_center_z_m:.2f} m up; {space.z_min_m:.2f} to {space.z_max_m:.2f} m high",
         f"a tick     {100 * kind.limits.step_m:.0f} cm, {kind.limits.step_rad:.2f} rad ahead at most",
@@ -76,6 +73,16 @@ def check(context: click.Context, file: str, pictures: Path | None, as_json: boo
     result = {"arm": kind.name, "findings": told, "verdict": said, "pictures": [str(path) for path in drawn]}
     print_result(result, f"{said}{shown}", as_json)
     context.exit(0 if all(finding.ok for finding in findings) else 1)
+
+
+def _joints(kind: ArmKind) -> list[str]:
+    if kind.mjcf is not None:
+        named = zip(kind.mjcf.joints, kind.mjcf.torques_nm, strict=True)
+        return [f"of {kind.mjcf.file}", *(f"{joint}  {torque:.0f} Nm" for joint, torque in named)]
+    return [
+        f"joint {number}  {link.range_rad[0]:7.3f} to {link.range_rad[1]:6.3f} rad  {link.torque_nm:5.0f} Nm"
+        for number, link in enumerate(kind.links, start=1)
+    ]
 
 
 def _found(name: str) -> ArmKind:
