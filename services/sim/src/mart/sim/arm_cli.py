@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from mart.protocol.arms import ArmKind, arm_kind, arm_kind_names, arms_folder, load_robot_file
+from mart.protocol.errors import InvalidInput
 from mart.runtime.cli import json_option, print_result
 
 if TYPE_CHECKING:
@@ -25,12 +26,19 @@ def arms() -> None:
 @json_option
 def list_kinds(as_json: bool) -> None:
     """List the kinds of arms; "+pad" behind a name is the same arm with a pad instead of fingers."""
-    kinds = [arm_kind(name) for name in arm_kind_names()]
-    width = max(len(kind.name) for kind in kinds)
-    lines = [f"{kind.name:<{width}}  {kind.title}, {kind.joint_count} joints" for kind in kinds]
+    told, width = [_told(name) for name in arm_kind_names()], max(map(len, arm_kind_names()))
+    lines = [f"{one['name']:<{width}}  {one['title']}" for one in told]
     lines.append(f"Robot files of your own: {arms_folder()}")
-    told = [{"name": kind.name, "title": kind.title, "joints": kind.joint_count} for kind in kinds]
     print_result({"arms": told, "folder": str(arms_folder())}, "\n".join(lines), as_json)
+
+
+def _told(name: str) -> dict[str, object]:
+    """Return what is listed of a kind; of one whose file cannot be used, why."""
+    try:
+        kind = arm_kind(name)
+    except InvalidInput as error:
+        return {"name": name, "title": str(error), "joints": None}
+    return {"name": name, "title": f"{kind.title}, {kind.joint_count} joints", "joints": kind.joint_count}
 
 
 @arms.command()
@@ -100,7 +108,7 @@ def _draw(kind: ArmKind, folder: Path) -> list[Path]:
     drawn: list[Path] = []
 
     def draw(world: World, viewpoint: str) -> None:
-        path = folder / f"{kind.name}-{viewpoint}.png"
+        path = folder / f"{kind.name.replace(':', '-')}-{viewpoint}.png"
         with closing(Renderer(world.model, viewpoint, width_px=_WIDTH_PX, height_px=_HEIGHT_PX)) as renderer:
             write_png(path, renderer.draw(world.integration_state()))
         drawn.append(path)

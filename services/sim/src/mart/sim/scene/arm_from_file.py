@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 
 import mujoco
@@ -40,7 +41,7 @@ def add_links_from_file(
     path = _path_of(kind.mjcf)
     child, alone = _read(path, kind.mjcf)
     _check(path, alone, kind)
-    mount_quaternion = _untwisted(path, alone, kind)
+    azimuth_rad, mount_quaternion = _at_home(path, alone, kind)
     _weigh(child, alone)
     _strip(child, path)
     for joint in child.joints:
@@ -59,7 +60,8 @@ def add_links_from_file(
     for name in _OPTIONS:  # the scene's hold; MuJoCo warns of every one that differs
         setattr(child.option, name, getattr(spec.option, name))
     prefix = f"{arm.name}/file/"
-    spec.attach(child, prefix=prefix, frame=base.add_frame())
+    ahead = (math.cos(azimuth_rad / 2), 0.0, 0.0, -math.sin(azimuth_rad / 2))
+    spec.attach(child, prefix=prefix, frame=base.add_frame(quat=ahead))
     for number, name in enumerate(kind.mjcf.joints, start=1):
         spec.joint(f"{prefix}{name}").name = f"{arm.name}/joint{number}"
     for geom in base.find_all(mujoco.mjtObj.mjOBJ_GEOM):
@@ -73,14 +75,14 @@ def _path_of(described: ArmModel) -> Path:
     if described.menagerie is None:
         return Path(described.file)
     try:
-        import mujoco_menagerie
+        menagerie = import_module("mujoco_menagerie")
     except ImportError as error:
         raise Unavailable(
             f"{described.menagerie} is of MuJoCo Menagerie, which is not installed: pip install mart-sim[menagerie]."
         ) from error
     try:
-        return Path(mujoco_menagerie.get(described.menagerie).path(progress=None)) / described.file
-    except (mujoco_menagerie.MenagerieError, OSError) as error:
+        return Path(menagerie.get(described.menagerie).path(progress=None)) / described.file
+    except (menagerie.MenagerieError, OSError) as error:
         raise Unavailable(
             f"{described.menagerie} could not be fetched from MuJoCo Menagerie ({error}); connect this machine to the "
             "internet once, or name another kind of arm."
@@ -146,8 +148,11 @@ def _unknown(path: Path, what: str, name: str, known: list[str]) -> str:
     return str(NotFound.named(f"{what} of {path.name}", name, known))
 
 
-def _untwisted(path: Path, alone: mujoco.MjModel, kind: ArmKind) -> NDArray[np.float64]:
-    """Return the hand's turn in its site's body, so that at home its fingers close along the base's y."""
+def _at_home(path: Path, alone: mujoco.MjModel, kind: ArmKind) -> tuple[float, NDArray[np.float64]]:
+    """Return in which direction the tool is at home, and how the hand is turned in its site's body.
+
+    The arm is turned so that the tool is straight ahead, and the hand so that its fingers close along the base's y.
+    """
     assert kind.mjcf is not None
     data = mujoco.MjData(alone)
     for name, angle in zip(kind.mjcf.joints, kind.home_rad, strict=True):
@@ -160,19 +165,17 @@ def _untwisted(path: Path, alone: mujoco.MjModel, kind: ArmKind) -> NDArray[np.f
             f"At home_rad the site {kind.mjcf.site} of {path} points {tilt_rad:.2f} rad away from straight down: give "
             "angles with which its z axis points to the table."
         )
-    before_m = float(data.site(kind.mjcf.site).xpos[0])
-    if before_m < _LEAST_BEFORE_M:
+    x_m, y_m, _ = data.site(kind.mjcf.site).xpos.tolist()
+    if math.hypot(x_m, y_m) < _LEAST_BEFORE_M:
         raise InvalidInput(
-            f"At home_rad the site {kind.mjcf.site} of {path} is at x = {before_m:.2f} m: give angles with which it is "
-            "before the base, along x."
+            f"At home_rad the site {kind.mjcf.site} of {path} is over the base: give angles with which it is before it."
         )
-    twist_rad = math.atan2(
-        float(site[1, 0]), float(site[0, 0])
-    )  # pointing down, its x axis turns the other way
+    azimuth_rad = math.atan2(y_m, x_m)
+    twist_rad = math.atan2(float(site[1, 0]), float(site[0, 0])) - azimuth_rad
     turn = np.array([math.cos(twist_rad / 2), 0.0, 0.0, math.sin(twist_rad / 2)])
     quaternion = np.empty(4)
     mujoco.mju_mulQuat(quaternion, alone.site(kind.mjcf.site).quat, turn)
-    return quaternion
+    return azimuth_rad, quaternion
 
 
 def _strip(child: mujoco.MjSpec, path: Path) -> None:
