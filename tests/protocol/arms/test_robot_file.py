@@ -50,13 +50,6 @@ def test_the_names_that_come_with_it_cannot_be_taken(folder: Path) -> None:
     assert arm_kind("panda") == PANDA
 
 
-def test_another_tool_makes_another_kind() -> None:
-    assert arm_kind("ur5e+pad").gripper == "pad"
-    assert arm_kind("ur5e+two-finger") == arm_kind("ur5e")
-    with pytest.raises(NotFound, match=r"no gripper 'hook'.* Known: pad, two-finger"):
-        arm_kind("ur5e+hook")
-
-
 @pytest.mark.parametrize("name", ["ur6e", "../panda", "/etc/passwd", "", "x" * 5000, "menagerie:"])
 def test_an_unknown_name_lists_the_known_ones(name: str) -> None:
     with pytest.raises(NotFound, match=r"Known: gen3, .*panda, ur5e"):

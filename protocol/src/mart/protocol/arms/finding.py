@@ -7,11 +7,11 @@ import re
 import tomllib
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import ValidationError
 
-from mart.protocol.arms.robot_file import ArmKind, GripperKind
+from mart.protocol.arms.robot_file import ArmKind
 from mart.protocol.errors import InvalidInput, NotFound
 
 SUFFIX = ".toml"
@@ -19,7 +19,6 @@ _MENAGERIE = "menagerie:"
 _SHIPPED = Path(__file__).parent
 _MAX_FILE_BYTES = 256 * 1024
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,62}")
-_GRIPPERS = get_args(GripperKind)
 
 
 def arms_folder() -> Path:
@@ -36,20 +35,11 @@ def arm_kind_names() -> tuple[str, ...]:
 
 
 def arm_kind(name: str) -> ArmKind:
-    """Return the kind called `name`; "ur5e+pad" is the kind ur5e with that gripper.
-
-    Raises NotFound for an unknown name, InvalidInput where its file cannot be used.
-    """
-    plain, plus, gripper = name.partition("+")
-    path = _path_of(plain)
+    """Return the kind called `name`. Raises NotFound for an unknown one, InvalidInput where its file cannot be used."""
+    path = _path_of(name)
     if path is None:
-        raise NotFound.named("kind of arm", plain[:64], arm_kind_names())
-    kind = _load(path, path.stat().st_mtime_ns)
-    if not plus:
-        return kind
-    if gripper not in _GRIPPERS:
-        raise NotFound.named("gripper", gripper[:64], _GRIPPERS)
-    return kind if gripper == kind.gripper else kind.model_copy(update={"name": name, "gripper": gripper})
+        raise NotFound.named("kind of arm", name[:64], arm_kind_names())
+    return _load(path, path.stat().st_mtime_ns)
 
 
 def load_robot_file(path: Path) -> ArmKind:

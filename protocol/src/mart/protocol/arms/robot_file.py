@@ -20,7 +20,7 @@ MIN_JOINTS, MAX_JOINTS = 5, 7
 _MOST_RAD = 7.0  # of an angle: beyond a whole turn it is in degrees
 _UNTURNED = (1.0, 0.0, 0.0, 0.0)
 
-GripperKind = Literal["two-finger", "pad"]
+GripperKind = Literal["two-finger"]  # MART's own, with every arm
 
 
 class _Part(BaseModel):
@@ -175,7 +175,7 @@ class ArmKind(_Part):
     the gripper sits in the last link. meets_things_from_link: links before it meet other arms only, not things.
     """
 
-    name: str = Field(pattern=r"^(menagerie:)?[a-z][a-z0-9_]*(\+[a-z]+)?$", max_length=80)
+    name: str = Field(pattern=r"^(menagerie:)?[a-z][a-z0-9_]*$", max_length=80)
     title: str = Field(min_length=1, max_length=80)
     gripper: GripperKind = "two-finger"
     home_rad: tuple[float, ...]

@@ -25,7 +25,7 @@ def arms() -> None:
 @arms.command("list")
 @json_option
 def list_kinds(as_json: bool) -> None:
-    """List the kinds of arms; "+pad" behind a name is the same arm with a pad instead of fingers."""
+    """List the kinds of arms that --arm takes."""
     told, width = [_told(name) for name in arm_kind_names()], max(map(len, arm_kind_names()))
     lines = [f"{one['name']:<{width}}  {one['title']}" for one in told]
     lines.append(f"Robot files of your own: {arms_folder()}")
