@@ -21,8 +21,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_the_kinds_that_come_with_it() -> None:
     kinds = {name: arm_kind(name) for name in arm_kind_names()}
-    assert list(kinds) == ["panda", "gen3", "ur5e"]
-    assert {name: kind.joint_count for name, kind in kinds.items()} == {"panda": 7, "gen3": 7, "ur5e": 6}
+    assert list(kinds) == [
+        "panda",
+        "gen3",
+        "ur5e",
+        "menagerie:kinova_gen3",
+        "menagerie:universal_robots_ur5e",
+    ]
+    assert [kind.joint_count for kind in kinds.values()] == [7, 7, 6, 7, 6]
     assert PANDA.workspace == Workspace()
     for kind in kinds.values():
         space = kind.workspace
@@ -33,7 +39,7 @@ def test_the_kinds_that_come_with_it() -> None:
 
 def test_a_file_of_one_s_own_is_found_by_its_name_and_read_again_when_it_changes(folder: Path) -> None:
     (folder / "mine.toml").write_text(UR5E)
-    assert arm_kind_names()[-1] == "mine"
+    assert arm_kind_names()[3] == "mine"
     assert arm_kind("mine").title == "Universal Robots UR5e"
     (folder / "mine.toml").write_text(UR5E.replace("Universal Robots UR5e", "Mine"))
     assert load_robot_file(folder / "mine.toml").title == "Mine"
@@ -44,16 +50,9 @@ def test_the_names_that_come_with_it_cannot_be_taken(folder: Path) -> None:
     assert arm_kind("panda") == PANDA
 
 
-def test_another_tool_makes_another_kind() -> None:
-    assert arm_kind("ur5e+pad").gripper == "pad"
-    assert arm_kind("ur5e+two-finger") == arm_kind("ur5e")
-    with pytest.raises(NotFound, match=r"no gripper 'hook'.* Known: pad, two-finger"):
-        arm_kind("ur5e+hook")
-
-
 @pytest.mark.parametrize("name", ["ur6e", "../panda", "/etc/passwd", "", "x" * 5000, "menagerie:"])
 def test_an_unknown_name_lists_the_known_ones(name: str) -> None:
-    with pytest.raises(NotFound, match="gen3, panda, ur5e"):
+    with pytest.raises(NotFound, match=r"Known: gen3, .*panda, ur5e"):
         arm_kind(name)
 
 
@@ -62,7 +61,7 @@ def test_an_unknown_name_lists_the_known_ones(name: str) -> None:
     [
         ("[-3.1416, 3.1416]", "[-180, 180]", r"links\[3\].range_rad: .* looks like degrees"),
         ("[-3.1416, 3.1416]", "[3.1416, -3.1416]", r"links\[3\].range_rad: the lower limit comes first"),
-        ("home_rad = [-0.30, ", "home_rad = [", "home_rad has 5 angles, but there are 6 links"),
+        ("home_rad = [-0.30, ", "home_rad = [", "home_rad has 5 angles, but there are 6 joints"),
         ("2.10, -1.92", "3.50, -1.92", "home_rad puts joint 3 at 3.5 rad, outside its range"),
         ("torque_nm = 28", "torque_nm = -28", r"links\[4\].torque_nm: .* greater than 0"),
         ("mass_kg = 8.058\n", "", r"links\[2\].mass_kg: Field required"),
@@ -88,7 +87,7 @@ def test_a_mistake_is_named_with_its_place(folder: Path, old: str, new: str, wor
 def test_too_few_joints_and_impossible_names(folder: Path) -> None:
     first, *links = UR5E.split("[[links]]")
     (folder / "short.toml").write_text("[[links]]".join([first, *links[:4]]))
-    with pytest.raises(InvalidInput, match=r"links: .* at least 5 items"):
+    with pytest.raises(InvalidInput, match="4 links were given; 5 to 7 can be controlled"):
         load_robot_file(folder / "short.toml")
     (folder / "My Arm.toml").write_text(UR5E)
     with pytest.raises(InvalidInput, match="cannot be a robot file's name"):

@@ -111,7 +111,7 @@ def test_a_state_that_is_set_goes_on_to_the_same_bits(world: World) -> None:
     assert world.integration_state() == after
 
 
-@pytest.mark.parametrize("kind", [name for name in arm_kind_names() if name != "panda"])
+@pytest.mark.parametrize("kind", [name for name in arm_kind_names() if name != "panda" and ":" not in name])
 @pytest.mark.parametrize("task", task_names())
 def test_every_kind_reaches_every_task(task: str, kind: str) -> None:
     arms = len(get_task(task).arms)

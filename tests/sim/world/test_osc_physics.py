@@ -28,7 +28,7 @@ GAINS = Gains()
 KINDS = [
     ("panda", "panda"),
     ("panda", "ur5e"),
-    *((kind, "panda") for kind in arm_kind_names() if kind != "panda"),
+    *((kind, "panda") for kind in arm_kind_names() if kind != "panda" and ":" not in kind),
 ]
 
 

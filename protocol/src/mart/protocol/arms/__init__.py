@@ -1,7 +1,7 @@
 """Kinds of arms: what each one is, as its robot file says.
 
-A kind has a name: that of a file in this folder or of one among people's own (`MART_ARMS_DIR`, data/arms unless told);
-with "+pad" behind it, it is the same arm with another tool. Whoever says nothing of an arm's kind means a Panda.
+A kind has a name: that of a file in this folder, or of one among people's own (`MART_ARMS_DIR`, data/arms unless told).
+Whoever says nothing of an arm's kind means a Panda.
 """
 
 from __future__ import annotations

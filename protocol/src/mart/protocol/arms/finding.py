@@ -7,18 +7,18 @@ import re
 import tomllib
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import ValidationError
 
-from mart.protocol.arms.robot_file import ArmKind, GripperKind
+from mart.protocol.arms.robot_file import ArmKind
 from mart.protocol.errors import InvalidInput, NotFound
 
 SUFFIX = ".toml"
+_MENAGERIE = "menagerie:"
 _SHIPPED = Path(__file__).parent
 _MAX_FILE_BYTES = 256 * 1024
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,62}")
-_GRIPPERS = get_args(GripperKind)
 
 
 def arms_folder() -> Path:
@@ -27,26 +27,19 @@ def arms_folder() -> Path:
 
 
 def arm_kind_names() -> tuple[str, ...]:
-    """Return the kinds that there are: those that come with MART, the Panda first, then people's own."""
+    """Return the kinds that there are: those that come with MART, the Panda first, then people's own, then those of
+    MuJoCo Menagerie, which are fetched when one is built."""
     shipped = sorted(_names_in(_SHIPPED), key=lambda name: (name != "panda", name))
-    return (*shipped, *sorted(_names_in(arms_folder()) - set(shipped)))
+    fetched = sorted(f"{_MENAGERIE}{name}" for name in _names_in(_SHIPPED / "menagerie"))
+    return (*shipped, *sorted(_names_in(arms_folder()) - set(shipped)), *fetched)
 
 
 def arm_kind(name: str) -> ArmKind:
-    """Return the kind called `name`; "ur5e+pad" is the kind ur5e with that gripper.
-
-    Raises NotFound for an unknown name, InvalidInput where its file cannot be used.
-    """
-    plain, plus, gripper = name.partition("+")
-    path = _path_of(plain)
+    """Return the kind called `name`. Raises NotFound for an unknown one, InvalidInput where its file cannot be used."""
+    path = _path_of(name)
     if path is None:
-        raise NotFound.named("kind of arm", plain[:64], arm_kind_names())
-    kind = _load(path, path.stat().st_mtime_ns)
-    if not plus:
-        return kind
-    if gripper not in _GRIPPERS:
-        raise NotFound.named("gripper", gripper[:64], _GRIPPERS)
-    return kind if gripper == kind.gripper else kind.model_copy(update={"name": name, "gripper": gripper})
+        raise NotFound.named("kind of arm", name[:64], arm_kind_names())
+    return _load(path, path.stat().st_mtime_ns)
 
 
 def load_robot_file(path: Path) -> ArmKind:
@@ -67,10 +60,15 @@ def load_robot_file(path: Path) -> ArmKind:
         raise InvalidInput(f"{path} is not TOML: {error}.") from error
     if "name" in said:
         raise InvalidInput(f"{path} says a name; a robot is called as its file is: leave the line out.")
+    name = f"{_MENAGERIE}{path.stem}" if path.parent == _SHIPPED / "menagerie" else path.stem
     try:
-        return ArmKind.model_validate({**said, "name": path.stem})
+        kind = ArmKind.model_validate({**said, "name": name})
     except ValidationError as error:
         raise InvalidInput(f"{path} cannot be used: {_sentence(error)}") from error
+    if kind.mjcf is None or kind.mjcf.menagerie is not None:
+        return kind
+    beside = str(path.parent.resolve() / kind.mjcf.file)
+    return kind.model_copy(update={"mjcf": kind.mjcf.model_copy(update={"file": beside})})
 
 
 @lru_cache(maxsize=64)
@@ -79,6 +77,10 @@ def _load(path: Path, _modified_ns: int) -> ArmKind:
 
 
 def _path_of(name: str) -> Path | None:
+    if name.startswith(_MENAGERIE):
+        plain = name.removeprefix(_MENAGERIE)
+        path = _SHIPPED / "menagerie" / f"{plain}{SUFFIX}"
+        return path if _NAME.fullmatch(plain) and path.is_file() else None
     if not _NAME.fullmatch(name):
         return None
     paths = (folder / f"{name}{SUFFIX}" for folder in (_SHIPPED, arms_folder()))

@@ -20,7 +20,7 @@ MIN_JOINTS, MAX_JOINTS = 5, 7
 _MOST_RAD = 7.0  # of an angle: beyond a whole turn it is in degrees
 _UNTURNED = (1.0, 0.0, 0.0, 0.0)
 
-GripperKind = Literal["two-finger", "pad"]
+GripperKind = Literal["two-finger"]  # MART's own, with every arm
 
 
 class _Part(BaseModel):
@@ -116,6 +116,28 @@ class ArmLink(ArmBody, ArmFrame):
         return limits
 
 
+class ArmModel(_Part):
+    """Name an MJCF file that has the links: a file beside the robot file, or a robot of MuJoCo Menagerie.
+
+    joints: those of the arm by their names there, base first, and torques_nm what they may at most. site: where the
+    gripper is mounted, its z axis away from the arm; the hand is turned about it so that it is untwisted at home.
+    remove: bodies of the file that are not wanted, such as a gripper of its own.
+    """
+
+    file: str = Field(min_length=1)
+    menagerie: str | None = Field(None, pattern=r"^[a-z0-9_]+$")
+    joints: tuple[str, ...] = Field(min_length=MIN_JOINTS, max_length=MAX_JOINTS)
+    torques_nm: tuple[Positive, ...]
+    site: str
+    remove: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _torque_for_each_joint(self) -> Self:
+        if len(self.torques_nm) != len(self.joints):
+            raise ValueError(f"{len(self.torques_nm)} torques were given for {len(self.joints)} joints")
+        return self
+
+
 class ArmPlacement(_Part):
     """Say where the base stands, seen from where a Panda's would: closer to the work, and higher."""
 
@@ -153,12 +175,13 @@ class ArmKind(_Part):
     the gripper sits in the last link. meets_things_from_link: links before it meet other arms only, not things.
     """
 
-    name: str = Field(pattern=r"^[a-z][a-z0-9_]*(\+[a-z]+)?$", max_length=64)
+    name: str = Field(pattern=r"^(menagerie:)?[a-z][a-z0-9_]*$", max_length=80)
     title: str = Field(min_length=1, max_length=80)
     gripper: GripperKind = "two-finger"
     home_rad: tuple[float, ...]
-    base: ArmBody
-    links: tuple[ArmLink, ...] = Field(min_length=MIN_JOINTS, max_length=MAX_JOINTS)
+    base: ArmBody | None = None
+    links: tuple[ArmLink, ...] = Field((), max_length=MAX_JOINTS)
+    mjcf: ArmModel | None = None
     mount: ArmFrame = ArmFrame()
     meets_things_from_link: int = Field(ge=1, le=MAX_JOINTS)
     armature_kg_m2: float = Field(0.1, ge=0.0)
@@ -172,14 +195,24 @@ class ArmKind(_Part):
     @property
     def joint_count(self) -> int:
         """How many joints it has, its fingers not counted."""
-        return len(self.links)
+        return len(self.home_rad)
+
+    @property
+    def torques_nm(self) -> tuple[float, ...]:
+        """What each joint may at most, newton metres."""
+        return tuple(link.torque_nm for link in self.links) if self.mjcf is None else self.mjcf.torques_nm
 
     @model_validator(mode="after")
     def _home_is_one_of_its_postures(self) -> Self:
-        if len(self.home_rad) != len(self.links):
-            raise ValueError(
-                f"home_rad has {len(self.home_rad)} angles, but there are {len(self.links)} links"
-            )
+        if (self.mjcf is None) == (not self.links) or (self.mjcf is None) != (self.base is not None):
+            raise ValueError("describe it by base and links, or name a file with [mjcf]: one of the two")
+        joints = len(self.links) if self.mjcf is None else len(self.mjcf.joints)
+        if joints < MIN_JOINTS:
+            raise ValueError(f"{joints} links were given; {MIN_JOINTS} to {MAX_JOINTS} can be controlled")
+        if len(self.home_rad) != joints:
+            raise ValueError(f"home_rad has {len(self.home_rad)} angles, but there are {joints} joints")
+        if self.mjcf is not None:
+            return self
         for number, (angle, link) in enumerate(zip(self.home_rad, self.links, strict=True), start=1):
             low, high = link.range_rad
             if not low <= angle <= high:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from mart.protocol.arms import ArmKind, arm_kind, arm_kind_names, arms_folder, load_robot_file
+from mart.protocol.errors import InvalidInput
 from mart.runtime.cli import json_option, print_result
 
 if TYPE_CHECKING:
@@ -24,13 +25,20 @@ def arms() -> None:
 @arms.command("list")
 @json_option
 def list_kinds(as_json: bool) -> None:
-    """List the kinds of arms; "+pad" behind a name is the same arm with a pad instead of fingers."""
-    kinds = [arm_kind(name) for name in arm_kind_names()]
-    width = max(len(kind.name) for kind in kinds)
-    lines = [f"{kind.name:<{width}}  {kind.title}, {kind.joint_count} joints" for kind in kinds]
+    """List the kinds of arms that --arm takes."""
+    told, width = [_told(name) for name in arm_kind_names()], max(map(len, arm_kind_names()))
+    lines = [f"{one['name']:<{width}}  {one['title']}" for one in told]
     lines.append(f"Robot files of your own: {arms_folder()}")
-    told = [{"name": kind.name, "title": kind.title, "joints": kind.joint_count} for kind in kinds]
     print_result({"arms": told, "folder": str(arms_folder())}, "\n".join(lines), as_json)
+
+
+def _told(name: str) -> dict[str, object]:
+    """Return what is listed of a kind; of one whose file cannot be used, why."""
+    try:
+        kind = arm_kind(name)
+    except InvalidInput as error:
+        return {"name": name, "title": str(error), "joints": None}
+    return {"name": name, "title": f"{kind.title}, {kind.joint_count} joints", "joints": kind.joint_count}
 
 
 @arms.command()
@@ -42,10 +50,7 @@ def show(name: str, as_json: bool) -> None:
     space = kind.workspace
     lines = [
         f"{kind.name}: {kind.title}, {kind.joint_count} joints, {kind.gripper}",
-        *(
-            f"joint {number}  {link.range_rad[0]:7.3f} to {link.range_rad[1]:6.3f} rad  {link.torque_nm:5.0f} Nm"
-            for number, link in enumerate(kind.links, start=1)
-        ),
+        *_joints(kind),
         f"workspace  {space.radius_min_m:.2f} m from the axis … {space.reach_m:.2f} m from a point on it,",
         f"           {space.reach_center_z_m:.2f} m up; {space.z_min_m:.2f} to {space.z_max_m:.2f} m high",
         f"a tick     {100 * kind.limits.step_m:.0f} cm, {kind.limits.step_rad:.2f} rad ahead at most",
@@ -78,6 +83,16 @@ def check(context: click.Context, file: str, pictures: Path | None, as_json: boo
     context.exit(0 if all(finding.ok for finding in findings) else 1)
 
 
+def _joints(kind: ArmKind) -> list[str]:
+    if kind.mjcf is not None:
+        named = zip(kind.mjcf.joints, kind.mjcf.torques_nm, strict=True)
+        return [f"of {kind.mjcf.file}", *(f"{joint}  {torque:.0f} Nm" for joint, torque in named)]
+    return [
+        f"joint {number}  {link.range_rad[0]:7.3f} to {link.range_rad[1]:6.3f} rad  {link.torque_nm:5.0f} Nm"
+        for number, link in enumerate(kind.links, start=1)
+    ]
+
+
 def _found(name: str) -> ArmKind:
     """Return the kind of this name or file."""
     return load_robot_file(Path(name)) if name.endswith(".toml") else arm_kind(name)
@@ -93,7 +108,7 @@ def _draw(kind: ArmKind, folder: Path) -> list[Path]:
     drawn: list[Path] = []
 
     def draw(world: World, viewpoint: str) -> None:
-        path = folder / f"{kind.name}-{viewpoint}.png"
+        path = folder / f"{kind.name.replace(':', '-')}-{viewpoint}.png"
         with closing(Renderer(world.model, viewpoint, width_px=_WIDTH_PX, height_px=_HEIGHT_PX)) as renderer:
             write_png(path, renderer.draw(world.integration_state()))
         drawn.append(path)

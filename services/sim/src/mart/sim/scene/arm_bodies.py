@@ -10,6 +10,7 @@ import numpy as np
 from mart.protocol.arms.robot_file import ArmBody, LinkBox, LinkMesh, LinkShape, LinkSphere, LinkTube
 from mart.protocol.tasks import MAX_ARMS, Arm
 from mart.sim.scene import gripper
+from mart.sim.scene.arm_from_file import add_links_from_file
 from mart.sim.scene.meshes import Detail, mesh_path
 from mart.sim.scene.palette import rgba
 from mart.sim.scene.symbols import add_tile
@@ -25,7 +26,7 @@ _GEOMS = {
 
 def add_assets(spec: mujoco.MjSpec, arms: Sequence[Arm], detail: Detail) -> None:
     """Add the meshes, once for all arms: `hull/…` for contacts and, where asked, `detailed/…` to look at."""
-    bodies = [body for arm in arms for body in (arm.kind.base, *arm.kind.links)]
+    bodies = [body for arm in arms for body in (arm.kind.base, *arm.kind.links) if body is not None]
     parts = dict.fromkeys(
         shape.part for body in bodies for shape in body.shapes if isinstance(shape, LinkMesh)
     )
@@ -44,16 +45,29 @@ def _add_mesh(spec: mujoco.MjSpec, part: str, level: Detail) -> None:
 
 def add_arm(spec: mujoco.MjSpec, arm: Arm, index: int, detail: Detail) -> None:
     """Add the arm with its gripper, joints, motors and the site `{arm}/tool` at the middle of the finger pads."""
-    kind = arm.kind
-    body = spec.worldbody.add_body(
+    base = spec.worldbody.add_body(
         name=f"{arm.name}/base",
         pos=arm.pose_base_in_world.position,
         quat=arm.pose_base_in_world.quaternion_wxyz,
     )
+    if arm.kind.mjcf is None:
+        hand = _add_links(spec, base, arm, index, detail)
+    else:
+        hand = add_links_from_file(spec, base, arm, lambda far: _masks(index, reaches_objects=far))
+    for number, torque_nm in enumerate(arm.kind.torques_nm, start=1):
+        _add_motor(spec, arm.name, number, torque_nm)
+    _add_hand(spec, hand, arm, index, detail)
+
+
+def _add_links(
+    spec: mujoco.MjSpec, base: mujoco.MjsBody, arm: Arm, index: int, detail: Detail
+) -> mujoco.MjsBody:
+    """Add the links that the robot file describes; return the body that is to be the hand."""
+    kind, body = arm.kind, base
+    assert kind.base is not None
     _fill(body, kind.base, arm, detail, _masks(index, reaches_objects=False))
     for number, link in enumerate(kind.links, start=1):
         body = body.add_body(name=f"{arm.name}/link{number}", pos=link.position_m, quat=link.quaternion_wxyz)
-        _set_inertia(body, link.mass_kg, link.center_of_mass_m, link.inertia_kg_m2)
         body.add_joint(
             name=f"{arm.name}/joint{number}",
             axis=(0, 0, 1),
@@ -61,12 +75,9 @@ def add_arm(spec: mujoco.MjSpec, arm: Arm, index: int, detail: Detail) -> None:
             armature=kind.armature_kg_m2,
             damping=[kind.damping_nm_s, 0, 0],
         )
-        masks = _masks(index, reaches_objects=number >= kind.meets_things_from_link)
-        for shape in link.shapes:
-            _add_shape(body, shape, arm, detail, masks)
-        _add_motor(spec, arm.name, number, link.torque_nm)
-    hand = body.add_body(name=f"{arm.name}/hand", pos=kind.mount.position_m, quat=kind.mount.quaternion_wxyz)
-    _add_hand(spec, hand, arm, index, detail)
+        far = number >= kind.meets_things_from_link
+        _fill(body, link, arm, detail, _masks(index, reaches_objects=far))
+    return body.add_body(name=f"{arm.name}/hand", pos=kind.mount.position_m, quat=kind.mount.quaternion_wxyz)
 
 
 def _add_hand(spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: Arm, index: int, detail: Detail) -> None:

@@ -31,8 +31,7 @@ class MeasuredArms:
         )
         self._tool_positions = ChosenRows(data.site_xpos, tools)
         self._hand_quaternions = ChosenRows(data.xquat, hands)
-        fingers = [first for name in names if (first := _first_finger(model, name)) is not None]
-        self._with_fingers = np.array([_first_finger(model, name) is not None for name in names])
+        fingers = [int(model.joint(f"{name}/left_finger").qposadr[0]) for name in names]
         self._fingers = [ChosenRows(data.qpos[..., None], [f + side for f in fingers]) for side in (0, 1)]
         self.joint_positions = []  # radians; views, one of each arm
         for arm in arms:
@@ -46,14 +45,9 @@ class MeasuredArms:
         return positions, quaternions * np.copysign(1.0, quaternions[..., :1])
 
     def grippers(self) -> Array:
-        """Return how far each is closed, 0 open … 1 closed, shape (..., arms); 0 of a tool without fingers."""
+        """Return how far each is closed, 0 open … 1 closed, shape (..., arms)."""
         left, right = (fingers.read()[..., 0] for fingers in self._fingers)
-        closed: Array = np.minimum(np.maximum(1.0 - (left + right) / (2 * STROKE_M), 0.0), 1.0)
-        if self._with_fingers.all():
-            return closed
-        every = np.zeros((*closed.shape[:-1], len(self._with_fingers)))
-        every[..., self._with_fingers] = closed
-        return every
+        return np.minimum(np.maximum(1.0 - (left + right) / (2 * STROKE_M), 0.0), 1.0)
 
 
 class MeasuredArm:
@@ -61,8 +55,8 @@ class MeasuredArm:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, arm: Arm) -> None:
         self._alone = MeasuredArms(model, data, [arm])
-        first = _first_finger(model, arm.name)
-        self._fingers = data.qpos[:0] if first is None else data.qpos[first : first + 2]
+        fingers = int(model.joint(f"{arm.name}/left_finger").qposadr[0])
+        self._fingers = data.qpos[fingers : fingers + 2]
 
     def tool_in_base(self) -> tuple[Array, Array]:
         """Return position, shape (3,), and quaternion wxyz, shape (4,), w >= 0."""
@@ -77,12 +71,6 @@ class MeasuredArm:
         """Set the arm to rest at these joint positions, radians, one for each joint; gripper open."""
         self._alone.joint_positions[0][:] = joint_positions
         self._fingers[:] = STROKE_M
-
-
-def _first_finger(model: mujoco.MjModel, arm: str) -> int | None:
-    """Return where the left finger is in qpos, the right one behind it; None for a tool without fingers."""
-    joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f"{arm}/left_finger")
-    return None if joint < 0 else int(model.jnt_qposadr[joint])
 
 
 def _conjugate(quaternion_wxyz: Array) -> Array:

@@ -32,6 +32,7 @@ POSTURE = slice(20, 27)
 BLOCK_SIZE = 27
 
 _PANDA_ROW, _ARM_ROW = 7, 21  # numbers of a row, see osc.c
+_FINGERS = 2
 _FINGER_SCALE_AND_OFFSET = (1.0, 0.0)  # from a finger's target in metres to what its servo is told
 
 
@@ -66,28 +67,22 @@ def _panda_row(model: mujoco.MjModel, arm: Arm, userdata_start: int) -> list[flo
         dof,
         int(first.qposadr[0]),
         model.actuator(f"{arm.name}/torque1").id,
-        _finger(model, arm, "left"),
+        model.actuator(f"{arm.name}/left_finger").id,
         userdata_start,
     ]
 
 
 def _arm_row(model: mujoco.MjModel, arm: Arm, gains: Gains | None) -> list[float]:
     """Return what osc.c is told of an arm beyond what it is told of a Panda."""
-    second = _finger(model, arm, "right")
     return [
         arm.kind.joint_count,
-        0 if second < 0 else 2,
-        second,
+        _FINGERS,
+        model.actuator(f"{arm.name}/right_finger").id,
         *_FINGER_SCALE_AND_OFFSET,
         arm.kind.posture.joint1_sign,
         arm.kind.posture.joint1_offset_rad,
         *(gains or arm.kind.gains).model_dump().values(),
     ]
-
-
-def _finger(model: mujoco.MjModel, arm: Arm, side: str) -> int:
-    """Return the index of a finger's servo, -1 where there is none."""
-    return int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, f"{arm.name}/{side}_finger"))
 
 
 def install() -> None:
