@@ -56,11 +56,12 @@ class Visit:
         expect(self.page.locator("#picture.live")).to_be_visible()
 
     def sit(self, name: str) -> None:
-        """The same, without the way through the lobby."""
+        """The same, beside a script, without the way through the lobby."""
         has_joined(self.context, self.platform.url, self.platform.join_code, name)
-        seat = f"{self.platform.url}api/rooms/room-1/seats/arm0"
-        taken = self.context.request.post(seat, data={"operator": "human"}, headers=origin(seat))
-        assert taken.ok, taken.text()
+        for arm, operator in (("arm0", "human"), ("arm1", "script")):
+            seat = f"{self.platform.url}api/rooms/room-1/seats/{arm}"
+            taken = self.context.request.post(seat, data={"operator": operator}, headers=origin(seat))
+            assert taken.ok, taken.text()
         self.page.goto(f"{self.platform.url}rooms/room-1/arms/arm0")
         expect(self.page.locator("#picture.live")).to_be_visible()
 
@@ -152,9 +153,9 @@ def listen(page: Page, noise: list[str]) -> None:
 
 
 @contextlib.contextmanager
-def driving(visit: Visit, name: str = "Ana") -> Iterator[Page]:
-    """Drives arm0, and leaves the seat whatever happens."""
-    visit.sit(name)
+def driving(visit: Visit) -> Iterator[Page]:
+    """Ana drives arm0, and leaves the seat whatever happens."""
+    visit.sit("Ana")
     try:
         yield visit.page
     finally:
