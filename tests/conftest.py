@@ -6,7 +6,9 @@ import os
 import shutil
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -63,7 +65,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             item.add_marker(folder)
         elif item.get_closest_marker("system") is None:
             item.add_marker("unit")
-    items.sort(key=_rank)
+    # Files of long tests first: one that begins last would keep the other worker waiting.
+    longest_s = Counter[Path]()
+    for item in items:
+        longest_s[item.path] = max(longest_s[item.path], _timeout_s(item))
+    items.sort(key=lambda item: (_rank(item), -longest_s[item.path]))
 
 
 @pytest.hookimpl(tryfirst=True)  # before fixtures are made
@@ -73,6 +79,12 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
 def _rank(item: pytest.Item) -> int:
     return next(rank for rank, kind in enumerate(_KINDS) if item.get_closest_marker(kind) is not None)
+
+
+def _timeout_s(item: pytest.Item) -> int:
+    """What a test was given because it takes longer than others; 0 for the others."""
+    mark = item.get_closest_marker("timeout")
+    return int(mark.args[0]) if mark else 0
 
 
 @pytest.fixture

@@ -56,13 +56,20 @@ class Visit:
         expect(self.page.locator("#picture.live")).to_be_visible()
 
     def sit(self, name: str) -> None:
-        """The same, without the way through the lobby."""
+        """The same, beside a script where nobody sits, without the way through the lobby."""
         has_joined(self.context, self.platform.url, self.platform.join_code, name)
-        seat = f"{self.platform.url}api/rooms/room-1/seats/arm0"
-        taken = self.context.request.post(seat, data={"operator": "human"}, headers=origin(seat))
-        assert taken.ok, taken.text()
+        self._take_seat("arm0", "human")
+        rooms = self.context.request.get(f"{self.platform.url}api/rooms").json()["rooms"]
+        seats = next(room["seats"] for room in rooms if room["room"] == "room-1")
+        if any(seat["arm"] == "arm1" and seat["operator"] == "hold" for seat in seats):
+            self._take_seat("arm1", "script")
         self.page.goto(f"{self.platform.url}rooms/room-1/arms/arm0")
         expect(self.page.locator("#picture.live")).to_be_visible()
+
+    def _take_seat(self, arm: str, operator: str) -> None:
+        seat = f"{self.platform.url}api/rooms/room-1/seats/{arm}"
+        taken = self.context.request.post(seat, data={"operator": operator}, headers=origin(seat))
+        assert taken.ok, taken.text()
 
     def is_fine(self, what: str) -> None:
         is_legible(self.page, what)
@@ -152,9 +159,9 @@ def listen(page: Page, noise: list[str]) -> None:
 
 
 @contextlib.contextmanager
-def driving(visit: Visit, name: str = "Ana") -> Iterator[Page]:
-    """Drives arm0, and leaves the seat whatever happens."""
-    visit.sit(name)
+def driving(visit: Visit) -> Iterator[Page]:
+    """Ana drives arm0, and leaves the seat whatever happens."""
+    visit.sit("Ana")
     try:
         yield visit.page
     finally:
