@@ -81,7 +81,7 @@ def run(
     from mart.platform.run.running import running_platform
     from mart.platform.run.turn_server import relay_beside, with_relay
     from mart.protocol.practice import require_practice_alone
-    from mart.protocol.tasks import arm_kinds_of
+    from mart.protocol.tasks import arm_kinds_of, get_task
     from mart.runtime.service import stop_requested
     from mart.runtime.settings import Settings
 

@@ -46,15 +46,10 @@ def check_arm(kind: ArmKind) -> Iterator[ArmFinding]:
     try:
         world = _world_of(get_task(_TASK), kind)
         world.reset(_SEED)
-    except (
-        InvalidInput,
-        ValueError,
-    ) as error:  # MuJoCo's own words for what cannot be compiled are a ValueError
+    except (InvalidInput, ValueError) as error:  # the latter are MuJoCo's own words of what it cannot compile
         yield ArmFinding("loads", ok=False, said=str(error))
         return
-    joints = (
-        f"{kind.joint_count} joints, {'no fingers' if kind.gripper == 'pad' else kind.gripper + ' gripper'}"
-    )
+    joints = f"{kind.joint_count} joints, {kind.gripper} gripper"
     yield ArmFinding("loads", ok=True, said=f"{kind.title}: {joints}.")
     yield from _alone(world, kind)
     for name in task_names():
