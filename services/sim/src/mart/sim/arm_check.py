@@ -52,10 +52,8 @@ def check_arm(kind: ArmKind) -> Iterator[ArmFinding]:
     ) as error:  # MuJoCo's own words for what cannot be compiled are a ValueError
         yield ArmFinding("loads", ok=False, said=str(error))
         return
-    joints = (
-        f"{kind.joint_count} joints, {'no fingers' if kind.gripper == 'pad' else kind.gripper + ' gripper'}"
-    )
-    yield ArmFinding("loads", ok=True, said=f"{kind.title}: {joints}.")
+    said = f"{kind.title}: {kind.joint_count} joints, {kind.gripper} gripper."
+    yield ArmFinding("loads", ok=True, said=said)
     yield from _alone(world, kind)
     for name in task_names():
         yield _in_task(get_task(name), kind)
