@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from mart.protocol.arms import ArmKind
-from mart.protocol.errors import InvalidInput
+from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Task, get_task, task_names
 from mart.sim.experts.run_experts import run_experts
@@ -46,10 +46,7 @@ def check_arm(kind: ArmKind) -> Iterator[ArmFinding]:
     try:
         world = _world_of(get_task(_TASK), kind)
         world.reset(_SEED)
-    except (
-        InvalidInput,
-        ValueError,
-    ) as error:  # MuJoCo's own words for what cannot be compiled are a ValueError
+    except (MartError, ValueError) as error:  # what MuJoCo cannot compile is a ValueError, in its own words
         yield ArmFinding("loads", ok=False, said=str(error))
         return
     said = f"{kind.title}: {kind.joint_count} joints, {kind.gripper} gripper."
