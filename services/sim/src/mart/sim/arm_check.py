@@ -160,7 +160,7 @@ def verdict(findings: list[ArmFinding]) -> str:
     if not bad:
         return "It can be used in every task."
     if any(finding.what == "loads" for finding in bad):
-        return "It cannot be used: mend its file first."
+        return "It cannot be used as it is: mend what is marked BAD."
     if all(finding.what == "reach" for finding in bad):
         tasks = len([finding for finding in findings if finding.what == "reach"]) - len(bad)
         return f"It can be used in {tasks} of {tasks + len(bad)} tasks."
