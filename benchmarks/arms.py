@@ -43,6 +43,7 @@ def main() -> None:
                 continue
             metrics |= figures
             bars.append(Bar.at_least(f"{task}, {' and '.join(kinds)}: successes", successes / seeds, 0.95))
+    peer["control_over_bare"] = control_over_bare(World.build(TASKS[0]))
     for kinds in TIMED:
         over_bare = control_over_bare(World.build(TASKS[0], kinds=kinds))
         metrics[f"control_over_bare_{'_'.join(kinds)}"] = over_bare

@@ -93,7 +93,7 @@ def write(
         Event(wall_ns=first.stamps.sent_ns, room=ROOM, tick=first.tick, episode_started=started),
         Event(wall_ns=last.stamps.sent_ns, room=ROOM, tick=last.tick, episode_ended=ended),
     )
-    facts, episode = RoomFacts(ROOM), EpisodeAccumulator(first)
+    facts, episode = RoomFacts(ROOM, arm_kinds=world.task.arm_kinds), EpisodeAccumulator(first)
     for event in events:
         facts.learn_event(event)
         episode.add_event(event)

@@ -24,6 +24,8 @@ declare namespace Api {
     arms: number;
     practice: boolean;
     course_required: boolean;
+    /** By arm, of those that are no Pandas. */
+    arm_kinds?: Record<string, string>;
   }
 
   interface Finding {
@@ -143,6 +145,8 @@ declare namespace Api {
     unrecorded: string;
     practice: boolean;
     course_required: boolean;
+    /** One for each seat; none: all are Pandas. */
+    arm_kinds: string[];
     still: number;
     /** By arm, of those from whose side somebody looks. */
     stills: Record<string, number>;

@@ -44,6 +44,17 @@ def test_options_reach_the_commands() -> None:
     assert words[ServiceKind.WEB] == "web --host 127.0.0.1 --port 8443 --public-host lab.local"
 
 
+def test_kinds_of_arms_reach_the_rooms_that_have_them() -> None:
+    options = PlatformOptions(Path("data"), task="t", arm_kinds={"arm1": "ur5e"})
+    for plan in (processes(options), lockstep_processes(options, rooms=1)):
+        (sim,) = (process.command for process in plan if process.kind == ServiceKind.SIM)
+        assert " ".join(sim).partition("--arm ")[2].split()[0] == "arm1=ur5e"
+    assert "--arm" not in room(options, RoomsRequest.Open(room="room-2", task="t")).command
+    wanted = RoomsRequest.Open(room="room-2", task="t", arm_kinds={"arm0": "gen3"})
+    assert room(options, wanted).command[-2:] == ("--arm", "arm0=gen3")
+    assert Path(environment(options)["MART_ARMS_DIR"]).is_absolute()
+
+
 def test_in_lockstep_there_are_rooms_and_who_saves_and_nobody_who_looks() -> None:
     options = PlatformOptions(
         Path("data"), room="collect-1", task="t", seed=7, skill="novice", time_limit_s=12.5

@@ -19,7 +19,7 @@ def torques(model: mujoco.MjModel, data: mujoco.MjData, arm: str, block: Array, 
     Of a scene of Pandas alone. `data` must be complete up to qfrc_bias and qfrc_passive (mj_forward).
     """
     mobility = _mobility(model, data, arm, 7)
-    inertia = np.asarray(np.linalg.inv(mobility + np.diag(_damping(mobility, gains))), np.float64)
+    inertia = np.linalg.inv(mobility + np.diag(_damping(mobility, gains))).astype(np.float64)
     return _torques(model, data, arm, block, gains=gains, inertia=inertia, count=7)
 
 

@@ -73,6 +73,16 @@ async def test_a_room_for_practice_and_one_that_asks_for_the_course(
     ]
 
 
+async def test_a_room_with_other_arms(enter: Enter, asked: list[RoomsRequest]) -> None:
+    ana = await enter("Ana")
+    body = {"task": "three_arm_lift_wiping", "arm_kinds": {"arm1": "ur5e"}}
+    await ana.post("/api/rooms", json=body)
+    assert dict(asked[0].open.arm_kinds) == {"arm1": "ur5e"}
+    for kinds in ({"arm1": "../ur5e"}, {"arm1": ""}, {f"arm{n}": "ur5e" for n in range(9)}):
+        assert (await ana.post("/api/rooms", json=body | {"arm_kinds": kinds})).status_code == 400
+    assert len(asked) == 1
+
+
 async def test_only_who_has_joined_and_only_from_our_pages(enter: Enter, asked: list[RoomsRequest]) -> None:
     stranger, ana = await enter(), await enter("Ana")
     body = {"task": "three_arm_lift_wiping"}

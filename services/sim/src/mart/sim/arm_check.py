@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from mart.protocol.arms import ArmKind
-from mart.protocol.errors import InvalidInput
+from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Task, get_task, task_names
 from mart.sim.experts.run_experts import run_experts
@@ -46,11 +46,11 @@ def check_arm(kind: ArmKind) -> Iterator[ArmFinding]:
     try:
         world = _world_of(get_task(_TASK), kind)
         world.reset(_SEED)
-    except (InvalidInput, ValueError) as error:  # the latter are MuJoCo's own words of what it cannot compile
+    except (MartError, ValueError) as error:  # what MuJoCo cannot compile is a ValueError, in its own words
         yield ArmFinding("loads", ok=False, said=str(error))
         return
-    joints = f"{kind.joint_count} joints, {kind.gripper} gripper"
-    yield ArmFinding("loads", ok=True, said=f"{kind.title}: {joints}.")
+    said = f"{kind.title}: {kind.joint_count} joints, {kind.gripper} gripper."
+    yield ArmFinding("loads", ok=True, said=said)
     yield from _alone(world, kind)
     for name in task_names():
         yield _in_task(get_task(name), kind)
@@ -160,7 +160,7 @@ def verdict(findings: list[ArmFinding]) -> str:
     if not bad:
         return "It can be used in every task."
     if any(finding.what == "loads" for finding in bad):
-        return "It cannot be used: mend its file first."
+        return "It cannot be used as it is: mend what is marked BAD."
     if all(finding.what == "reach" for finding in bad):
         tasks = len([finding for finding in findings if finding.what == "reach"]) - len(bad)
         return f"It can be used in {tasks} of {tasks + len(bad)} tasks."

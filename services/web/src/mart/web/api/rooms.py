@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
@@ -28,6 +28,9 @@ router = APIRouter(prefix="/api")
 _OUTCOMES = {"success": OUTCOME_SUCCESS, "failure": OUTCOME_FAILURE, "discard": OUTCOME_DISCARDED}
 
 
+ArmKindName = Annotated[str, Field(pattern=r"^[a-z0-9_:]{1,80}$")]
+
+
 class NewRoom(BaseModel):
     """What room is wanted."""
 
@@ -36,6 +39,7 @@ class NewRoom(BaseModel):
     control_hz: float = 0.0  # 0: as the machine holds
     episodes: int = Field(0, ge=0, le=10_000)  # good ones that are wanted; 0: no plan
     arms: int = Field(0, ge=0, le=MAX_ARMS)  # 0: as many as the task usually has
+    arm_kinds: dict[Name, ArmKindName] = Field({}, max_length=MAX_ARMS)  # by arm, of those that are no Pandas
     practice: bool = False  # nothing is to be recorded in it
     course_required: bool = False  # people record who have passed the practice course
 

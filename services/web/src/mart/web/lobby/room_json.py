@@ -85,6 +85,7 @@ def status_json(status: RoomStatus, holder_id: str) -> Json:
             for late in status.waiting_for
         ],
         "seats": [seat_json(seat, holder_id) for seat in status.seats],
+        "arm_kinds": list(status.arm_kinds),
         "to_do": dict(status.to_do),
         "episode": _episode_json(status),
         "episodes_saved": status.episodes_saved,
