@@ -47,9 +47,10 @@ def test_a_partner_sees_what_is_said_and_for_how_long(
         anas.get_by_role("button", name="I have it").click()
         expect(page.locator(".partner[data-arm=arm0]")).to_contain_text("I have it")
         ana.is_fine(f"operator-cue-{size}-{scheme}")
-        anas.keyboard.press("c")
-        expect(anas.locator("#second-still")).to_have_js_property("naturalWidth", 384)
-        ana.is_fine(f"operator-second-view-{size}-{scheme}")
+        if size == "narrow":
+            anas.keyboard.press("c")
+            expect(anas.locator("#second-still")).to_have_js_property("naturalWidth", 384)
+            ana.is_fine(f"operator-second-view-{size}-{scheme}")
         expect(chip).not_to_contain_text("Go")
         expect(page.get_by_role("button", name="Go", exact=True)).not_to_have_class("said")
         leaves(page)
