@@ -168,7 +168,6 @@ def a_word_is_said_to_the_partners_and_theirs_is_heard(phone: Phone, platform: P
     expect(heard).to_have_text("1Orange arm:Come closer")
     assert phone.page.evaluate("() => window.felt") > 1
     phone.is_fine_at([(740, 360), (360, 640)], "phone-hears")
-    expect(heard).to_have_count(0)
 
 
 def the_end_of_tracking_is_said_and_can_be_mended(phone: Phone) -> None:

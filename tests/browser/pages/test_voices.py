@@ -178,6 +178,38 @@ def test_without_a_microphone_one_is_told_what_to_do(browser: Browser, platform:
         ana.is_fine("voices-without-a-microphone")
 
 
+TALK = """async ({ PushToTalk }, { lost, refused }) => {
+  const track = { readyState: "live", stop() {} };
+  navigator.mediaDevices.getUserMedia = async () => ({ getAudioTracks: () => [track] });
+  const said = [];
+  const renewSpeech = async () => { if (refused) throw new Error("You do not host any more."); };
+  const link = { maySpeak: true, say: (one) => said.push(one !== null), renewSpeech };
+  const talk = new PushToTalk(link, () => {});
+  talk.hold(true);
+  while (talk.doing === "asking") await new Promise((resolve) => { setTimeout(resolve); });
+  link.maySpeak = !lost;
+  const told = [talk.doing, talk.interruption, talk.problem, ...said];
+  talk.hold(false);
+  talk.hold(true);
+  const again = talk.problem;
+  talk.hold(false);
+  return [...told, again];
+}"""
+LOST = "The connection is lost: nobody hears you now."
+
+
+@pytest.mark.parametrize(
+    ("what", "told"),
+    [
+        ({}, ["talking", "", "", True, ""]),
+        ({"lost": True}, ["talking", LOST, "", True, LOST]),
+        ({"refused": True}, ["", "", "You do not host any more.", False, ""]),
+    ],
+)
+def test_whoever_is_not_heard_is_told_so(run: Run, what: dict[str, bool], told: list[object]) -> None:
+    assert run("voice/push-to-talk.js", TALK, what) == told
+
+
 @pytest.mark.parametrize(
     ("name", "said"),
     [

@@ -36,8 +36,9 @@ export class PhoneVoice {
 
   /** Shows what holds now; the connection may have changed. */
   update() {
-    const { doing } = this.#talking;
-    setShown(this.#node, this.#link()?.maySpeak ?? false);
+    const { doing, interruption } = this.#talking;
+    if (interruption) this.#tell(interruption);
+    setShown(this.#node, doing !== "" || (this.#link()?.maySpeak ?? false));
     this.#node.setAttribute("aria-pressed", String(doing === "talking"));
     setText(this.#node, doing === "talking" ? "Talking" : "Talk");
   }

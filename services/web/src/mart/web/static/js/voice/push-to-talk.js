@@ -4,6 +4,7 @@ import { messageOf } from "../api.js";
 import { Microphone, microphoneProblem } from "./microphone.js";
 
 const READY = "The microphone is ready: hold to talk.";
+const LOST = "The connection is lost: nobody hears you now.";
 const RENEW_MS = 8000; // a host's right lasts 20 s
 const microphone = new Microphone();
 
@@ -23,6 +24,7 @@ export class PushToTalk {
   #link;
   #onChange;
   #held = false;
+  #spoke = false;
   #renewing = 0;
 
   /**
@@ -34,10 +36,21 @@ export class PushToTalk {
     this.#onChange = onChange;
   }
 
+  /** Why what is said now is not heard, in words; nothing most of the time. */
+  get interruption() {
+    return this.doing === "talking" && !this.#link.maySpeak ? LOST : "";
+  }
+
   /** @param {boolean} held */
   hold(held) {
-    if (held === this.#held || (held && !this.#link.maySpeak)) return;
+    if (held === this.#held) return;
+    if (held && !this.#link.maySpeak) {
+      this.problem = this.#spoke ? LOST : ""; // whoever never might does not know of the key
+      this.#onChange();
+      return;
+    }
     this.#held = held;
+    this.#spoke ||= held;
     if (held) void this.#start();
     else this.#end();
     this.#onChange();

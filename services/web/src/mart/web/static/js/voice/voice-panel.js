@@ -75,8 +75,8 @@ export class VoicePanel {
   }
 
   #text() {
-    const { problem, doing } = this.#talking;
-    if (problem) return problem;
+    const { problem, doing, interruption } = this.#talking;
+    if (problem || interruption) return problem || interruption;
     if (doing === "asking") return "Asking for the microphone…";
     if (doing === "talking" && !this.#isHeard) return "Two people speak already: nobody hears you yet.";
     if (this.#loudspeaker.isBlocked && !this.#loudspeaker.muted) return "Press any key or button to hear the others.";
