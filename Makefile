@@ -26,10 +26,11 @@ PAGE_LIBRARIES := services/web/src/mart/web/static/vendor/three.mjs
 
 BENCHMARKS := $(subst _,-,$(filter-out report,$(basename $(notdir $(wildcard benchmarks/*.py)))))
 
-# Unit tests share nothing but the machine, so they run on every core. Tests of processes and of pages mostly wait: two at
-# a time, each file's by the same worker, because they share the processes; files of long tests come first (tests/conftest.py).
+# Unit tests share nothing but the machine, so they run on every core. Tests of processes mostly wait: two at a time, each
+# file's by the same worker, because they share the processes, and files of long tests first (tests/conftest.py). Browsers
+# have the machine for themselves.
 PYTEST_UNITS = $(BIN)/pytest --numprocesses auto --maxprocesses 8 --dist worksteal
-PYTEST_BY_FILE = $(BIN)/pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
+PYTEST_SYSTEM = $(BIN)/pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
 TASK ?=
 COMPOSE = $(shell docker compose version >/dev/null 2>&1 && echo docker compose || echo docker-compose)
@@ -60,8 +61,8 @@ setup: $(VENV)/.tools ## Make .venv with every part and tool, and install missin
 .PHONY: test
 test: $(VENV)/.tools ## Run every test but the repository's own rules and those that need a container engine
 	@$(PYTEST_UNITS) -m unit
-	@$(PYTEST_BY_FILE) -m system
-	@$(PYTEST_BY_FILE) tests/browser
+	@$(PYTEST_SYSTEM) -m system
+	@$(BIN)/pytest tests/browser
 
 .PHONY: test-fast
 test-fast: $(VENV)/.tools ## Run the quick unit tests: at most 90 s on two cores

@@ -112,6 +112,7 @@ def test_one_drives_commands_and_leaves_by_keys_and_pointer(browser: Browser, pl
 
 
 def everything_is_reached_by_keyboard(page: Page) -> None:
+    expect(page.get_by_role("button", name="Ready")).to_be_visible()
     reached = tab_through(page)
     assert {"leave", "gripper", "pair", "toggle", "stop", "help"} <= set(reached)
     assert any(one.startswith("Ready") for one in reached)

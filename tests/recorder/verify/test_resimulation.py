@@ -204,22 +204,25 @@ def test_a_replica_is_asked_over_the_bus(tmp_path: Path) -> None:
 
 
 def test_a_replica_that_is_away_leaves_the_file_unverified(tmp_path: Path) -> None:
-    ask = replica(MemoryNetwork().connect(), "replica-1")
+    ask = replica(MemoryNetwork().connect(), "replica-1", patience_s=0.0)
     said = verify(recorded(tmp_path, synthetic.states(30)), _ROOM, ask)
     assert said.verdict is Verdict.UNVERIFIED
     assert "No replica 'replica-1' is up" in said.detail
     assert said.pending
 
 
-def test_a_replica_of_which_the_router_knows_nothing_for_a_moment_is_awaited(tmp_path: Path) -> None:
+@pytest.mark.parametrize("forgotten", [1, 2])
+def test_a_replica_of_which_the_router_knows_nothing_for_a_moment_is_awaited(
+    tmp_path: Path, forgotten: int
+) -> None:
     class Restarted(DeafBus):
-        """A router that was started anew has not heard of the replica when it is asked for the second time."""
+        """A router that was started anew has not heard of the replica when it is asked for the first or second time."""
 
         asked = 0
 
         def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
             self.asked += 1
-            return [] if self.asked == 2 else super().alive(alive_expression, timeout_s)
+            return [] if self.asked == forgotten else super().alive(alive_expression, timeout_s)
 
     network = MemoryNetwork()
     server = network.connect()

@@ -214,6 +214,20 @@ def test_a_router_that_says_nothing_is_not_a_system_without_services() -> None:
 
 
 @pytest.mark.system
+def test_nobody_is_left_out_while_others_ask_and_watch() -> None:
+    """One answer in a thousand left a service out, and an episode was not verified."""
+    key = keys.alive(ServiceKind.REPLICA, "replica-1")
+    with running_router() as endpoint, ZenohBus.connect(endpoint) as a, ZenohBus.connect(endpoint) as b:
+        a.announce(key)
+        assert await_alive(b, key, {key}, WAIT_S)
+        b.watch(key, lambda _key, _alive: None)
+        expressions = (key, keys.alive_of(ServiceKind.REPLICA), keys.EVERY_ALIVE)
+        with ThreadPoolExecutor() as threads:
+            asked = [threads.submit(b.alive, expression) for _ in range(200) for expression in expressions]
+            assert all(key in one.result() for one in asked)
+
+
+@pytest.mark.system
 def test_a_router_that_is_away_is_not_a_system_without_services() -> None:
     port = free_port()
     key = keys.alive(ServiceKind.SIM, "room-1")

@@ -16,30 +16,25 @@ from mart.runtime.bus import Bus
 _TIMEOUT_S = 20.0
 _TIMEOUT_PER_TICK_S = 0.02
 _PATIENCE_S = 5.0
+_FIRST_PATIENCE_S = 2.0
 
 # Of a request to step again or to compare. Raises errors of the tree; Unavailable where nobody can answer now.
 AskReplica = Callable[[RolloutRequest], RolloutReply]
 
 
 def replica(bus: Bus, name: str, patience_s: float = _PATIENCE_S) -> AskReplica:
-    """Ask the replica called `name`. Raises Unavailable, at once where there was none, or where it does not answer.
+    """Ask the replica called `name`. Raises Unavailable where there is none, or where it does not answer.
 
-    One that was there is awaited for `patience_s`, as is a router that is away: one that is started anew forgets for
-    about 2 s who is alive.
+    One that was there is awaited for `patience_s`, and at the first request for 2 s: a router that is started anew
+    forgets for about 2 s who is alive. One that was away is not awaited again.
     """
     token = keys.alive(ServiceKind.REPLICA, name)
-    was_up = False
+    awaited_s = min(patience_s, _FIRST_PATIENCE_S)
 
     def ask(request: RolloutRequest) -> RolloutReply:
-        nonlocal was_up
-        try:
-            is_up = bool(bus.alive(token))
-            is_known = is_up or not was_up
-        except Unavailable:
-            is_up = is_known = False
-        if not is_known:
-            is_up = token in await_alive(bus, token, {token}, patience_s)
-        was_up = is_up
+        nonlocal awaited_s
+        is_up = token in (await_alive(bus, token, {token}, awaited_s) if awaited_s else bus.alive(token))
+        awaited_s = patience_s if is_up else 0.0
         if not is_up:
             raise Unavailable(f"No replica {name!r} is up; start one with `mart replica --name {name}`.")
         timeout_s = _TIMEOUT_S + _TIMEOUT_PER_TICK_S * _ticks(request)
