@@ -143,7 +143,7 @@ def _killed_driver(rehearsal: Rehearsal) -> Callable[[], None]:
 
 
 def _cut_hardware(rehearsal: Rehearsal) -> Callable[[], None]:
-    rehearsal.hardware["arm1"].ask(cut_s=0.8)
+    rehearsal.hardware["arm1"].ask(cut_s=0.4)
     return lambda: None
 
 
