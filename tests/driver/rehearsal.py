@@ -8,6 +8,7 @@ from __future__ import annotations
 import heapq
 import itertools
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -174,7 +175,7 @@ class Rehearsal(RoomHarness):
         for driver in self.drivers.values():
             said = driver.turn(self.now_s)
             if said is not None:
-                self._later(lambda now_s, said=said: self.link.hear(said, now_s))
+                self._later(partial(self.link.hear, said))
 
     def _later(self, arrives: Callable[[float], None]) -> None:
         heapq.heappush(self._flying, (self.now_s + _NETWORK_S, next(self._order), arrives))

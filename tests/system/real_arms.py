@@ -68,7 +68,7 @@ class Hardware:
         if self._line is not None:
             self._line.close()
         self._process.kill()
-        self._process.wait()
+        self._process.communicate()
 
 
 class Swinger(Operator):
