@@ -15,7 +15,6 @@ import numpy as np
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
 from mart.protocol.messages import (
     DRIVER_PHASE_STOPPED,
-    OPERATOR_HUMAN,
     ArmMeasured,
     ArmTarget,
     DrivenArm,
@@ -28,6 +27,7 @@ from mart.protocol.pose import Pose
 from mart.protocol.wire_version import DRIVER_WIRE_VERSION
 from mart.sim.room.clutches import Clutch
 from mart.sim.room.command_validation import ReceivedCommand
+from mart.sim.room.seats import SeatTable
 from mart.sim.world.driven_world import ArmReading
 
 SILENT_AFTER_S = 0.1
@@ -142,13 +142,15 @@ class DrivenArms:
         found = ((arm, state, self._fault(state, now_s)) for arm, state in self._states.items())
         return [Trouble(arm, state.called, fault) for arm, state, fault in found if fault]
 
-    def begin_tick(self, tick: int, commands: Mapping[str, ReceivedCommand], now_s: float) -> None:
-        """Take note of what a tick is stepped with."""
+    def begin_tick(
+        self, tick: int, commands: Mapping[str, ReceivedCommand], seats: SeatTable, now_s: float
+    ) -> None:
+        """Take note of what a tick is stepped with. Who has a clutch is said by the seats, not by commands."""
         self._tick, self._stopped, self._repeat_due_s = tick, False, now_s + REPEAT_S
         for arm, state in self._states.items():
             received = commands.get(arm)
             state.target.engaged = received is not None and state.clutch.engages(
-                received.command.engaged, machine=received.command.source != OPERATOR_HUMAN, now_s=now_s
+                received.command.engaged, machine=seats[arm].driver.is_machine, now_s=now_s
             )
 
     def aim(self, arm: str, tool_in_base: Pose, gripper: float) -> None:

@@ -204,7 +204,7 @@ class Room:
         )
 
     def _fire(self, inputs: TickInputs, now_s: float) -> None:
-        self.drivers.begin_tick(self._ticker.tick + 1, inputs.commands, now_s)
+        self.drivers.begin_tick(self._ticker.tick + 1, inputs.commands, self._seats, now_s)
         try:
             state = self._ticker.advance(inputs, self._seats, self._episode, now_s)
         except Diverged as error:

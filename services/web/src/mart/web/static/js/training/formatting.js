@@ -45,7 +45,7 @@ export function learnedText({ episodes, dataset, dataset_episodes: held, sha256,
 
 /** What a training takes of a data set. @type {(data: Messages.DataSet) => string} */
 export function takenText({ name, left_out: leftOut }) {
-  if (!name) return "The successful and verified ones are learned from.";
+  if (!name) return "The successful ones that are verified or of real arms are learned from.";
   if (leftOut === 0) return "A data set is learned from whole, failures too.";
   const are = leftOut === 1 ? "is" : "are";
   return `${plural(leftOut, "episode")} of it ${are} left out: dropped, discarded or deleted since.`;
