@@ -13,7 +13,7 @@ NODE := node_modules
 NODE_BIN := $(NODE)/.bin
 
 # Every part is a distribution of its own; this is the one list of them.
-DISTRIBUTIONS := protocol libraries/runtime libraries/episodes libraries/render libraries/rollouts libraries/operators services/sim services/teleop-gateway services/recorder services/trainer services/web platform
+DISTRIBUTIONS := protocol libraries/runtime libraries/episodes libraries/render libraries/rollouts libraries/operators services/sim services/teleop-gateway services/recorder services/driver services/trainer services/web platform
 PARTS := $(patsubst %/pyproject.toml,%,$(wildcard $(addsuffix /pyproject.toml,$(DISTRIBUTIONS))))
 PART_SOURCES := $(addsuffix /pyproject.toml,$(PARTS)) $(wildcard services/sim/setup.py services/sim/src/mart/sim/world/*.c)
 

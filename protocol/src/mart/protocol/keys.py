@@ -133,6 +133,21 @@ def voices(room: str) -> str:
     return f"{ROOT}/{_segment('room', room)}/arm/*/voice"
 
 
+def arm_target(room: str, arm: str) -> Topic:
+    """Return where a room says what the driver of an arm is to do; carries ArmTargets."""
+    return Topic(_key(room, "arm", arm, "target"), Priority.REAL_TIME, express=True)
+
+
+def arm_measured(room: str, arm: str) -> Topic:
+    """Return where the driver of an arm says how it stands; carries ArmMeasured."""
+    return Topic(_key(room, "arm", arm, "measured"), Priority.REAL_TIME, express=True)
+
+
+def driver(room: str) -> Topic:
+    """Queryable: DriverHello → DriverReply, of a driver that asks for an arm."""
+    return Topic(_key(room, "driver"), Priority.NORMAL, must_arrive=True)
+
+
 def scene(room: str, arm: str) -> Topic:
     """Queryable: SceneRequest → SceneReply, answered by the process of the arm's seat."""
     return Topic(_key(room, "arm", arm, "scene"), Priority.LOW, must_arrive=True)

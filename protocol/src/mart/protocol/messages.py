@@ -38,6 +38,16 @@ from mart.v1.command_pb2 import (
     CommandStamps,
     Operator,
 )
+from mart.v1.driver_pb2 import (
+    DRIVER_PHASE_FOLLOWING,
+    DRIVER_PHASE_HOLDING,
+    DRIVER_PHASE_STOPPED,
+    ArmMeasured,
+    ArmTarget,
+    DriverHello,
+    DriverPhase,
+    DriverReply,
+)
 from mart.v1.pose_pb2 import Pose as PoseMessage
 from mart.v1.rollout_pb2 import RolloutReply, RolloutRequest, StateDifference, WorldArrays
 from mart.v1.room_pb2 import (
@@ -67,6 +77,7 @@ from mart.v1.room_pb2 import (
     OUTCOME_UNSPECIFIED,
     BarrierPhase,
     Cue,
+    DrivenArm,
     EmergencyStop,
     EndedBy,
     Episode,
@@ -119,6 +130,9 @@ __all__ = [
     "CUE_SLOWER",
     "CUE_THANKS",
     "CUE_WAIT",
+    "DRIVER_PHASE_FOLLOWING",
+    "DRIVER_PHASE_HOLDING",
+    "DRIVER_PHASE_STOPPED",
     "ENDED_BY_ABSENCE",
     "ENDED_BY_OPERATOR",
     "ENDED_BY_ROOM",
@@ -144,7 +158,9 @@ __all__ = [
     "OUTCOME_SUCCESS",
     "OUTCOME_UNSPECIFIED",
     "Answer",
+    "ArmMeasured",
     "ArmState",
+    "ArmTarget",
     "BarrierPhase",
     "CatalogueReply",
     "CatalogueRequest",
@@ -153,6 +169,10 @@ __all__ = [
     "Cue",
     "Curve",
     "DataSet",
+    "DrivenArm",
+    "DriverHello",
+    "DriverPhase",
+    "DriverReply",
     "EmergencyStop",
     "EndedBy",
     "Episode",

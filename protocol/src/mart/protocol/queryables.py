@@ -15,9 +15,13 @@ from mart.protocol import codec, keys
 from mart.protocol.keys import Topic
 from mart.protocol.messages import (
     Answer,
+    ArmMeasured,
+    ArmTarget,
     CatalogueReply,
     CatalogueRequest,
     Command,
+    DriverHello,
+    DriverReply,
     EpisodeRequest,
     Event,
     Offer,
@@ -72,6 +76,7 @@ CONNECTION_CHECK = Queryable("check", keys.connection_check, Offer, Answer, MAX_
 SCENE = Queryable("scene", keys.scene, SceneRequest, SceneReply, 4096)
 ROLLOUT = Queryable("rollout", keys.rollout, RolloutRequest, RolloutReply, codec.MAX_MESSAGE_BYTES)
 CATALOGUE = Queryable("catalogue", keys.catalogue, CatalogueRequest, CatalogueReply, 64 * 1024)
+DRIVER = Queryable("driver", keys.driver, DriverHello, DriverReply, 4096)
 TRAINING = Queryable("jobs", keys.training, TrainerRequest, TrainerReply, 64 * 1024)
 
 BROADCASTS = (
@@ -82,10 +87,12 @@ BROADCASTS = (
     Broadcast(keys.event, Event),
     Broadcast(keys.recording, RecordingReport),
     Broadcast(keys.voice, VoicePacket),
+    Broadcast(keys.arm_target, ArmTarget),
+    Broadcast(keys.arm_measured, ArmMeasured),
     Broadcast(keys.video, None),
     Broadcast(keys.still, None),
 )
 
 QUERYABLES: tuple[Queryable[Message, Message], ...] = (
-    SEAT, EPISODE, ROOMS, OPEN_SEAT, SIGNAL, CONNECTION_CHECK, SCENE, ROLLOUT, CATALOGUE, TRAINING,
+    SEAT, EPISODE, ROOMS, OPEN_SEAT, SIGNAL, CONNECTION_CHECK, SCENE, ROLLOUT, CATALOGUE, TRAINING, DRIVER,
 )  # fmt: skip

@@ -39,11 +39,16 @@ _SPOKEN = frozenset(
         "EpisodeRequest",
         "RoomsRequest",
         "VoicePacket",
+        "ArmTarget",
+        "ArmMeasured",
+        "DriverHello",
     }
 )
 # Said at every tick: looking at each name would take half of what looking at the numbers takes.
 _BOUNDED_BY_SIZE = frozenset({"mart/v1/state.proto", "mart/v1/command.proto"})
-_COUNTERS = frozenset({"tick", "last_tick", "seen_tick", "sequence", "seat_epoch", "epoch"})
+_COUNTERS = frozenset(
+    {"tick", "last_tick", "seen_tick", "sequence", "seat_epoch", "epoch", "session", "follows_tick"}
+)
 _NUMBERS = frozenset({"number", "episode", "episode_tick", "ticks", "episodes_saved", "episodes_good"})
 
 _Check = Callable[[Any], str | None]  # a field's value → what is wrong with it

@@ -23,6 +23,7 @@ class ServiceKind(StrEnum):
     TRAINER = "trainer"
     POLICIES = "policies"
     OPERATE = "operate"  # one policy in one seat, by hand
+    DRIVER = "driver"  # of an arm that is not simulated
     PHONE = "phone"  # an emulated one
     WEB = "web"
     TURN = "turn"  # coturn, which says nothing on the bus
@@ -62,3 +63,4 @@ class Verdict(StrEnum):
     VERIFIED = "verified"  # every recorded tick follows from the one before, bit for bit
     DIVERGED = "diverged"
     UNVERIFIED = "unverified"  # nobody could say, or a part could not be checked
+    REAL = "real"  # not stepped again: arms in it were measured, not simulated

@@ -152,22 +152,36 @@ class Plan(_message.Message):
     good: int
     def __init__(self, episodes: _Optional[int] = ..., good: _Optional[int] = ...) -> None: ...
 
+class DrivenArm(_message.Message):
+    __slots__ = ("arm", "driver", "age_s", "fault")
+    ARM_FIELD_NUMBER: _ClassVar[int]
+    DRIVER_FIELD_NUMBER: _ClassVar[int]
+    AGE_S_FIELD_NUMBER: _ClassVar[int]
+    FAULT_FIELD_NUMBER: _ClassVar[int]
+    arm: str
+    driver: str
+    age_s: float
+    fault: str
+    def __init__(self, arm: _Optional[str] = ..., driver: _Optional[str] = ..., age_s: _Optional[float] = ..., fault: _Optional[str] = ...) -> None: ...
+
 class EmergencyStop(_message.Message):
-    __slots__ = ("arm", "name", "wall_ns", "by_host", "also_name")
+    __slots__ = ("arm", "name", "wall_ns", "by_host", "also_name", "fault")
     ARM_FIELD_NUMBER: _ClassVar[int]
     NAME_FIELD_NUMBER: _ClassVar[int]
     WALL_NS_FIELD_NUMBER: _ClassVar[int]
     BY_HOST_FIELD_NUMBER: _ClassVar[int]
     ALSO_NAME_FIELD_NUMBER: _ClassVar[int]
+    FAULT_FIELD_NUMBER: _ClassVar[int]
     arm: str
     name: str
     wall_ns: int
     by_host: bool
     also_name: str
-    def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ..., by_host: _Optional[bool] = ..., also_name: _Optional[str] = ...) -> None: ...
+    fault: str
+    def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ..., by_host: _Optional[bool] = ..., also_name: _Optional[str] = ..., fault: _Optional[str] = ...) -> None: ...
 
 class RoomStatus(_message.Message):
-    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded", "practice", "course_required", "to_do")
+    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded", "practice", "course_required", "driven_arms", "to_do")
     class ToDoEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -196,6 +210,7 @@ class RoomStatus(_message.Message):
     UNRECORDED_FIELD_NUMBER: _ClassVar[int]
     PRACTICE_FIELD_NUMBER: _ClassVar[int]
     COURSE_REQUIRED_FIELD_NUMBER: _ClassVar[int]
+    DRIVEN_ARMS_FIELD_NUMBER: _ClassVar[int]
     TO_DO_FIELD_NUMBER: _ClassVar[int]
     room: str
     task: str
@@ -218,8 +233,9 @@ class RoomStatus(_message.Message):
     unrecorded: str
     practice: bool
     course_required: bool
+    driven_arms: _containers.RepeatedCompositeFieldContainer[DrivenArm]
     to_do: _containers.ScalarMap[str, str]
-    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ..., practice: _Optional[bool] = ..., course_required: _Optional[bool] = ..., to_do: _Optional[_Mapping[str, str]] = ...) -> None: ...
+    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ..., practice: _Optional[bool] = ..., course_required: _Optional[bool] = ..., driven_arms: _Optional[_Iterable[_Union[DrivenArm, _Mapping]]] = ..., to_do: _Optional[_Mapping[str, str]] = ...) -> None: ...
 
 class SeatRequest(_message.Message):
     __slots__ = ("claim", "release", "assign", "hand_back", "free")
@@ -413,7 +429,7 @@ class Event(_message.Message):
         waiting_for: _containers.RepeatedCompositeFieldContainer[Waiting]
         def __init__(self, phase: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ...) -> None: ...
     class EpisodeStarted(_message.Message):
-        __slots__ = ("number", "seed", "seats", "task", "control_hz", "model_sha256", "lockstep", "skill", "time_limit_s")
+        __slots__ = ("number", "seed", "seats", "task", "control_hz", "model_sha256", "lockstep", "skill", "time_limit_s", "measured_arms")
         NUMBER_FIELD_NUMBER: _ClassVar[int]
         SEED_FIELD_NUMBER: _ClassVar[int]
         SEATS_FIELD_NUMBER: _ClassVar[int]
@@ -423,6 +439,7 @@ class Event(_message.Message):
         LOCKSTEP_FIELD_NUMBER: _ClassVar[int]
         SKILL_FIELD_NUMBER: _ClassVar[int]
         TIME_LIMIT_S_FIELD_NUMBER: _ClassVar[int]
+        MEASURED_ARMS_FIELD_NUMBER: _ClassVar[int]
         number: int
         seed: int
         seats: _containers.RepeatedCompositeFieldContainer[Seat]
@@ -432,7 +449,8 @@ class Event(_message.Message):
         lockstep: bool
         skill: str
         time_limit_s: float
-        def __init__(self, number: _Optional[int] = ..., seed: _Optional[int] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., model_sha256: _Optional[str] = ..., lockstep: _Optional[bool] = ..., skill: _Optional[str] = ..., time_limit_s: _Optional[float] = ...) -> None: ...
+        measured_arms: _containers.RepeatedScalarFieldContainer[str]
+        def __init__(self, number: _Optional[int] = ..., seed: _Optional[int] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., model_sha256: _Optional[str] = ..., lockstep: _Optional[bool] = ..., skill: _Optional[str] = ..., time_limit_s: _Optional[float] = ..., measured_arms: _Optional[_Iterable[str]] = ...) -> None: ...
     class EpisodeEnded(_message.Message):
         __slots__ = ("number", "outcome", "ticks", "reason", "last_tick", "ended_by", "ended_by_name", "ended_by_arm", "subtasks_done", "subtasks")
         NUMBER_FIELD_NUMBER: _ClassVar[int]

@@ -21,7 +21,7 @@ class TickStamps(_message.Message):
     def __init__(self, due_ns: _Optional[int] = ..., fired_ns: _Optional[int] = ..., stepped_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ...) -> None: ...
 
 class ArmState(_message.Message):
-    __slots__ = ("arm", "tool_in_base", "gripper", "action", "sequence", "arrived_ns", "stamps", "source", "seat_epoch", "engaged", "fresh")
+    __slots__ = ("arm", "tool_in_base", "gripper", "action", "sequence", "arrived_ns", "stamps", "source", "seat_epoch", "engaged", "fresh", "measured", "measured_age_s")
     ARM_FIELD_NUMBER: _ClassVar[int]
     TOOL_IN_BASE_FIELD_NUMBER: _ClassVar[int]
     GRIPPER_FIELD_NUMBER: _ClassVar[int]
@@ -33,6 +33,8 @@ class ArmState(_message.Message):
     SEAT_EPOCH_FIELD_NUMBER: _ClassVar[int]
     ENGAGED_FIELD_NUMBER: _ClassVar[int]
     FRESH_FIELD_NUMBER: _ClassVar[int]
+    MEASURED_FIELD_NUMBER: _ClassVar[int]
+    MEASURED_AGE_S_FIELD_NUMBER: _ClassVar[int]
     arm: str
     tool_in_base: _pose_pb2.Pose
     gripper: float
@@ -44,7 +46,9 @@ class ArmState(_message.Message):
     seat_epoch: int
     engaged: bool
     fresh: bool
-    def __init__(self, arm: _Optional[str] = ..., tool_in_base: _Optional[_Union[_pose_pb2.Pose, _Mapping]] = ..., gripper: _Optional[float] = ..., action: _Optional[_Iterable[float]] = ..., sequence: _Optional[int] = ..., arrived_ns: _Optional[int] = ..., stamps: _Optional[_Union[_command_pb2.CommandStamps, _Mapping]] = ..., source: _Optional[_Union[_command_pb2.Operator, str]] = ..., seat_epoch: _Optional[int] = ..., engaged: _Optional[bool] = ..., fresh: _Optional[bool] = ...) -> None: ...
+    measured: bool
+    measured_age_s: float
+    def __init__(self, arm: _Optional[str] = ..., tool_in_base: _Optional[_Union[_pose_pb2.Pose, _Mapping]] = ..., gripper: _Optional[float] = ..., action: _Optional[_Iterable[float]] = ..., sequence: _Optional[int] = ..., arrived_ns: _Optional[int] = ..., stamps: _Optional[_Union[_command_pb2.CommandStamps, _Mapping]] = ..., source: _Optional[_Union[_command_pb2.Operator, str]] = ..., seat_epoch: _Optional[int] = ..., engaged: _Optional[bool] = ..., fresh: _Optional[bool] = ..., measured: _Optional[bool] = ..., measured_age_s: _Optional[float] = ...) -> None: ...
 
 class Observation(_message.Message):
     __slots__ = ("name", "value")

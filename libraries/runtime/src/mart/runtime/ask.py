@@ -11,6 +11,7 @@ from mart.protocol.keys import Topic
 from mart.protocol.messages import (
     Answer,
     CatalogueReply,
+    DriverReply,
     OpenSeatReply,
     RolloutReply,
     RoomReply,
@@ -24,7 +25,14 @@ from mart.runtime.bus.base import Bus
 
 Reply = TypeVar(
     "Reply",
-    bound=Answer | CatalogueReply | OpenSeatReply | RolloutReply | RoomReply | SceneReply | TrainerReply,
+    bound=Answer
+    | CatalogueReply
+    | DriverReply
+    | OpenSeatReply
+    | RolloutReply
+    | RoomReply
+    | SceneReply
+    | TrainerReply,
 )
 
 

@@ -16,7 +16,7 @@ from mart.sim.settings import ExpertsSettings, ReplicaSettings, SimSettings
 
 def _given(**options: Any) -> dict[str, Any]:
     """Return the options that were given; the others come from the environment or have defaults."""
-    return {name: value for name, value in options.items() if value is not None}
+    return {name: value for name, value in options.items() if value not in (None, ())}
 
 
 @click.command()
@@ -24,6 +24,13 @@ def _given(**options: Any) -> dict[str, Any]:
 @click.option("--task", help="Name of the task; `mart tasks` lists them.")
 @room_rate_option
 @click.option("--arms", type=int, help="How many arms, where the task can have several numbers.")
+@click.option(
+    "--driver",
+    "drivers",
+    multiple=True,
+    metavar="ARM",
+    help="A real arm, driven by `mart driver`; may be repeated.",
+)
 @click.option("--pace", type=float, help="Real-time factor that the world may reach at most.  [default: 1]")
 @click.option("--seed", type=int, help="The room's seed; without it, one is drawn at first start and kept.")
 @click.option("--time-limit-s", type=float, help="Of an episode, simulated.  [default: the task's horizon]")

@@ -33,6 +33,9 @@ class SimSettings(_WorldSettings):
         description="Ticks a second, at most; default: auto, as many as this machine holds; 20 in lockstep.",
     )
     arms: int | None = Field(None, ge=1, description="How many arms; default: the task's own number.")
+    drivers: tuple[str, ...] = Field(
+        (), description="Arms that `mart driver` processes drive; others are simulated."
+    )
     pace: float = Field(1.0, gt=0.0, le=1.0, description="Real-time factor that the world may reach at most.")
     seed: int | None = Field(None, ge=0, description="The room's seed; default: drawn once and kept.")
     time_limit_s: float | None = Field(

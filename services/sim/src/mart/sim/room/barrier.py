@@ -74,6 +74,11 @@ class Decision:
     inputs: TickInputs | None
     next_s: float
 
+    @property
+    def stands(self) -> bool:
+        """Whether no tick fires, because somebody is missing for long or an emergency stop is on."""
+        return self.phase in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED)
+
 
 @dataclass
 class _SeatState:

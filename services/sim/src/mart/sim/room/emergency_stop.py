@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, Forbidden
 from mart.protocol.messages import EmergencyStop, EpisodeRequest, Event
 from mart.sim.room import room_messages
 from mart.sim.room.barrier import Barrier
+from mart.sim.room.driven_arms import Trouble
 from mart.sim.room.saved_room import SavedStop
 from mart.sim.room.seats import SeatTable, require_name
 
@@ -33,6 +34,7 @@ class StopLatch:
         self._paced = paced
         self._barrier, self._seats, self._changed = barrier, seats, changed
         self._pressed = pressed
+        self._troubles: frozenset[Trouble] = frozenset()
         if pressed is not None:
             known = any(seat.arm == pressed.arm for seat in seats)
             barrier.stop(pressed.arm if known else "", now_s)
@@ -62,16 +64,27 @@ class StopLatch:
         self._barrier.stop(seat.arm if seat else "", now_s)
         self._press(self._stop(seat.arm if seat else "", request.name, by_host=request.by_host))
 
-    def let_go(self, request: EpisodeRequest.GoOn) -> None:
+    def hear_drivers(self, troubles: Sequence[Trouble], now_s: float) -> None:
+        """Stop everything while a driver is in trouble; each trouble is told once, by the names of arm and driver."""
+        new = [trouble for trouble in troubles if trouble not in self._troubles]
+        self._troubles = frozenset(troubles)
+        for trouble in new or troubles[: 0 if self._barrier.stopped else 1]:
+            name = f"The driver of {trouble.arm}" + (f" ({trouble.driver})" if trouble.driver else "")
+            self._barrier.stop(trouble.arm, now_s)
+            self._press(self._stop(trouble.arm, name, fault=trouble.fault))
+
+    def let_go(self, request: EpisodeRequest.GoOn, troubles: Sequence[Trouble] = ()) -> None:
         """Let everything go on; of a stop under a host's pause, the stop stays.
 
-        Raises Conflict where nothing is stopped, Forbidden where a host paused and no host lets go, InvalidInput as
-        `press` does.
+        Raises Conflict where nothing is stopped or a driver is in trouble, Forbidden where a host paused and no host
+        lets go, InvalidInput as `press` does.
         """
         require_name(request.name)
         pressed = self._pressed
         if pressed is None:
             raise Conflict("An emergency stop was to be let go, but none is on.")
+        if troubles:
+            raise Conflict(f"The driver of {troubles[0].arm} is not ready: {troubles[0].fault}")
         if pressed.by_host and not request.by_host:
             raise Forbidden(f"{pressed.name}, the host, paused this room; only a host lets it go on.")
         self._pressed = pressed.under
@@ -83,8 +96,8 @@ class StopLatch:
             follows = f"{pressed.under.name} had stopped everything, which holds"
         self._changed(self._pressed, room_messages.notice("info", f"{request.name} {did}: {follows}."))
 
-    def _stop(self, arm: str, name: str, *, by_host: bool = False) -> SavedStop:
-        return SavedStop(arm=arm, name=name, wall_ns=clock.wall_ns(), by_host=by_host)
+    def _stop(self, arm: str, name: str, *, by_host: bool = False, fault: str = "") -> SavedStop:
+        return SavedStop(arm=arm, name=name, wall_ns=clock.wall_ns(), by_host=by_host, fault=fault)
 
     def _press(self, new: SavedStop) -> None:
         """Latch `new`; the first of a kind is named."""
@@ -95,8 +108,14 @@ class StopLatch:
             self._latch(new.model_copy(update={"under": on}), new)
         elif on.by_host and not new.by_host and on.under is None:
             self._latch(on.model_copy(update={"under": new}), new)
+        elif new.fault:
+            self._latch(on, new)
 
     def _latch(self, pressed: SavedStop, new: SavedStop) -> None:
         self._pressed = pressed
-        did = "paused the room" if new.by_host else "stopped everything"
-        self._changed(pressed, room_messages.notice("warning", f"{new.name} {did}."))
+        did = (
+            "paused the room."
+            if new.by_host
+            else "stopped everything" + (f": {new.fault}" if new.fault else ".")
+        )
+        self._changed(pressed, room_messages.notice("warning", f"{new.name} {did}"))

@@ -8,9 +8,7 @@ from collections.abc import Callable, Sequence
 from mart.protocol import clock
 from mart.protocol.errors import MartError
 from mart.protocol.messages import (
-    BARRIER_PHASE_PAUSED,
     BARRIER_PHASE_RUNNING,
-    BARRIER_PHASE_STOPPED,
     EPISODE_PHASE_PRACTICE,
     OPERATOR_HOLD,
     OPERATOR_HUMAN,
@@ -28,6 +26,7 @@ from mart.sim.room import room_messages
 from mart.sim.room.barrier import Barrier, Decision, TickInputs
 from mart.sim.room.command_intake import CommandIntake
 from mart.sim.room.command_validation import CommandRejection
+from mart.sim.room.driven_arms import DrivenArms
 from mart.sim.room.emergency_stop import StopLatch
 from mart.sim.room.episode_state_machine import (
     BeginEpisode,
@@ -40,7 +39,8 @@ from mart.sim.room.episode_state_machine import (
 from mart.sim.room.host_words import hear_host
 from mart.sim.room.recording_rules import RecordingRules
 from mart.sim.room.recording_watch import RecordingWatch
-from mart.sim.room.room_publisher import REPEAT_S, STATUS_S, RoomPublisher
+from mart.sim.room.repeats import Repeats
+from mart.sim.room.room_publisher import RoomPublisher
 from mart.sim.room.saved_room import SavedRoom, SavedStop
 from mart.sim.room.seats import SeatHolder, SeatTable
 from mart.sim.room.ticker import Ticker
@@ -67,10 +67,13 @@ class Room:
         before: RoomStatus = RoomStatus(),  # noqa: B008 - never changed
         terms: Terms = Terms(),  # noqa: B008 - frozen
         explain: Callable[[Diverged], str] = str,
+        drivers: DrivenArms | None = None,
     ) -> None:
         self._name, self._world, self._record = name, world, record
         self._publisher, self._keep, self._explain = publisher, keep, explain
         self._boot_ns = clock.wall_ns()
+        self.drivers = drivers or DrivenArms(name, {}, world.control_hz, send=lambda _: None)
+        self.drivers.begin(self._boot_ns, now_s)
         self._seats = SeatTable(world.arms)
         self._seats.restore(record.holders())
         self._barrier = Barrier(world.arms, world.control_period_s / pace, now_s)
@@ -86,7 +89,7 @@ class Room:
         self.recording_watch = RecordingWatch(self._boot_ns)
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
-        self._status_due_s = self._repeat_due_s = now_s
+        self._repeats = Repeats(publisher, now_s)
         self._stop = StopLatch(
             self._barrier, self._seats, record.stop, self._stop_changed, now_s, paced=not terms.lockstep
         )
@@ -137,7 +140,7 @@ class Room:
                 case "stop":
                     self._stop.press(request.stop, now_s)
                 case "go_on":
-                    self._stop.let_go(request.go_on)
+                    self._stop.let_go(request.go_on, self.drivers.troubles(now_s))
                 case "set_plan" | "require_course":
                     record, said = hear_host(request, self._record, practice=self._terms.practice)
                     self.tell(said)
@@ -147,7 +150,7 @@ class Room:
                     self._do(self._episode.answer(request, self._seats, now_s), now_s)
         except MartError as error:
             return RoomReply(error=error_message(error), status=self.status(now_s))
-        self._status_due_s = now_s
+        self._repeats.status_soon()
         return RoomReply(status=self.status(now_s))
 
     def episode_saved(self, saved: Event.EpisodeSaved) -> None:
@@ -158,10 +161,12 @@ class Room:
 
     def advance(self, now_s: float) -> float:
         """Do what is due; return the time at which to call again if nothing arrives before."""
+        self._stop.hear_drivers(self.drivers.troubles(now_s), now_s)
         decision = self._barrier.advance(now_s, self._episode.world_runs, awaits_away=not self.in_practice)
         if decision.inputs is not None:
             self._fire(decision.inputs, now_s)
         self._decision = decision
+        drivers_s = self.drivers.repeat(self._barrier.stopped, now_s)
         self._tell_barrier(decision)
         for arm in decision.silent:
             self._give_up(arm, now_s)
@@ -170,7 +175,7 @@ class Room:
         self._repeat(now_s)
         if effects or decision.silent:
             return now_s
-        return min(decision.next_s, self._episode.next_s(now_s), self._status_due_s, self._repeat_due_s)
+        return min(decision.next_s, self._episode.next_s(now_s), self._repeats.next_s, drivers_s)
 
     def status(self, now_s: float) -> RoomStatus:
         """Return how the room stands at `now_s`."""
@@ -194,10 +199,12 @@ class Room:
             last_ended=self._last_ended,
             unrecorded=self.recording_watch.objection(now_s),
             practice=self._terms.practice,
+            driven_arms=self.drivers.messages(now_s),
             **room_messages.counts(self._record),
         )
 
     def _fire(self, inputs: TickInputs, now_s: float) -> None:
+        self.drivers.begin_tick(self._ticker.tick + 1, inputs.commands, now_s)
         try:
             state = self._ticker.advance(inputs, self._seats, self._episode, now_s)
         except Diverged as error:
@@ -205,8 +212,7 @@ class Room:
             self._do(self._episode.diverged(now_s), now_s)
             return
         self._tell_state(state, now_s)
-        done, failed = state.progress.success, state.progress.failed or None
-        self._do(self._episode.ticked(done, failed, now_s), now_s)
+        self._do(self._episode.ticked(state.progress.success, state.progress.failed or None, now_s), now_s)
 
     def _do(self, effects: Sequence[Effect], now_s: float) -> None:
         for effect in effects:
@@ -223,12 +229,13 @@ class Room:
                     ended = room_messages.episode_ended(effect, self._ticker.tick, self._ticker.progress)
                     self._last_ended = ended
                     self.tell(Event(episode_ended=ended))
-            self._status_due_s = now_s
+            self._repeats.status_soon()
 
     def _start(self, effect: BeginEpisode, now_s: float) -> None:
         self._remember(self._record.with_changes(episodes=effect.number))
         seats = [self._seat_message(seat, now_s) for seat in self._seats]
         begun = room_messages.episode_started(effect, seats, self._world, self._terms, self._time_limit_s)
+        begun.episode_started.measured_arms.extend(self.drivers.arms)
         self.tell(begun)
         self._tell_state(self._ticker.standing(self._seats, self._episode, now_s), now_s)
         self._barrier.restart(now_s)
@@ -245,26 +252,26 @@ class Room:
         self._do(self._episode.seats_changed(self._seats, now_s), now_s)
         if seat.operator == OPERATOR_HUMAN and self.in_practice and self._ticker.keeps_score:
             self._do(self._episode.practise_anew(), now_s)  # a score is of who drove from the beginning
-        self._status_due_s = now_s
+        self._repeats.status_soon()
 
     def _stop_changed(self, pressed: SavedStop | None, event: Event) -> None:
         self._remember(self._record.with_changes(stop=pressed))
         self.tell(event)
-        self._status_due_s = 0.0
+        self._repeats.status_soon()
 
     def _tell_barrier(self, decision: Decision) -> None:
-        if decision.phase in (BARRIER_PHASE_PAUSED, BARRIER_PHASE_STOPPED):
+        if decision.stands:
             self._episode.interrupt()
         holds = (decision.phase, *(arm for arm, _ in decision.waiting_for))
         if holds != self._told:
             self._told = holds
             self.tell(room_messages.barrier_changed(decision.phase, decision.waiting_for))
-            self._status_due_s = 0.0
+            self._repeats.status_soon()
 
     def _tell_state(self, state: State, now_s: float) -> None:
-        self._publisher.state(state)
+        self.drivers.mark(state, now_s)
+        self._repeats.state(state, now_s)
         self.recording_watch.told(0 if self._terms.lockstep else state.episode, state.tick, now_s)
-        self._repeat_due_s = now_s + REPEAT_S
 
     def tell(self, event: Event) -> None:
         """Tell everybody what has just happened."""
@@ -272,15 +279,10 @@ class Room:
         self._publisher.event(event)
 
     def _repeat(self, now_s: float) -> None:
-        if now_s >= self._repeat_due_s:
-            self._publisher.repeat_state()
-            self._repeat_due_s = now_s + REPEAT_S
         if (news := self.recording_watch.news(now_s)) is not None:
             self.tell(room_messages.notice(*news))
-            self._status_due_s = now_s
-        if now_s >= self._status_due_s:
-            self._publisher.status(self.status(now_s))
-            self._status_due_s = now_s + STATUS_S
+            self._repeats.status_soon()
+        self._repeats.repeat(self.status, now_s)
 
     def _seat_message(self, seat: SeatHolder, now_s: float) -> Seat:
         newest = self._barrier.newest(seat.arm) if seat.operator != OPERATOR_HOLD else None

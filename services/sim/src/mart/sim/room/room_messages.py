@@ -189,7 +189,11 @@ def freed(free: SeatRequest.Free) -> Event:
 
 
 def episode_started(
-    effect: BeginEpisode, seats: Iterable[Seat], world: World, terms: Terms, time_limit_s: float
+    effect: BeginEpisode,
+    seats: Iterable[Seat],
+    world: World,
+    terms: Terms,
+    time_limit_s: float,
 ) -> Event:
     """Return the event of an episode that begins."""
     started = Event.EpisodeStarted(

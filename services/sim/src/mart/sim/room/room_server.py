@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import logging
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput, MartError
-from mart.protocol.messages import EpisodeRequest, Event, RecordingReport, RoomReply, SeatRequest
-from mart.protocol.queryables import EPISODE, SEAT
-from mart.protocol.received import decode_received
+from mart.protocol.messages import (
+    ArmMeasured,
+    DriverHello,
+    DriverReply,
+    EpisodeRequest,
+    Event,
+    RecordingReport,
+    RoomReply,
+    SeatRequest,
+)
+from mart.protocol.queryables import DRIVER, EPISODE, SEAT
+from mart.protocol.received import decode_received, require_room
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Bus, Closable, Request, Sample
 from mart.runtime.serving import RequestAnswerer, send_reply
@@ -19,7 +29,10 @@ from mart.sim.room.save_follower import SaveFollower
 from mart.sim.world import World
 from mart.sim.world.model_message import model_message
 
+_log = logging.getLogger(__name__)
+
 _MAX_REPORT_BYTES = 1024
+_MAX_MEASURED_BYTES = 8192
 
 
 class RoomServer:
@@ -49,6 +62,7 @@ class RoomServer:
         self.show(world)
         self._seat = RequestAnswerer(SEAT, self._answer_seat, self._on_refused)
         self._episode = RequestAnswerer(EPISODE, self._answer_episode, self._on_refused)
+        self._driver = RequestAnswerer(DRIVER, self._answer_driver, self._on_refused_driver)
         self._open: list[Closable] = [
             SaveFollower(bus, name, self._on_saved, garbled, room.unsaved),
             bus.subscribe(keys.recording(name).key, self._on_recording_report),
@@ -56,6 +70,11 @@ class RoomServer:
             bus.serve(keys.seat(name), self._on_seat_request),
             bus.serve(keys.episode(name), self._on_episode_request),
             bus.serve(keys.model(name), self._on_model_request),
+            bus.serve(keys.driver(name), self._on_driver_hello),
+            *(
+                bus.subscribe(keys.arm_measured(name, arm).key, self._on_measured)
+                for arm in room.drivers.arms
+            ),
         ]
 
     def show(self, world: World) -> None:
@@ -84,6 +103,16 @@ class RoomServer:
         )  # fmt: skip
         self._submit(lambda: self._room.hear(payload, arm, at_s, at_wall_ns))
 
+    def _on_measured(self, sample: Sample) -> None:
+        now_s = self._now_s()
+        try:
+            measured = decode_received(ArmMeasured, sample.payload, _MAX_MEASURED_BYTES)
+            require_room(measured, sample.key)
+        except InvalidInput:
+            self._garbled["measured arm"] += 1
+        else:
+            self._submit(lambda: self._room.drivers.hear(measured, now_s))
+
     def _on_recording_report(self, sample: Sample) -> None:
         try:
             report = decode_received(RecordingReport, sample.payload, _MAX_REPORT_BYTES)
@@ -108,6 +137,16 @@ class RoomServer:
     def _on_model_request(self, request: Request) -> None:
         models = self._models
         send_reply(request, models.get(request.payload, models[b""]))
+
+    def _on_driver_hello(self, request: Request) -> None:
+        self._submit(partial(self._driver.respond, request))
+
+    def _answer_driver(self, hello: DriverHello) -> DriverReply:
+        return self._room.drivers.hello(hello, self._now_s())
+
+    def _on_refused_driver(self, error: MartError) -> None:
+        self._garbled["driver"] += 1
+        _log.warning("%s", error)
 
     def _answer_seat(self, request: SeatRequest) -> RoomReply:
         return self._room.answer_seat(request, self._now_s())

@@ -17,7 +17,7 @@ from mart.protocol.messages import operator_from_word, operator_word
 from mart.protocol.received import MAX_COUNTER, MAX_NUMBER
 from mart.protocol.vocabulary import OperatorKind
 from mart.runtime.atomic_file import write_atomically
-from mart.sim.room.seats import Driver, SeatHolder
+from mart.sim.room.seats import SeatHolder, SeatOperator
 
 _log = logging.getLogger(__name__)
 
@@ -36,9 +36,9 @@ class SavedDriver(BaseModel):
     name: str
     policy: str = ""
 
-    def driver(self) -> Driver:
+    def driver(self) -> SeatOperator:
         """Return the driver that this stores."""
-        return Driver(operator_from_word(self.operator), self.holder_id, self.name, self.policy)
+        return SeatOperator(operator_from_word(self.operator), self.holder_id, self.name, self.policy)
 
 
 class SavedSeat(SavedDriver):
@@ -84,7 +84,7 @@ class SavedHostPlan(BaseModel):
 class SavedStop(BaseModel):
     """Store a stop that is on: `name` pressed it, at `arm` where they held a seat; a host's pause where `by_host`.
 
-    under: the stop that a host's pause lies over.
+    fault: what was wrong, where a driver stopped it. under: the stop that a host's pause lies over.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -93,6 +93,7 @@ class SavedStop(BaseModel):
     name: str
     wall_ns: int = Field(ge=0)
     by_host: bool = False
+    fault: str = ""
     under: SavedStop | None = None
 
 
@@ -213,7 +214,7 @@ def _seat_record(seat: SeatHolder) -> SavedSeat:
     return SavedSeat.model_validate({**own, **_fields(seat.driver)})
 
 
-def _fields(driver: Driver) -> dict[str, str]:
+def _fields(driver: SeatOperator) -> dict[str, str]:
     return {**asdict(driver), "operator": operator_word(driver.operator)}
 
 

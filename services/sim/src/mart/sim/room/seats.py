@@ -29,7 +29,7 @@ _POLICY_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
 
 
 @dataclass(frozen=True)
-class Driver:
+class SeatOperator:
     """Tell who drives; `name` is what others see, `policy` names a promoted policy.
 
     `holder_id` is empty for hold, script and a promoted policy, which nobody in particular brought.
@@ -51,7 +51,7 @@ class Driver:
         return self.name or operator_word(self.operator)
 
 
-NOBODY = Driver()
+NOBODY = SeatOperator()
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,8 @@ class SeatHolder:
 
     arm: str
     epoch: int = 1
-    driver: Driver = NOBODY
-    relieved: Driver | None = None
+    driver: SeatOperator = NOBODY
+    relieved: SeatOperator | None = None
     passed_course: bool = field(default=False, compare=False)
 
     @property
@@ -155,7 +155,7 @@ class SeatTable:
         if seat.holder_id not in ("", holder_id) and not takes_over:
             raise SeatTaken(seat)
         return self._change(
-            seat, Driver(operator, holder_id, name), relieved=seat.driver if takes_over else None
+            seat, SeatOperator(operator, holder_id, name), relieved=seat.driver if takes_over else None
         )
 
     def hand_back(self, arm: str, holder_id: str) -> SeatHolder:
@@ -192,7 +192,7 @@ class SeatTable:
             raise InvalidInput(
                 f"{policy[:80]!r} cannot name a promoted policy; use 1 to 64 lower-case letters, digits, '-' or '_'."
             )
-        driver = Driver(operator, name=policy, policy=policy)
+        driver = SeatOperator(operator, name=policy, policy=policy)
         return seat if seat.driver == driver else self._change(seat, driver)
 
     def free(self, arm: str) -> SeatHolder:
@@ -207,7 +207,9 @@ class SeatTable:
         if not holder_id or seat.holder_id != holder_id:
             raise Forbidden(f"{seat.arm} is not your seat; only its holder can leave it or hand it back.")
 
-    def _change(self, seat: SeatHolder, driver: Driver, relieved: Driver | None = None) -> SeatHolder:
+    def _change(
+        self, seat: SeatHolder, driver: SeatOperator, relieved: SeatOperator | None = None
+    ) -> SeatHolder:
         changed = SeatHolder(seat.arm, seat.epoch + 1, driver, relieved)
         self._seats[seat.arm] = changed
         return changed

@@ -11,6 +11,7 @@ from functools import partial
 
 from mart.protocol import clock, keys
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
+from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Event, RoomStatus
 from mart.protocol.practice import require_practice_alone
 from mart.protocol.vocabulary import OperatorKind, ServiceKind
@@ -22,8 +23,10 @@ from mart.runtime.watchdog import Watchdog
 from mart.sim.experts import Skill, get_skill
 from mart.sim.room import saved_room
 from mart.sim.room.automatic_rate import AutomaticRate
+from mart.sim.room.bus_drivers import BusDrivers
 from mart.sim.room.bus_publisher import BusPublisher, OrderedPublisher
 from mart.sim.room.calibration import measure
+from mart.sim.room.driven_arms import DrivenArms
 from mart.sim.room.episode_state_machine import Terms
 from mart.sim.room.live_room import LiveRoom, MakeRoom
 from mart.sim.room.rate_watch import RateWatch
@@ -37,6 +40,7 @@ from mart.sim.room.work_queue import WorkQueue
 from mart.sim.settings import SimSettings
 from mart.sim.world import World
 from mart.sim.world.divergence import DivergenceArchive
+from mart.sim.world.driven_world import DrivenWorld
 
 _log = logging.getLogger(__name__)
 
@@ -57,13 +61,28 @@ def serve_room(settings: SimSettings) -> None:
     )
     skill = get_skill(settings.skill) if settings.skill else None
     world = World.build(settings.task, settings.control_hz or DEFAULT_CONTROL_HZ, settings.arms)
-    if settings.lockstep:
+    if settings.drivers:
+        serve_driven(settings, world)
+    elif settings.lockstep:
         serve_unpaced(settings, world, skill or get_skill(DEFAULT_SKILL))
     else:
         serve_world(settings, world)
 
 
-def serve_world(settings: SimSettings, world: World) -> None:
+def serve_driven(settings: SimSettings, world: World) -> None:
+    """Serve the room with drivers of real arms around a simulated world; its rate is as given, else 20 Hz.
+
+    Raises InvalidInput in lockstep, NotFound for an arm that the task does not have.
+    """
+    if settings.lockstep:
+        raise InvalidInput(
+            "Drivers were given to a room in lockstep: real arms take their time; leave out one."
+        )
+    link = BusDrivers(settings.room, world, settings.drivers)
+    serve_world(settings.model_copy(update={"control_hz": world.control_hz}), DrivenWorld(world, link), link)
+
+
+def serve_world(settings: SimSettings, world: World, drivers: BusDrivers | None = None) -> None:
     """Serve the room of `settings` around a world that exists already; its rate is as given or found to be held."""
     record = _record(settings)
     rate = _automatic_rate(settings, world, record) if settings.control_hz is None else None
@@ -76,9 +95,10 @@ def serve_world(settings: SimSettings, world: World) -> None:
         )
         if rate is not None:
             publisher = RateWatch(publisher, rate, clock.monotonic_s)
-        live = LiveRoom(
-            world, record, _maker(settings, publisher), _keeper(settings), clock.monotonic_s(), rate=rate
-        )
+        if drivers is not None:
+            opened.enter_context(contextlib.closing(drivers.publish_on(service.bus)))
+        make = _maker(settings, publisher, drivers)
+        live = LiveRoom(world, record, make, _keeper(settings), clock.monotonic_s(), rate=rate)
         throttled_log, garbled = ThrottledLog(_log), Counter[str]()
         watchdog = Watchdog(f"The room {settings.room}")
 
@@ -171,7 +191,7 @@ def _hear_pictures(
     return bus.subscribe(keys.event(settings.room).key, DecodingSubscriber(Event, take))
 
 
-def _maker(settings: SimSettings, publisher: RoomPublisher) -> MakeRoom:
+def _maker(settings: SimSettings, publisher: RoomPublisher, drivers: DrivenArms | None) -> MakeRoom:
     terms = Terms(skill=settings.skill or "", time_limit_s=settings.time_limit_s, practice=settings.practice)
     archive = _archive(settings)
 
@@ -193,6 +213,7 @@ def _maker(settings: SimSettings, publisher: RoomPublisher) -> MakeRoom:
             before=before,
             terms=terms,
             explain=archive.keep,
+            drivers=drivers,
         )
 
     return make

@@ -180,12 +180,16 @@ class World:
         begun_s = self.sim_time_s
         self._history.note(self.data, actions)
         self._interface.command(actions)
-        mujoco.mj_step(self.model, self.data, self.substeps)
+        self._advance(actions)
         # Poses of the new state: mj_step leaves those of its last substep's beginning.
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_checkVel(self.model, self.data)  # what MuJoCo would find bad next time is told this time
         if any(self._fatal_warnings.tolist()):
             raise Diverged(begun_s, self.last_states(*self._history.states_and_actions()))
+
+    def _advance(self, _actions: Array) -> None:
+        """Step the physics for one control period; the arms have been commanded."""
+        mujoco.mj_step(self.model, self.data, self.substeps)
 
     def last_states(self, states: Array, actions: Array) -> LastStates:
         """Describe states of this model, shape (n, size), and actions in them, shape (n, arms, 7)."""
