@@ -101,19 +101,14 @@ class Follower:
         elapsed_s = min(max(now_s - self._advanced_s, 0.0), 0.05)
         self._advanced_s = now_s
         objection = self._watch.objection(measured, self._sent, now_s) or self._silence(now_s)
-        if not np.isfinite(measured.joint_positions).all():
-            measured = Measured(
-                measured.stamp_s, np.zeros(self._kinematics.joint_count), self._gripper or 0.0
-            )
-        else:
+        if not objection:
             self._tool = self._kinematics.tool_in_base(measured.joint_positions)
-        objection = objection or self._other_tool(measured)
+            self._gripper = measured.gripper if self._gripper is None else self._gripper
+            objection = self._other_tool(measured)
         if objection:
             self.stop(objection)
         elif self._fault_known:
             self._fault = ""
-        if self._gripper is None:
-            self._gripper = measured.gripper
         if self._fault:
             return self._still(DRIVER_PHASE_STOPPED, "", self._fault)
         why = self._why_it_holds(now_s)

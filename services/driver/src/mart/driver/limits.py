@@ -23,5 +23,5 @@ class MotionLimits:
     tool_speed_m_s: float = 0.25
     tool_speed_rad_s: float = 1.5
     joint_speed_rad_s: float = 1.0
-    lag_rad: float = 0.35
+    lag_rad: float = 0.2
     load: float = 1.0
