@@ -58,9 +58,7 @@ def test_it_lifts_a_cube_beside_a_simulated_arm_and_stops_the_room_where_it_hang
         assert outcome is EpisodeOutcome.SUCCESS
         assert client.states.all()[-1].arms[0].measured
         hangs.touch()
-        stopped = client.statuses.wait_for(
-            lambda status: status.HasField("stop"), since=len(client.statuses)
-        )
+        stopped = client.statuses.wait_for(lambda status: status.HasField("stop"), since=len(client.statuses))
         assert "get_observation" in stopped.stop.fault
         assert "rehearsal_arm" in stopped.stop.fault
 

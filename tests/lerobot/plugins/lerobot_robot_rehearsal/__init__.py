@@ -5,9 +5,11 @@ LeRobot ships no mock: its `mock_robot` lies in the tests of its repository alon
 
 from __future__ import annotations
 
+import json
 import math
 import time
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from lerobot.robots import Robot, RobotConfig
@@ -19,17 +21,21 @@ _SPEED_DEG_S = 120.0
 
 @RobotConfig.register_subclass("rehearsal_arm")
 @dataclass(kw_only=True)
-class RehearsalArmConfig(RobotConfig):
-    """Configure it. joints: how many. hang_file: while there is such a file, reading hangs. asks: a person's Enter."""
+class RehearsalArmConfig(RobotConfig):  # type: ignore[misc]  # LeRobot says no types
+    """Configure it.
+
+    joints: how many. hang_file: while there is such a file, reading hangs. asks: for a person's Enter. report: a file
+    into which it writes where it is at the end.
+    """
 
     joints: int = 7
     hang_file: str = ""
     asks: bool = False
     calibrated: bool = True
-    port: str = ""
+    report: str = ""
 
 
-class RehearsalArm(Robot):  # type: ignore[misc]  # LeRobot has no types
+class RehearsalArm(Robot):  # type: ignore[misc]  # LeRobot says no types
     """Move joints towards what was sent, at a limited speed; degrees, gripper 0 closed … 100 open."""
 
     config_class = RehearsalArmConfig
@@ -63,7 +69,7 @@ class RehearsalArm(Robot):  # type: ignore[misc]  # LeRobot has no types
         return self.config.calibrated
 
     def connect(self, calibrate: bool = True) -> None:
-        if calibrate or self.config.asks:
+        if self.config.asks or (calibrate and not self.is_calibrated):
             input("Press Enter when the arm is in its middle: ")
         self._connected = True
 
@@ -75,8 +81,6 @@ class RehearsalArm(Robot):  # type: ignore[misc]  # LeRobot has no types
 
     def get_observation(self) -> dict[str, float]:
         if self.config.hang_file:
-            from pathlib import Path
-
             while Path(self.config.hang_file).exists():
                 time.sleep(0.01)
         now_s = time.monotonic()
@@ -91,18 +95,20 @@ class RehearsalArm(Robot):  # type: ignore[misc]  # LeRobot has no types
         return action
 
     def disconnect(self) -> None:
+        if self._connected and self.config.report:
+            Path(self.config.report).write_text(json.dumps(self._at))
         self._connected = False
 
 
 @TeleoperatorConfig.register_subclass("rehearsal_hand")
 @dataclass(kw_only=True)
-class RehearsalHandConfig(TeleoperatorConfig):
+class RehearsalHandConfig(TeleoperatorConfig):  # type: ignore[misc]  # LeRobot says no types
     """Configure it. z: what it says of the tool's way up, -1 … 1."""
 
     z: float = 0.5
 
 
-class RehearsalHand(Teleoperator):  # type: ignore[misc]  # LeRobot has no types
+class RehearsalHand(Teleoperator):  # type: ignore[misc]  # LeRobot says no types
     """Say one action again and again: the tool's way up."""
 
     config_class = RehearsalHandConfig

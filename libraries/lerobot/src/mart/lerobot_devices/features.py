@@ -65,6 +65,7 @@ class LeaderNames:
 
     def names(self, joint_count: int) -> tuple[str, ...]:
         """Return the names of an action, the gripper's last; raises InvalidInput where they do not fit the arm."""
+        self._zeros(joint_count)
         names = [name.removeprefix("-") for name in self._joints(joint_count) if name.removeprefix("-")]
         names += [self.gripper] if self.gripper else []
         again = sorted({name for name in names if names.count(name) > 1})

@@ -16,6 +16,7 @@ from mart.runtime.settings import Settings
 
 SILENT_AFTER_S = 5.0
 _TIMEOUT_S = 10.0
+_FIRST_STATE_S = 10.0
 
 
 class RoomFeed:
@@ -57,7 +58,10 @@ class RoomFeed:
         A room that stands still says so, and its newest state is what it is: old.
         """
         with self._arrived:
-            if not self._arrived.wait_for(lambda: self._state is not None, _TIMEOUT_S) or self._state is None:
+            if (
+                not self._arrived.wait_for(lambda: self._state is not None, _FIRST_STATE_S)
+                or self._state is None
+            ):
                 raise Unavailable(f"{self.room} has shown no state: nobody drives there, or it is stopped.")
             silent_s = clock.monotonic_s() - self._heard_s
             if silent_s > SILENT_AFTER_S:
