@@ -17,6 +17,7 @@ from mart.protocol.messages import (
     State,
     pose_message,
 )
+from mart.sim.room.driven_arms import DrivenArms
 from mart.sim.room.episode_state_machine import Terms
 from mart.sim.room.room import Room
 from mart.sim.room.saved_room import SavedRoom
@@ -60,6 +61,7 @@ class RoomHarness:
         record: SavedRoom | None = None,
         explain: Callable[[Diverged], str] = str,
         terms: Terms = Terms(),  # noqa: B008 - frozen
+        drivers: DrivenArms | None = None,
     ) -> None:
         self.world = world
         self.publisher = CapturingPublisher()
@@ -74,6 +76,7 @@ class RoomHarness:
             now_s=self.now_s,
             explain=explain,
             terms=terms,
+            drivers=drivers,
         )
         self._sequence = 0
 

@@ -95,6 +95,7 @@ class Room:
         )
         self._remember(record)
         self._do([ResetWorld(self._episode.seed)], now_s)
+        self._stop.hear_drivers(self.drivers.troubles(now_s), now_s)
 
     @property
     def rejected(self) -> Counter[CommandRejection]:
@@ -173,9 +174,8 @@ class Room:
         effects = self._episode.advance(decision.phase == BARRIER_PHASE_RUNNING, now_s)
         self._do(effects, now_s)
         self._repeat(now_s)
-        if effects or decision.silent:
-            return now_s
-        return min(decision.next_s, self._episode.next_s(now_s), self._repeats.next_s, drivers_s)
+        next_s = min(decision.next_s, self._episode.next_s(now_s), self._repeats.next_s, drivers_s)
+        return now_s if effects or decision.silent else next_s
 
     def status(self, now_s: float) -> RoomStatus:
         """Return how the room stands at `now_s`."""

@@ -1,0 +1,277 @@
+"""Drivers say hello, measure and are told; what is wrong with one stops the room, and everybody hears by name."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mart.protocol.errors import Conflict, InvalidInput, NotFound
+from mart.protocol.messages import (
+    BARRIER_PHASE_RUNNING,
+    BARRIER_PHASE_STOPPED,
+    DRIVER_PHASE_FOLLOWING,
+    DRIVER_PHASE_HOLDING,
+    DRIVER_PHASE_STOPPED,
+    ArmMeasured,
+    ArmTarget,
+    DriverHello,
+    DriverPhase,
+    EpisodeRequest,
+)
+from mart.protocol.wire_version import DRIVER_WIRE_VERSION
+from mart.sim.room.clutches import Clutch
+from mart.sim.room.driven_arms import ArmFacts, DrivenArms
+from mart.sim.world import World
+from mart.sim.world.driven_world import DrivenWorld
+from tests.sim.room.room_harness import RoomHarness
+
+HOME_RAD = [0.0, 0.2, 0.0, -2.1, 0.0, 2.3, 0.785]
+
+
+def hello(arm: str = "arm0", instance: str = "a", **other: object) -> DriverHello:
+    said = {"kind": "panda", "joints": 7, "model_sha256": "m", "wire_version": DRIVER_WIRE_VERSION} | other
+    return DriverHello(arm=arm, driver="OurArm", instance=instance, **said)  # type: ignore[arg-type]
+
+
+class Drivers:
+    """The drivers of some arms, as they look from the room."""
+
+    def __init__(self, arms: tuple[str, ...] = ("arm0",)) -> None:
+        self.told: list[ArmTarget] = []
+        facts = {arm: ArmFacts("panda", 7, "m") for arm in arms}
+        self.arms = DrivenArms("room-1", facts, 20.0, self._keep)
+        self._sessions: dict[str, int] = {}
+        self._sequence = 0
+        self.fault = ""
+        self.silent: set[str] = set()
+
+    def _keep(self, target: ArmTarget) -> None:
+        kept = ArmTarget()
+        kept.CopyFrom(target)
+        self.told.append(kept)
+
+    def connect(self, now_s: float) -> None:
+        for arm in self.arms.arms:
+            self._sessions[arm] = self.arms.hello(hello(arm, instance=arm), now_s).session
+
+    def measure(
+        self, now_s: float, joints: list[float] = HOME_RAD, phase: DriverPhase = DRIVER_PHASE_HOLDING
+    ) -> None:
+        for arm in set(self.arms.arms) - self.silent:
+            self._sequence += 1
+            self.arms.hear(
+                ArmMeasured(
+                    arm=arm,
+                    session=self._sessions[arm],
+                    sequence=self._sequence,
+                    joint_positions=joints,
+                    phase=DRIVER_PHASE_STOPPED if self.fault else phase,
+                    fault=self.fault,
+                ),
+                now_s,
+            )
+
+
+@pytest.fixture(scope="module")
+def compiled() -> World:
+    return World.build("two_arm_multi_cube_lifting")
+
+
+class DrivenRoom(RoomHarness):
+    """A room whose arms are driven by drivers that measure 100 times a second."""
+
+    def __init__(self, compiled: World, arms: tuple[str, ...] = ("arm0", "arm1")) -> None:
+        self.drivers = Drivers(arms)
+        super().__init__(DrivenWorld(compiled, self.drivers.arms), drivers=self.drivers.arms)
+
+    def pass_time(self, elapsed_s: float) -> None:
+        for _ in range(round(elapsed_s / 0.01)):
+            if self.drivers._sessions:
+                self.drivers.measure(self.now_s)
+            super().pass_time(0.01)
+
+    def opened(self) -> None:
+        """Drivers connect, and a person lets it go on."""
+        self.drivers.connect(self.now_s)
+        self.pass_time(0.1)
+        assert self.ask(EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Eva"))) == ""
+        for arm in ("arm0", "arm1"):
+            self.take(arm)
+
+    def texts(self) -> list[str]:
+        return [event.notice.text for event in self.publisher.of("notice")]
+
+
+@pytest.fixture
+def room(compiled: World) -> DrivenRoom:
+    return DrivenRoom(compiled)
+
+
+def test_a_room_stands_until_its_drivers_are_there_and_a_person_lets_it_go_on(room: DrivenRoom) -> None:
+    room.pass_time(0.2)
+    status = room.status()
+    assert status.barrier == BARRIER_PHASE_STOPPED
+    assert [arm.arm for arm in status.driven_arms] == ["arm0", "arm1"]
+    assert all("No driver has connected" in arm.fault for arm in status.driven_arms)
+    assert room.ask(EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Eva"))) == "Conflict"
+    room.opened()
+    room.drive(3)
+    assert room.status().barrier == BARRIER_PHASE_RUNNING
+    assert [arm.measured for arm in room.newest.arms] == [True, True]
+    assert all(arm.measured_age_s <= 0.02 for arm in room.newest.arms)
+
+
+@pytest.mark.parametrize("fault", ["It is hot.", "silence"])
+def test_one_driver_in_trouble_stops_all_arms_and_is_told_by_name(room: DrivenRoom, fault: str) -> None:
+    room.opened()
+    room.drive(3)
+    begun = len(room.drivers.told)
+    if fault == "silence":
+        room.drivers.silent.add("arm1")
+    else:
+        room.drivers.fault = fault
+    room.pass_time(0.13)
+    stop = room.status().stop
+    assert stop.name.startswith("The driver of arm")
+    assert stop.name.endswith("(OurArm)")
+    assert ("silent" if fault == "silence" else fault) in stop.fault
+    last = {target.arm: target for target in room.drivers.told[begun:]}
+    assert {arm: target.stop for arm, target in last.items()} == {"arm0": True, "arm1": True}
+    assert any(text.startswith("The driver of arm1 (OurArm) stopped everything: ") for text in room.texts())
+    assert room.ask(EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Eva"))) == "Conflict"
+    room.drivers.silent.clear()
+    room.drivers.fault = ""
+    room.pass_time(0.05)
+    assert room.ask(EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Eva"))) == ""
+
+
+def test_a_fault_beside_another_stop_is_told_too(room: DrivenRoom) -> None:
+    room.opened()
+    room.drive(2)
+    assert room.ask(EpisodeRequest(stop=EpisodeRequest.Stop(name="Ben"))) == ""
+    room.drivers.fault = "It is hot."
+    room.pass_time(0.1)
+    assert room.status().stop.name == "Ben"
+    assert sum("It is hot." in text for text in room.texts()) == 2  # once for each arm
+
+
+def test_what_nobody_could_hear_is_no_silence(room: DrivenRoom) -> None:
+    room.opened()
+    room.drive(2)
+    room.now_s += 1.0  # this process stood still
+    room.room.advance(room.now_s)
+    assert not room.status().HasField("stop")
+
+
+def test_targets_go_out_at_every_tick_and_again_while_none_fires(room: DrivenRoom) -> None:
+    room.opened()
+    room.drive(2)
+    begun = len(room.drivers.told)
+    room.drive(1, x_m=0.02)
+    moved = [target for target in room.drivers.told[begun:] if target.arm == "arm0"]
+    tool = room.world.tool_pose_in_base("arm0").position
+    assert moved[-1].target_tool_in_base.x == pytest.approx(tool[0] + 0.02, abs=2e-3)
+    assert moved[-1].tick == room.newest.tick
+    room.pass_time(0.2)  # nobody commands
+    repeated = [target for target in room.drivers.told[begun:] if target.arm == "arm0"]
+    assert len(repeated) - len(moved) >= 3
+    assert [t.sequence for t in room.drivers.told] == sorted(t.sequence for t in room.drivers.told)
+
+
+def test_observations_and_the_twin_are_what_was_measured(room: DrivenRoom) -> None:
+    room.opened()
+    room.drive(2)
+    joints = [0.1, 0.3, -0.1, -2.0, 0.1, 2.2, 0.7]
+    for _ in range(6):
+        for arm in ("arm0", "arm1"):
+            room.command(arm)
+        room.drivers.measure(room.now_s, joints, DRIVER_PHASE_FOLLOWING)
+        RoomHarness.pass_time(room, 0.05)
+    seen = {one.name: list(one.value) for one in room.newest.observations}
+    assert seen["arm0/joint_positions"] == pytest.approx(joints)
+    assert seen["arm1/joint_positions"] == pytest.approx(joints)
+
+
+def test_a_reset_leaves_real_arms_where_they_are_and_tells_them_to_stand(room: DrivenRoom) -> None:
+    room.opened()
+    room.drive(2)
+    room.drivers.told.clear()
+    assert room.ask(EpisodeRequest(reset=EpisodeRequest.Reset(holder_id="arm0"))) == ""
+    tool = room.world.tool_pose_in_base("arm0").position
+    (first,) = [target for target in room.drivers.told if target.arm == "arm0"][:1]
+    assert first.target_tool_in_base.x == pytest.approx(tool[0])
+    room.drive(1)
+    seen = {one.name: list(one.value) for one in room.newest.observations}
+    assert seen["arm0/joint_positions"] == pytest.approx(HOME_RAD, abs=1e-9)
+
+
+def test_a_room_may_be_mixed(compiled: World) -> None:
+    room = DrivenRoom(compiled, ("arm1",))
+    room.opened()
+    room.drive(1)
+    begun = room.newest.arms[0].tool_in_base.x
+    room.drive(10, x_m=0.02)
+    assert [arm.measured for arm in room.newest.arms] == [False, True]
+    seen = {one.name: np.array(one.value) for one in room.newest.observations}
+    assert seen["arm1/joint_positions"] == pytest.approx(HOME_RAD)
+    assert room.newest.arms[0].tool_in_base.x - begun > 0.01
+
+
+def test_a_clutch_that_is_held_through_a_stop_moves_nothing(room: DrivenRoom) -> None:
+    room.opened()
+    room.drive(3)  # engaged from the first command on: nobody let go since the room stood
+    assert not any(target.engaged for target in room.drivers.told)
+
+
+def test_a_clutch_counts_once_it_was_let_go_of_since_the_stop() -> None:
+    clutch = Clutch()
+    assert not clutch.engages(True, machine=False, now_s=0.0)
+    assert not clutch.engages(False, machine=False, now_s=1.0)
+    assert clutch.engages(True, machine=False, now_s=2.0)
+    clutch.stopped()
+    assert not clutch.engages(True, machine=False, now_s=3.0)
+
+
+def test_a_machine_is_engaged_by_the_people_who_let_the_stop_go() -> None:
+    clutch = Clutch()
+    assert not clutch.engages(True, machine=True, now_s=0.0)
+    assert not clutch.engages(True, machine=True, now_s=0.4)
+    assert clutch.engages(True, machine=True, now_s=0.6)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [{"kind": "ur5e"}, {"joints": 6}, {"model_sha256": "n"}, {"wire_version": DRIVER_WIRE_VERSION + 1}],
+)
+def test_a_driver_of_another_arm_model_or_version_is_refused(other: dict[str, object]) -> None:
+    with pytest.raises(InvalidInput):
+        Drivers().arms.hello(hello(**other), 0.0)
+
+
+def test_an_arm_that_is_simulated_has_no_driver() -> None:
+    with pytest.raises(NotFound):
+        Drivers().arms.hello(hello("arm1"), 0.0)
+
+
+def test_an_arm_has_one_driver_until_that_falls_silent() -> None:
+    drivers = Drivers()
+    drivers.connect(0.0)
+    with pytest.raises(Conflict):
+        drivers.arms.hello(hello(instance="b"), 0.5)
+    again = drivers.arms.hello(hello(instance="arm0"), 0.6)  # the same one, whose answer was lost
+    assert again.session == 2
+    assert drivers.arms.hello(hello(instance="b"), 2.0).session == 3
+    drivers.measure(2.1)  # what the old one still says
+    assert drivers.arms.rejected["of no session"] == 1
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"joint_positions": [0.0] * 6}, {"gripper": 2.0}, {"age_s": -1.0}, {"sequence": 0}]
+)
+def test_what_is_no_reading_of_the_arm_is_counted_and_left(wrong: dict[str, object]) -> None:
+    drivers = Drivers()
+    drivers.connect(0.0)
+    drivers.measure(0.1)
+    said = {"session": 1, "sequence": 99, "joint_positions": HOME_RAD} | wrong
+    drivers.arms.hear(ArmMeasured(arm="arm0", **said), 0.2)  # type: ignore[arg-type]
+    assert drivers.arms.rejected.total() == 1
