@@ -91,7 +91,6 @@ def test_a_seat_is_recorded_with_a_picture_and_read_back(place: LeRobotPlace) ->
         "--dataset.episode_time_s=2",
         "--dataset.reset_time_s=0",
         "--dataset.fps=20",
-        "--dataset.video=false",
         "--dataset.push_to_hub=false",
         "--play_sounds=false",
     )
@@ -105,9 +104,9 @@ def test_a_seat_is_recorded_with_a_picture_and_read_back(place: LeRobotPlace) ->
     assert said["names"][:3] == [f"arm0.tool_position_in_base.{axis}" for axis in range(3)]
     assert said["action"] == [0.0, 0.0, 0.5, 0.0, 0.0, 0.0, -1.0]
     assert said["heights_m"][1] > said["heights_m"][0]
-    assert said["picture"] == [3, 64, 96]
+    assert said["picture"] == [64, 96, 3]
     assert 0.05 < said["brightness"] < 0.95
-    assert said["task"] == "Lift the cube."
+    assert said["tasks"] == ["Lift the cube."]
 
 
 @pytest.mark.usefixtures("driven")
@@ -143,6 +142,7 @@ def test_whoever_drives_an_arm_leads_a_robot_of_lerobots(place: LeRobotPlace, cl
         (("--robot.arm=arm9",), "NotFound: There is no arm of room-1 'arm9'"),
         (("--robot.room=room-9",), "Unavailable: room-9 cannot be reached"),
         (("--robot.kind=script",), "it may be policy or human"),
+        (("--robot.router=tcp/127.0.0.1:9",), "Unavailable"),
     ],
 )
 def test_what_cannot_be_is_said_in_a_sentence(place: LeRobotPlace, robot: tuple[str, ...], said: str) -> None:

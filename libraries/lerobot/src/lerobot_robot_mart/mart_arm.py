@@ -7,7 +7,7 @@ from typing import Any
 from lerobot.teleoperators import Teleoperator
 
 from lerobot_robot_mart.config_mart import MartArmConfig
-from mart.lerobot_devices import LeaderNames, RoomFeed
+from mart.lerobot_devices import LeaderNames, RoomSubscription
 
 
 class MartArm(Teleoperator):  # type: ignore[misc]  # LeRobot says no types
@@ -21,7 +21,7 @@ class MartArm(Teleoperator):  # type: ignore[misc]  # LeRobot says no types
         super().__init__(config)
         self.config = config
         self._names = LeaderNames(config.joints, config.zeros_deg, config.gripper)
-        self._feed: RoomFeed | None = None
+        self._feed: RoomSubscription | None = None
 
     @property
     def action_features(self) -> dict[str, type]:
@@ -63,7 +63,7 @@ class MartArm(Teleoperator):  # type: ignore[misc]  # LeRobot says no types
         return self._names.action(joints, feed.arm_state(state).gripper)
 
     def send_feedback(self, feedback: dict[str, Any]) -> None:
-        """Feel nothing."""
+        """Take feedback, which nobody can feel here."""
 
     def disconnect(self) -> None:
         """Listen no more."""
@@ -71,7 +71,7 @@ class MartArm(Teleoperator):  # type: ignore[misc]  # LeRobot says no types
             self._feed.close()
             self._feed = None
 
-    def _room(self) -> RoomFeed:
+    def _room(self) -> RoomSubscription:
         if self._feed is None:
-            self._feed = RoomFeed(self.config.room, self.config.arm, self.config.router)
+            self._feed = RoomSubscription(self.config.room, self.config.arm, self.config.router)
         return self._feed

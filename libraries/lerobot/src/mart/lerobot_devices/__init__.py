@@ -6,7 +6,7 @@
 """
 
 from mart.lerobot_devices.features import ACTION_NAMES, LeaderNames
-from mart.lerobot_devices.room_feed import RoomFeed
+from mart.lerobot_devices.room_subscription import RoomSubscription
 from mart.lerobot_devices.seat_session import SeatChoice, SeatSession
 
-__all__ = ["ACTION_NAMES", "LeaderNames", "RoomFeed", "SeatChoice", "SeatSession"]
+__all__ = ["ACTION_NAMES", "LeaderNames", "RoomSubscription", "SeatChoice", "SeatSession"]

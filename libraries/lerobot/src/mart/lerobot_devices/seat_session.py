@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from mart.lerobot_devices.features import ACTION_NAMES, action_numbers, observation_floats, observation_names
-from mart.lerobot_devices.room_feed import RoomFeed
+from mart.lerobot_devices.room_subscription import RoomSubscription
 from mart.operators import Operator, OperatorKind, SeatView, ToolTarget, drive_seats, target_from_action
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput, MartError, Unavailable
@@ -77,7 +77,7 @@ class SeatSession:
         if choice.kind not in (OperatorKind.POLICY, OperatorKind.HUMAN):
             raise InvalidInput(f"The seat was to be driven as {choice.kind!r}; it may be policy or human.")
         self.choice = choice
-        self._feed: RoomFeed | None = None
+        self._feed: RoomSubscription | None = None
         self._renderers: dict[str, Renderer] = {}
         self._operator = LatestTarget()
         self._stop, self._left = threading.Event(), threading.Event()
@@ -150,12 +150,12 @@ class SeatSession:
             "it wait for somebody?"
         )
 
-    def _room(self) -> RoomFeed:
+    def _room(self) -> RoomSubscription:
         if self._feed is None:
-            self._feed = RoomFeed(self.choice.room, self.choice.arm, self.choice.router)
+            self._feed = RoomSubscription(self.choice.room, self.choice.arm, self.choice.router)
         return self._feed
 
-    def _held(self) -> RoomFeed:
+    def _held(self) -> RoomSubscription:
         if self._failure is not None:
             raise self._failure
         if self._driving is None or self._left.is_set():

@@ -38,7 +38,7 @@ class LeRobotRobot(Protocol):
         """Open its connections."""
 
     def get_observation(self) -> Mapping[str, Any]:
-        """Read everything."""
+        """Read every value that it has."""
 
     def send_action(self, action: dict[str, Any]) -> object:
         """Send where the joints are to go."""

@@ -7,11 +7,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from mart.lerobot_devices import RoomFeed
+from mart.lerobot_devices import RoomSubscription
 from mart.protocol import codec, keys
 from mart.protocol.errors import NotFound, Unavailable
 from mart.protocol.messages import Model, RoomStatus, State
 from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.ports import free_port
 from tests.operators.rooms import TASK, state_of
 
 ROOM = "room-1"
@@ -36,7 +37,7 @@ def _say(bus: ZenohBus, state: State) -> None:
 
 
 def test_the_newest_state_is_told(endpoint: str, bus: ZenohBus, monkeypatch: pytest.MonkeyPatch) -> None:
-    with contextlib.closing(RoomFeed(ROOM, "arm1", endpoint)) as feed:
+    with contextlib.closing(RoomSubscription(ROOM, "arm1", endpoint)) as feed:
         _say(bus, state_of(7))
         state = feed.state()
         assert (feed.task.name, state.tick, feed.arm_state(state).arm) == (TASK.name, 7, "arm1")
@@ -47,7 +48,7 @@ def test_the_newest_state_is_told(endpoint: str, bus: ZenohBus, monkeypatch: pyt
         ):
             with pytest.raises(Unavailable):
                 missing()
-        monkeypatch.setattr("mart.lerobot_devices.room_feed.SILENT_AFTER_S", -1.0)
+        monkeypatch.setattr("mart.lerobot_devices.room_subscription.SILENT_AFTER_S", -1.0)
         with pytest.raises(Unavailable, match="said nothing"):
             feed.state()
 
@@ -55,9 +56,9 @@ def test_the_newest_state_is_told(endpoint: str, bus: ZenohBus, monkeypatch: pyt
 def test_a_room_without_a_state_is_told(
     endpoint: str, bus: ZenohBus, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("mart.lerobot_devices.room_feed._FIRST_STATE_S", 0.01)
+    monkeypatch.setattr("mart.lerobot_devices.room_subscription._FIRST_STATE_S", 0.01)
     with (
-        contextlib.closing(RoomFeed(ROOM, "arm1", endpoint)) as feed,
+        contextlib.closing(RoomSubscription(ROOM, "arm1", endpoint)) as feed,
         pytest.raises(Unavailable, match="shown no state"),
     ):
         feed.state()
@@ -67,6 +68,15 @@ def test_a_room_without_a_state_is_told(
 @pytest.mark.parametrize(
     ("room", "arm", "error"), [(ROOM, "arm9", NotFound), ("room-9", "arm0", Unavailable)]
 )
-def test_what_is_not_there_is_a_sentence(endpoint: str, room: str, arm: str, error: type[Exception]) -> None:
+def test_what_is_not_there_is_a_sentence(
+    endpoint: str, room: str, arm: str, error: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if room != ROOM:
+        monkeypatch.setattr("mart.lerobot_devices.room_subscription._TIMEOUT_S", 0.2)
     with pytest.raises(error):
-        RoomFeed(room, arm, endpoint)
+        RoomSubscription(room, arm, endpoint)
+
+
+def test_without_a_router_nobody_is_waited_for() -> None:
+    with pytest.raises(Unavailable):
+        RoomSubscription(ROOM, "arm0", f"tcp/127.0.0.1:{free_port()}")

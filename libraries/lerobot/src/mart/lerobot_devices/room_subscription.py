@@ -15,11 +15,11 @@ from mart.runtime.decoding_subscriber import DecodingSubscriber
 from mart.runtime.settings import Settings
 
 SILENT_AFTER_S = 5.0
-_TIMEOUT_S = 10.0
+_TIMEOUT_S = 5.0
 _FIRST_STATE_S = 10.0
 
 
-class RoomFeed:
+class RoomSubscription:
     """Follow one room over a connection of its own, until `close`.
 
     Raises Unavailable where no router or no such room can be reached, NotFound for an arm that the task does not have.
@@ -31,7 +31,9 @@ class RoomFeed:
         self._heard_s = clock.monotonic_s()
         self._arrived = threading.Condition()
         with contextlib.ExitStack() as opened:
-            self._bus = opened.enter_context(ZenohBus.connect(router or Settings().router))
+            self._bus = opened.enter_context(
+                ZenohBus.connect(router or Settings().router, wait_for_router=False)
+            )
             self.model = _model(self._bus, room)
             if arm not in self.model.arms:
                 raise NotFound.named(f"arm of {room}", arm, self.model.arms)
