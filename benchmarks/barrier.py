@@ -15,14 +15,9 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-import os
 import queue
-import signal
-import subprocess
 import sys
 import tempfile
-import threading
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
@@ -30,6 +25,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 from report import Bar, report, spread
+from support.bus_processes import await_alive, child
 from support.pair_of_worlds import PairOfWorlds
 
 from mart.protocol import clock, codec, keys
@@ -75,7 +71,7 @@ def main() -> None:
     metrics: dict[str, float] = {}
     peer: dict[str, float] = {}
     bars = []
-    with tempfile.TemporaryDirectory() as folder, _child("mart", "router", "--listen", endpoint):
+    with tempfile.TemporaryDirectory() as folder, child("mart", "router", "--listen", endpoint):
         for arms in ARMS:
             times = _measure(arms, endpoint, Path(folder))
             sim, bare = (_percentiles(blocks) for blocks in (times.sim, times.bare))
@@ -101,15 +97,15 @@ def _measure(arms: int, endpoint: str, folder: Path) -> Times:
     sim = ["mart", "sim", *options] if arms <= 4 else [sys.executable, __file__, "serve-pair", room]
     environment = {"MART_ROUTER": endpoint, "MART_DATA_DIR": str(folder)}
     with (
-        _child(*sim, **environment),
-        _child(sys.executable, __file__, "echo", **environment),
+        child(*sim, **environment),
+        child(sys.executable, __file__, "echo", **environment),
         ZenohBus.connect(endpoint) as bus,
     ):
         for kind, name in ((ServiceKind.SIM, room), (ServiceKind.OPERATE, ECHO)):
-            _await_alive(bus, keys.alive(kind, name))
+            await_alive(bus, keys.alive(kind, name))
         *early, last = (f"arm{index}" for index in range(arms))
         seats = [f"{arm}:{_seat(bus, room, arm)}" for arm in early]
-        with _child(sys.executable, __file__, "stream", room, *seats, **environment):
+        with child(sys.executable, __file__, "stream", room, *seats, **environment):
             return LastOperator(bus, room, last).measure()
 
 
@@ -227,24 +223,6 @@ def echo() -> None:
 
 def serve_pair(room: str) -> None:
     serve_world(SimSettings(room=room, seed=1), cast("World", PairOfWorlds(CONTROL_HZ)))
-
-
-@contextlib.contextmanager
-def _child(*command: str, **environment: str) -> Iterator[None]:
-    program = str(Path(sys.executable).with_name(command[0])) if command[0] == "mart" else command[0]
-    process = subprocess.Popen([program, *command[1:]], env={**os.environ, **environment})
-    try:
-        yield
-    finally:
-        process.send_signal(signal.SIGTERM)
-        process.wait()
-
-
-def _await_alive(bus: Bus, key: str) -> None:
-    alive = threading.Event()
-    with contextlib.closing(bus.watch(key, lambda _, present: alive.set() if present else None)):
-        if not alive.wait(30):
-            raise SystemExit(f"{key} did not come up within 30 s")
 
 
 if __name__ == "__main__":

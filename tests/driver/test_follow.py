@@ -188,7 +188,7 @@ def test_whatever_happens_it_stays_within_its_limits_and_moves_for_a_pressed_clu
         if what == "lead":
             arm.lead(value)  # type: ignore[arg-type]
         elif what == "fault":
-            arm.hardware.fault = HardwareFault(value)
+            arm.hardware.fault = HardwareFault(str(value))
         elif what != "wait":
             setattr(arm, what, value)
         arm.pass_time(value if what == "wait" else 0.05)  # type: ignore[arg-type]

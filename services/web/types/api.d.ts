@@ -139,7 +139,7 @@ declare namespace Api {
     episodes_saved: number;
     episodes_good: number;
     plan: Plan | null;
-    stop: { arm: string; name: string; by_host: boolean; also_name: string } | null;
+    stop: { arm: string; name: string; by_host: boolean; also_name: string; fault: string } | null;
     unrecorded: string;
     practice: boolean;
     course_required: boolean;

@@ -44,11 +44,11 @@ def room(**changes: Any) -> dict[str, Any]:
         ({"seats": []}, "Practice. Nobody sits here yet."),
         ({"stale": True}, "This room does not answer; the health page tells more."),
         (
-            {"stop": {"arm": "", "name": "Hanna", "by_host": True, "also_name": ""}},
+            {"stop": {"arm": "", "name": "Hanna", "by_host": True, "also_name": "", "fault": ""}},
             "Paused by Hanna. Let it go on when all are ready.",
         ),
         (
-            {"stop": {"arm": "arm0", "name": "Ana", "by_host": False, "also_name": ""}},
+            {"stop": {"arm": "arm0", "name": "Ana", "by_host": False, "also_name": "", "fault": ""}},
             "Stopped by Ana. Ask what happened, then let it go on.",
         ),
         ({"episode": {"phase": "recording", "elapsed_s": 42.5}}, "Recording 0:42."),

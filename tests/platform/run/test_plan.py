@@ -33,10 +33,12 @@ def test_options_reach_the_commands() -> None:
     assert [" ".join(one.command) for one in left if one.kind == ServiceKind.SIM] == [
         "sim --room lab --task t --control-hz auto"
     ]
+    real = processes(PlatformOptions(Path("data"), task="t", drivers=("arm0", "arm1")))
+    assert real[1].command[-4:] == ("--driver", "arm0", "--driver", "arm1")
     practice = processes(PlatformOptions(Path("data"), room="lab", task="t", practice=True))
     assert practice[1].command[-1] == "--practice"
     wanted = RoomsRequest.Open(room="room-2", task="t", course_required=True)
-    assert room(PlatformOptions(Path("data"), practice=True), wanted).command == (
+    assert room(PlatformOptions(Path("data"), practice=True, drivers=("arm0",)), wanted).command == (
         *("sim", "--room", "room-2", "--task", "t", "--control-hz", "auto", "--course-required"),
     )
     assert words[ServiceKind.WEB] == "web --host 127.0.0.1 --port 8443 --public-host lab.local"

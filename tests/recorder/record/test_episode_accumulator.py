@@ -21,6 +21,7 @@ from mart.protocol.messages import (
     Seat,
     State,
 )
+from mart.protocol.recording import EpisodeRecord
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
 from mart.recorder.record.room_facts import RoomFacts
 from tests.recorder import synthetic
@@ -48,6 +49,19 @@ def test_a_whole_episode_is_complete() -> None:
     assert record.complete
     assert (record.ticks, record.first_tick, record.last_tick) == (20, 100, 120)
     assert (record.outcome, record.reason, record.seed) == ("success", "the task is done", 42)
+
+
+def test_it_says_which_arms_were_measured() -> None:
+    states = synthetic.states(3)
+    assert (folded(states).record(facts()).world, folded(states).record(facts()).measured_arms) == (
+        None,
+        None,
+    )
+    for state in states:
+        state.arms[0].measured = True
+    record = folded(states).record(facts())
+    assert (record.world, record.measured_arms) == ("drivers", ("arm0",))
+    assert EpisodeRecord.from_strings(record.to_strings()) == record
 
 
 @given(st.sets(st.integers(1, 19)))

@@ -49,6 +49,20 @@ def test_an_episode_follows_bit_for_bit(tmp_path: Path) -> None:
     assert said.model_sha256 == synthetic.MODEL.sha256
 
 
+def test_what_drivers_measured_is_real_and_not_stepped_again(tmp_path: Path) -> None:
+    states = synthetic.states(30)
+    for state in states:
+        state.arms[1].measured = True
+    said = verdict(tmp_path, states, ask=_never)
+    assert said.verdict is Verdict.REAL
+    assert "arm1" in said.detail
+    assert not said.pending
+
+
+def _never(_request: RolloutRequest) -> RolloutReply:
+    raise AssertionError("a replica was asked")
+
+
 def test_one_bit_is_enough_to_differ(tmp_path: Path) -> None:
     states = synthetic.states(30)
     world = bytearray(states[17].integration_state)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 import numpy as np
 import pytest
 
@@ -28,8 +31,10 @@ from tests.sim.room.room_harness import RoomHarness
 HOME_RAD = [0.0, 0.2, 0.0, -2.1, 0.0, 2.3, 0.785]
 
 
-def hello(arm: str = "arm0", instance: str = "a", **other: object) -> DriverHello:
-    said = {"kind": "panda", "joints": 7, "model_sha256": "m", "wire_version": DRIVER_WIRE_VERSION} | other
+def hello(
+    arm: str = "arm0", instance: str = "a", other: Mapping[str, object] = MappingProxyType({})
+) -> DriverHello:
+    said = {"kind": "panda", "joints": 7, "model_sha256": "m", "wire_version": DRIVER_WIRE_VERSION, **other}
     return DriverHello(arm=arm, driver="OurArm", instance=instance, **said)  # type: ignore[arg-type]
 
 
@@ -132,12 +137,12 @@ def test_one_driver_in_trouble_stops_all_arms_and_is_told_by_name(room: DrivenRo
         room.drivers.fault = fault
     room.pass_time(0.13)
     stop = room.status().stop
-    assert stop.name.startswith("The driver of arm")
+    assert stop.name.startswith("Driver of arm")
     assert stop.name.endswith("(OurArm)")
     assert ("silent" if fault == "silence" else fault) in stop.fault
     last = {target.arm: target for target in room.drivers.told[begun:]}
     assert {arm: target.stop for arm, target in last.items()} == {"arm0": True, "arm1": True}
-    assert any(text.startswith("The driver of arm1 (OurArm) stopped everything: ") for text in room.texts())
+    assert any(text.startswith("Driver of arm1 (OurArm) stopped everything: ") for text in room.texts())
     assert room.ask(EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Eva"))) == "Conflict"
     room.drivers.silent.clear()
     room.drivers.fault = ""
@@ -245,7 +250,7 @@ def test_a_machine_is_engaged_by_the_people_who_let_the_stop_go() -> None:
 )
 def test_a_driver_of_another_arm_model_or_version_is_refused(other: dict[str, object]) -> None:
     with pytest.raises(InvalidInput):
-        Drivers().arms.hello(hello(**other), 0.0)
+        Drivers().arms.hello(hello(other=other), 0.0)
 
 
 def test_an_arm_that_is_simulated_has_no_driver() -> None:

@@ -93,7 +93,7 @@ async def test_a_host_ends_an_episode_for_all(enter: Enter, room: Room, app_stat
 async def test_a_hosts_pause_is_a_hosts_to_end(enter: Enter, room: Room, app_state: AppState) -> None:
     ana, host = await enter("Ana"), await visitor("host", enter, app_state)
     paused = (await host.post(f"{HOST}/pause")).json()["room"]["stop"]
-    assert paused == {"arm": "", "name": "Ben", "by_host": True, "also_name": ""}
+    assert paused == {"arm": "", "name": "Ben", "by_host": True, "also_name": "", "fault": ""}
     refused = await ana.delete("/api/rooms/room-1/stop")
     assert refused.status_code == 403
     assert "Ben, the host, paused this room" in refused.json()["error"]["message"]

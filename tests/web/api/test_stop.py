@@ -24,9 +24,21 @@ async def test_who_stopped_is_told_and_somebody_else_lets_go(enter: Enter, room:
     ana, ben = await enter("Ana"), await enter("Ben")
     assert (await room_of(ana))["stop"] is None
     stopped = await ben.post(STOP)  # without a seat
-    assert stopped.json()["room"]["stop"] == {"arm": "", "name": "Ben", "by_host": False, "also_name": ""}
+    assert stopped.json()["room"]["stop"] == {
+        "arm": "",
+        "name": "Ben",
+        "by_host": False,
+        "also_name": "",
+        "fault": "",
+    }
     assert stopped.json()["room"]["barrier"] == "stopped"
-    assert (await room_of(ana))["stop"] == {"arm": "", "name": "Ben", "by_host": False, "also_name": ""}
+    assert (await room_of(ana))["stop"] == {
+        "arm": "",
+        "name": "Ben",
+        "by_host": False,
+        "also_name": "",
+        "fault": "",
+    }
     assert (await ana.post(STOP)).json()["room"]["stop"]["name"] == "Ben"  # the first is named
     assert (await ana.delete(STOP)).json()["room"]["stop"] is None
     again = await ana.delete(STOP)
@@ -62,13 +74,20 @@ async def test_a_phone_stops_and_lets_go_in_the_name_of_its_person(enter: Enter,
     assert (await stranger.post(f"{SEAT}/stop")).status_code == 403
     assert (await stranger.post(STOP)).status_code == 401
     assert (await phone.post(f"{SEAT}/stop", headers=headers)).status_code == 200
-    assert (await room_of(ana))["stop"] == {"arm": "arm0", "name": "Ana", "by_host": False, "also_name": ""}
+    assert (await room_of(ana))["stop"] == {
+        "arm": "arm0",
+        "name": "Ana",
+        "by_host": False,
+        "also_name": "",
+        "fault": "",
+    }
     await ana.delete(SEAT)
     assert (await room_of(ana))["stop"] == {
         "arm": "arm0",
         "name": "Ana",
         "by_host": False,
         "also_name": "",
+        "fault": "",
     }  # whoever pressed is gone
     assert (await phone.delete(f"{SEAT}/stop", headers=headers)).status_code == 200
     assert (await room_of(ana))["stop"] is None

@@ -59,6 +59,9 @@ _CONTROL_HZ_OPTION = click.option(
     "--public-host", default="", help="Name or address that people and phones use, where it isn't --host."
 )
 @click.option("--turn", is_flag=True, help="Also relay for people on other networks; needs coturn.")
+@click.option(
+    "--driver", "drivers", multiple=True, metavar="ARM", help="A real arm, driven by `mart driver`."
+)
 @json_option
 def run(
     *,
@@ -72,14 +75,11 @@ def run(
     port: int,
     public_host: str,
     turn: bool,
+    drivers: tuple[str, ...],
     as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
-    from mart.platform.run.plan import (
-        PlatformOptions,
-        processes,
-        training_processes,
-    )
+    from mart.platform.run.plan import PlatformOptions, processes, training_processes
     from mart.platform.run.room_manager import opening_rooms
     from mart.platform.run.running import running_platform
     from mart.platform.run.turn_server import relay_beside, with_relay
@@ -88,7 +88,7 @@ def run(
     from mart.runtime.service import stop_requested
     from mart.runtime.settings import Settings
 
-    get_task(task)
+    list(map(get_task(task).arm, drivers))  # raises NotFound for what the task does not have
     require_practice_alone(practice=practice, course_required=course_required, episodes=episodes or 0)
     settings = Settings()
     given_hz = control_hz if isinstance(control_hz, float) else None
@@ -104,6 +104,7 @@ def run(
         episodes=episodes,
         practice=practice,
         course_required=course_required,
+        drivers=drivers,
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)

@@ -18,6 +18,7 @@ from mart.protocol.enum_words import (
 )
 from mart.protocol.errors import MartError, from_wire
 from mart.protocol.pose import Pose
+from mart.protocol.vocabulary import Verdict
 from mart.v1.catalogue_pb2 import (
     CatalogueReply,
     CatalogueRequest,
@@ -230,6 +231,7 @@ __all__ = [
     "cue_word",
     "ended_by_word",
     "error_message",
+    "is_good",
     "job_state_word",
     "operator_from_word",
     "operator_word",
@@ -254,6 +256,11 @@ def pose_from_message(message: PoseMessage) -> Pose:
         np.array([message.x, message.y, message.z]),
         np.array([message.qw, message.qx, message.qy, message.qz]),
     )
+
+
+def is_good(saved: Event.EpisodeSaved) -> bool:
+    """Tell whether a saved episode counts as good: a success, verified or of real arms."""
+    return saved.outcome == OUTCOME_SUCCESS and (saved.verified or saved.verdict == Verdict.REAL)
 
 
 def error_message(error: MartError) -> Error:

@@ -26,6 +26,7 @@ from mart.protocol.messages import Numerics
 from mart.protocol.record import ControlHz, Count, Number, Record, Seed, Tick, UnixNs
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 
+WORLD_OF_DRIVERS = "drivers"
 PROFILE = "mart"
 SUFFIX = ".mcap"
 PART_SUFFIX = ".mcap.part"  # until the episode is complete, checked and synced
@@ -66,6 +67,8 @@ class EpisodeRecord(Record):
     task: str | None = None
     control_hz: ControlHz | None = None
     arms: tuple[str, ...]
+    world: str | None = None  # "drivers" where arms in it are real
+    measured_arms: tuple[str, ...] | None = None  # by drivers; the others are simulated
     seed: Seed | None = None
     mode: str | None = None  # live (paced) or lockstep (as fast as the machine allowed; no video)
     skill: str | None = None  # of the scripts that drove
@@ -91,7 +94,7 @@ class EpisodeRecord(Record):
     def _known(cls, outcome: str) -> str:
         return EpisodeOutcome(outcome).value
 
-    @field_validator("arms", mode="before")
+    @field_validator("arms", "measured_arms", mode="before")
     @classmethod
     def _split(cls, value: object) -> object:
         return tuple(filter(None, value.split(","))) if isinstance(value, str) else value

@@ -63,4 +63,7 @@ class Verdict(StrEnum):
     VERIFIED = "verified"  # every recorded tick follows from the one before, bit for bit
     DIVERGED = "diverged"
     UNVERIFIED = "unverified"  # nobody could say, or a part could not be checked
-    REAL = "real"  # not stepped again: arms in it were measured, not simulated
+    REAL = "real"  # not re-simulated: arms in it were measured
+
+
+GOOD_VERDICTS = (Verdict.VERIFIED, Verdict.REAL)  # of episodes to learn from and to count

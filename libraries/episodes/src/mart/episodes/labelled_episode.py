@@ -41,6 +41,8 @@ class LabelledEpisode(BaseModel):
     task: str | None = None
     control_hz: float | None = None
     arms: tuple[str, ...] = ()
+    world: str | None = None
+    measured_arms: tuple[str, ...] | None = None
     outcome: str = EpisodeOutcome.UNSPECIFIED.value
     verdict: str = Verdict.UNVERIFIED.value
     verification_pending: bool = False

@@ -59,6 +59,7 @@ class PlatformOptions:
     time_limit_s: float | None = None
     environment: Mapping[str, str] = field(default_factory=dict)
     name: str = ""
+    drivers: tuple[str, ...] = ()  # arms of the first room that `mart driver` processes drive
 
     @property
     def url(self) -> str:
@@ -132,6 +133,8 @@ def _sim(options: PlatformOptions, room: str, *more: str) -> Process:
     }
     for option, value in chosen.items():
         command += [] if value is None else [option, str(value)]
+    for arm in options.drivers:
+        command += ["--driver", arm]
     command += ["--practice"] * options.practice + ["--course-required"] * options.course_required
     return Process((*command, *more), ServiceKind.SIM, room)
 
@@ -147,7 +150,7 @@ def room(options: PlatformOptions, wanted: RoomsRequest.Open) -> Process:
         course_required=wanted.course_required,
     )
     arms = ("--arms", str(wanted.arms)) if wanted.arms else ()
-    return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None), wanted.room, *arms)
+    return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None, drivers=()), wanted.room, *arms)
 
 
 def environment(options: PlatformOptions) -> dict[str, str]:

@@ -6,6 +6,5 @@
 """
 
 from mart.driver.interface import Driver, DriverFault, Measured
-from mart.protocol.pose import Pose
 
-__all__ = ["Driver", "DriverFault", "Measured", "Pose"]
+__all__ = ["Driver", "DriverFault", "Measured"]

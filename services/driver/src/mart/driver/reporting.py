@@ -51,7 +51,7 @@ class Reporter:
         )
 
     def close(self) -> None:
-        """Stop publishing."""
+        """Close the publisher."""
         self._publisher.close()
 
     def _put(self, message: ArmMeasured) -> None:

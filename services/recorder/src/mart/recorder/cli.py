@@ -16,7 +16,7 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.errors import Forbidden, InvalidInput, Unavailable
-from mart.protocol.vocabulary import EpisodeOutcome, Verdict
+from mart.protocol.vocabulary import GOOD_VERDICTS, EpisodeOutcome
 from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
@@ -112,7 +112,7 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     if as_json or not found:
         print_result({"episodes": found, "left_out": left_out}, "There are no episodes.", as_json)
     damaged = any(one.error is not None and not (one.foreign or one.dropped) for one in listed)
-    return 1 if damaged or any(entry["verdict"] != Verdict.VERIFIED for entry in found) else 0
+    return 1 if damaged or any(entry["verdict"] not in GOOD_VERDICTS for entry in found) else 0
 
 
 @episodes.command()
@@ -210,7 +210,7 @@ def label(
     "--out", type=click.Path(path_type=Path), required=True, help="The file or folder to be written."
 )
 @word_option("--outcome", OUTCOMES, EpisodeOutcome.SUCCESS.value)
-@word_option("--verdict", VERDICTS, Verdict.VERIFIED.value)
+@word_option("--verdict", VERDICTS, *GOOD_VERDICTS)
 @click.option("--dataset", default="", help="Only of this data set.")
 @control_hz_option
 @json_option

@@ -9,7 +9,7 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
-from mart.protocol.vocabulary import EpisodeOutcome, Verdict
+from mart.protocol.vocabulary import GOOD_VERDICTS, EpisodeOutcome
 from mart.recorder.filter_options import ANY, filter_of, filters
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import json_option, print_result
@@ -83,7 +83,7 @@ def show(name: str, folder: Path, as_json: bool) -> None:
 @datasets.command()
 @_name
 @_paths
-@filters(EpisodeOutcome.SUCCESS.value, Verdict.VERIFIED.value)
+@filters(EpisodeOutcome.SUCCESS.value, *GOOD_VERDICTS)
 @_folder
 @json_option
 def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:
@@ -99,7 +99,7 @@ def create(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wa
 @datasets.command()
 @_name
 @_paths
-@filters(EpisodeOutcome.SUCCESS.value, Verdict.VERIFIED.value)
+@filters(EpisodeOutcome.SUCCESS.value, *GOOD_VERDICTS)
 @_folder
 @json_option
 def add(name: str, paths: tuple[Path, ...], folder: Path, as_json: bool, **wanted: Any) -> None:

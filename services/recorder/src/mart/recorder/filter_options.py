@@ -20,13 +20,13 @@ ANY = "any"
 Command = TypeVar("Command", bound=Callable[..., object])
 
 
-def filters(outcome: str = ANY, verdict: str = ANY) -> Callable[[Command], Command]:
-    """Give a command the options that `filter_of` reads. outcome, verdict: what it takes where nothing is said."""
+def filters(outcome: str = ANY, *verdicts: str) -> Callable[[Command], Command]:
+    """Give a command the options that `filter_of` reads. outcome, verdicts: what it takes where nothing is said."""
     options = (
         click.option("--dataset", default="", help="Only of this data set."),
         click.option("--skill", default="", help="Only of scripts with this skill."),
         click.option("--operator", default="", help="Driven by human, policy, script, or somebody by name."),
-        word_option("--verdict", VERDICTS, verdict),
+        word_option("--verdict", VERDICTS, *verdicts or (ANY,)),
         word_option("--outcome", OUTCOMES, outcome),
         click.option("--task", default="", help="Only of this task."),
     )
@@ -57,10 +57,12 @@ def filter_of(wanted: Mapping[str, Any], *, unusable: bool) -> EpisodeFilter:
     )
 
 
-def word_option(name: str, words: Iterable[str], usual: str) -> Callable[[Command], Command]:
+def word_option(name: str, words: Iterable[str], *usual: str) -> Callable[[Command], Command]:
     """Return an option that takes one of `words` or `any`, several times; `usual` where nothing is said."""
     choice = click.Choice([*words, ANY])
-    return click.option(name, type=choice, multiple=True, default=(usual,), help=f"[default: {usual}]")
+    return click.option(
+        name, type=choice, multiple=True, default=[*map(str, usual)], help=f"[default: {' and '.join(usual)}]"
+    )
 
 
 def _all_or(given: tuple[str, ...]) -> tuple[str, ...]:

@@ -29,7 +29,7 @@ from mart.protocol.messages import (
     operator_word,
     outcome_word,
 )
-from mart.protocol.recording import CadenceRecord, EpisodeRecord, OperatorsRecord, Shift
+from mart.protocol.recording import WORLD_OF_DRIVERS, CadenceRecord, EpisodeRecord, OperatorsRecord, Shift
 from mart.recorder.record.command_ledger import CommandLedger
 from mart.recorder.record.episode_ending import EpisodeEnding, ending_of
 from mart.recorder.record.room_facts import RoomFacts
@@ -179,12 +179,15 @@ class EpisodeAccumulator:
         """Return the record `mart.episode`. repaired: whether it is put together from what a crash had left."""
         started, ended = self.started, self.ended
         subtasks = [subtask.done for subtask in self._last.progress.subtasks]
+        measured = tuple(arm.arm for arm in self._last.arms if arm.measured)
         return EpisodeRecord(
             room=self.room,
             number=self.number,
             task=facts.task,
             control_hz=facts.control_hz,
             arms=self.arms,
+            world=WORLD_OF_DRIVERS if measured else None,
+            measured_arms=measured or None,
             seed=self.seed,
             mode=started and ("lockstep" if started.lockstep else "live"),
             skill=(started and started.skill) or None,

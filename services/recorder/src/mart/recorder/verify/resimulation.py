@@ -6,6 +6,7 @@ ticks; each begins at a recorded state. What else a file says is not covered: wh
 
 Numbers depend on processor and C library as well (`Numerics`). Where a re-simulation differs, and was computed with
 others than the recording, it says nothing about the recording: the verdict is `unverified`, with the difference.
+What drivers measured on real arms follows from nothing that could be stepped: the verdict is `real`.
 """
 
 from __future__ import annotations
@@ -31,6 +32,10 @@ __all__ = ["AskReplica", "ComparedStretch", "Stretch", "compare", "nobody", "rep
 def verify(file: EpisodeFile, room: RoomRecord, ask: AskReplica) -> VerificationRecord:
     """Step a file again and return the verdict. Never raises for what it finds: a doubt is a verdict."""
     try:
+        measured = _measured_arms(file)
+        if measured:
+            detail = f"Not re-simulated: real. Measured: {', '.join(measured)}."
+            return _record(room, Verdict.REAL, detail)
         return _judge(file, room, ask)
     except MartError as error:
         return _record(room, Verdict.UNVERIFIED, str(error), pending=isinstance(error, Unavailable))
@@ -152,6 +157,12 @@ def _step_again(file: EpisodeFile, room: RoomRecord, ask: AskReplica, *, native:
         last_tick = stretch.last_tick
         checked += stretch.last_tick - stretch.first_tick
     return _SteppedAgain(None, checked, tuple(gaps), numerics)
+
+
+def _measured_arms(file: EpisodeFile) -> list[str]:
+    """Return the arms that drivers measured; a room does not change which those are."""
+    first = next(iter(file.states()), None)
+    return [arm.arm for arm in first.arms if arm.measured] if first is not None else []
 
 
 def _same(room: RoomRecord, numerics: Numerics) -> bool:

@@ -69,7 +69,7 @@ class StopLatch:
         new = [trouble for trouble in troubles if trouble not in self._troubles]
         self._troubles = frozenset(troubles)
         for trouble in new or troubles[: 0 if self._barrier.stopped else 1]:
-            name = f"The driver of {trouble.arm}" + (f" ({trouble.driver})" if trouble.driver else "")
+            name = f"Driver of {trouble.arm}" + (f" ({trouble.driver})" if trouble.driver else "")
             self._barrier.stop(trouble.arm, now_s)
             self._press(self._stop(trouble.arm, name, fault=trouble.fault))
 

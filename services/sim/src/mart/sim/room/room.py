@@ -12,7 +12,6 @@ from mart.protocol.messages import (
     EPISODE_PHASE_PRACTICE,
     OPERATOR_HOLD,
     OPERATOR_HUMAN,
-    OUTCOME_SUCCESS,
     EpisodeRequest,
     Event,
     RoomReply,
@@ -21,6 +20,7 @@ from mart.protocol.messages import (
     SeatRequest,
     State,
     error_message,
+    is_good,
 )
 from mart.sim.room import room_messages
 from mart.sim.room.barrier import Barrier, Decision, TickInputs
@@ -156,8 +156,7 @@ class Room:
 
     def episode_saved(self, saved: Event.EpisodeSaved) -> None:
         """Count an episode that the recorder has saved, once, however often it is told."""
-        good = saved.verified and saved.outcome == OUTCOME_SUCCESS
-        if (counted := self._record.with_saved(saved.number, good)) is not self._record:
+        if (counted := self._record.with_saved(saved.number, is_good(saved))) is not self._record:
             self._remember(counted)
 
     def advance(self, now_s: float) -> float:

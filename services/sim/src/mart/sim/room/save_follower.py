@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput, MartError
-from mart.protocol.messages import OUTCOME_SUCCESS, CatalogueReply, CatalogueRequest, Event, RoomStatus
+from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RoomStatus, is_good
 from mart.protocol.received import decode_received
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.ask import ask
@@ -82,7 +82,7 @@ class SaveFollower:
     def _hear(self, saved: Event.EpisodeSaved) -> None:
         with self._lock:
             self._awaited.see_saved(self._room, saved.number)
-            good = saved.verified and saved.outcome == OUTCOME_SUCCESS
+            good = is_good(saved)
             if self._heard.get(saved.number, False) or self._heard.get(saved.number) is good:
                 return  # an episode in two files, or told of twice
             self._heard[saved.number] = good

@@ -40,7 +40,7 @@ class DriverLink(Protocol):
 
     @property
     def arms(self) -> Sequence[str]:
-        """Their names."""
+        """Return their names."""
 
     def reading(self, arm: str) -> ArmReading | None:
         """Return the newest reading of an arm; None before the first."""

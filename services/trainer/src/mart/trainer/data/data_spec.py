@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind, Verdict
+from mart.protocol.vocabulary import GOOD_VERDICTS, EpisodeOutcome, OperatorKind, Verdict
 
 
 class Selection(BaseModel):
@@ -17,7 +17,7 @@ class Selection(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     outcomes: tuple[EpisodeOutcome, ...] = (EpisodeOutcome.SUCCESS,)
-    verdicts: tuple[Verdict, ...] = (Verdict.VERIFIED,)
+    verdicts: tuple[Verdict, ...] = GOOD_VERDICTS
     operators: tuple[OperatorKind, ...] = ()
     names: tuple[str, ...] = ()
     first: int | None = Field(None, ge=1)  # this many episodes, the oldest

@@ -59,7 +59,10 @@ _paths = click.Path(path_type=Path, exists=True)
     help="[default: success]",
 )
 @click.option(
-    "--verdict", type=click.Choice([*map(str, Verdict), "any"]), multiple=True, help="[default: verified]"
+    "--verdict",
+    type=click.Choice([*map(str, Verdict), "any"]),
+    multiple=True,
+    help="[default: verified and real]",
 )
 @click.option(
     "--operator",

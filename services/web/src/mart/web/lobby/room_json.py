@@ -106,7 +106,13 @@ def _stop_json(status: RoomStatus) -> Json | None:
     stop = status.stop
     if not status.HasField("stop"):
         return None
-    return {"arm": stop.arm, "name": stop.name, "by_host": stop.by_host, "also_name": stop.also_name}
+    return {
+        "arm": stop.arm,
+        "name": stop.name,
+        "by_host": stop.by_host,
+        "also_name": stop.also_name,
+        "fault": stop.fault,
+    }
 
 
 def _task_json(status: RoomStatus) -> Json:

@@ -62,13 +62,14 @@ export function planText(plan) {
 }
 
 /**
- * "Stopped by Ana, blue arm" or "Paused by Ana, the host": who pressed the emergency stop of a room.
+ * "Stopped by Ana, blue arm" or "Paused by Ana, the host": who pressed the emergency stop of a room; a driver says why.
  * @param {Api.Room["stop"]} stop
  */
 export function stoppedText(stop) {
   if (!stop) return "Stopped";
   if (stop.by_host) return `Paused by ${stop.name}, the host${stop.also_name && `; stopped by ${stop.also_name}`}`;
-  return `Stopped by ${stop.name}${stop.arm && `, ${armName(stop.arm).toLowerCase()}`}`;
+  const arm = stop.arm && `, ${armName(stop.arm).toLowerCase()}`;
+  return `Stopped by ${stop.name}${arm}${stop.fault && `: ${stop.fault.replace(/\.$/, "")}`}`;
 }
 
 /** "kept for 20 s more": the seat of somebody who is away; else nothing. @type {(seat: Api.Seat) => string} */

@@ -3,7 +3,7 @@
 import * as api from "../api.js";
 import { badge } from "../arms.js";
 import { element } from "../dom.js";
-import { dateText, drivers, lengthText, outcomeText, rateText, remarks } from "./formatting.js";
+import { dateText, drivers, lengthText, outcomeText, rateText, remarks, verdictText } from "./formatting.js";
 
 /**
  * A line with the box to tick it and a link that opens it.
@@ -60,7 +60,6 @@ const driver = ([arm, text]) => element("span", { class: "driver" }, badge(arm),
 
 /** @param {Api.Episode} episode */
 function measures({ simulated_s: length, real_time_factor: rate, verdict, verification_pending: pending }) {
-  const open = pending ? "verification pending" : "not verified";
-  const check = ["verified", "diverged"].includes(verdict) ? verdict : open;
+  const check = pending ? "verification pending" : verdictText(verdict).toLowerCase();
   return `${lengthText(length)}, ${rateText(rate)}, ${check}`;
 }

@@ -8,7 +8,7 @@ const OUTCOMES = { success: "Success", failure: "Failed", discarded: "Discarded"
 const NOT_SAID = "No outcome";
 
 /** @type {Record<Verdict, string>} */
-const VERDICTS = { verified: "Verified", diverged: "Diverged", unverified: "Not verified" };
+const VERDICTS = { verified: "Verified", diverged: "Diverged", unverified: "Not verified", real: "Real arms" };
 
 /** @type {Record<Messages.Operator, string>} */
 const DRIVERS = { human: "Person", policy: "Policy", script: "Script", hold: "Nobody" };
@@ -16,7 +16,7 @@ const DRIVERS = { human: "Person", policy: "Policy", script: "Script", hold: "No
 /** @type {Record<Messages.Operator, string>} */
 const NAMELESS = { ...DRIVERS, human: "A person", policy: "A policy" };
 
-/** @typedef {"verified" | "diverged" | "unverified"} Verdict */
+/** @typedef {"verified" | "diverged" | "unverified" | "real"} Verdict */
 /** @typedef {[value: string, text: string]} Option */
 
 /** How people can say that an episode ended, in words. */

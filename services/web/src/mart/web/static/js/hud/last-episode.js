@@ -43,5 +43,6 @@ function savingText({ since_s: since }) {
 function savedText({ path, verified, verdict, size_bytes: size }, outcome) {
   const file = `${path} (${fileSize(size)})`;
   if (outcome === "discarded") return `The file is there, left out of data sets: ${file}.`;
-  return `Saved${verified ? " and verified" : verdict && `, ${verdict}`}: ${file}.`;
+  const check = verdict === "real" ? ", of real arms" : verdict && `, ${verdict}`;
+  return `Saved${verified ? " and verified" : check}: ${file}.`;
 }
