@@ -123,6 +123,22 @@ def test_a_robot_that_blocks_is_told_by_name_until_it_goes_on(arm: LeRobotArm, r
     _await(lambda: not arm.read().fault)
 
 
+def test_after_a_hang_it_stands_where_it_is_then_and_obeys_nothing_of_before(
+    arm: LeRobotArm, robot: ToyRobot
+) -> None:
+    arm.connect()
+    robot.goes_on.clear()
+    _await(lambda: bool(arm.read().fault))
+    arm.servo(np.array([0.5, 0.5]), 0.0)
+    arm.stop()
+    robot.at = {"a.pos": 30.0, "b.pos": 20.0, "g.pos": 100.0}
+    robot.goes_on.set()
+    _await(lambda: not arm.read().fault)
+    arm.stop()
+    _await(lambda: bool(robot.sent))
+    assert robot.sent[0] == pytest.approx(robot.at)
+
+
 def test_a_robot_that_asks_a_person_gets_no_answer(arm: LeRobotArm, robot: ToyRobot) -> None:
     robot.connecting = lambda: input("Press Enter: ")
     with pytest.raises(DriverFault, match="terminal"):

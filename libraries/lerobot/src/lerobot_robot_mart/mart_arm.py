@@ -22,6 +22,7 @@ class MartArm(Teleoperator):  # type: ignore[misc]  # LeRobot says no types
         self.config = config
         self._names = LeaderNames(config.joints, config.zeros_deg, config.gripper)
         self._feed: RoomSubscription | None = None
+        self._connected = False
 
     @property
     def action_features(self) -> dict[str, type]:
@@ -36,7 +37,7 @@ class MartArm(Teleoperator):  # type: ignore[misc]  # LeRobot says no types
     @property
     def is_connected(self) -> bool:
         """Whether the room is listened to."""
-        return self._feed is not None
+        return self._connected
 
     @property
     def is_calibrated(self) -> bool:
@@ -45,8 +46,8 @@ class MartArm(Teleoperator):  # type: ignore[misc]  # LeRobot says no types
 
     def connect(self, calibrate: bool = True) -> None:
         """Listen to the room; raises what says why it cannot be, and where the names do not fit the arm."""
-        self._room()
         self.get_action()
+        self._connected = True
 
     def calibrate(self) -> None:
         """Nothing to calibrate."""
@@ -67,6 +68,7 @@ class MartArm(Teleoperator):  # type: ignore[misc]  # LeRobot says no types
 
     def disconnect(self) -> None:
         """Listen no more."""
+        self._connected = False
         if self._feed is not None:
             self._feed.close()
             self._feed = None

@@ -55,6 +55,9 @@ class LeRobotArm(Driver):
         """Hold the arm where it was measured when it was first told to stop; what the gripper holds, it keeps."""
         thread = self._connected()
         if self._held is None:
+            if thread.slowness(clock.monotonic_s()):
+                thread.send(None)  # where it is now will be known when it answers
+                return
             joints, gripper = self._mapping.read(thread.reading().observation)
             self._held = self._mapping.action(joints, gripper if self._gripper is None else self._gripper)
         thread.send(self._held)

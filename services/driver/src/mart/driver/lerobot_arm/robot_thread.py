@@ -93,8 +93,8 @@ class RobotThread:
             f"taken {now_s - self._since_s:.2f} s so far."
         )
 
-    def send(self, action: dict[str, float]) -> None:
-        """Send an action in the thread's next turn, in place of one that waits."""
+    def send(self, action: dict[str, float] | None) -> None:
+        """Send an action in the thread's next turn, in place of one that waits; None: nothing in its place."""
         with self._lock:
             self._wanted = action
 
