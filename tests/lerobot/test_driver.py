@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
 from mart.operators import drive_seats
+from mart.platform.collect.emulated_users import EmulatedUsers
+from mart.platform.collect.live_session import LiveSession
+from mart.platform.collect.saved_episodes import SavedEpisodes
+from mart.platform.run.plan import PlatformOptions
+from mart.platform.run.running import running_platform
 from mart.protocol.messages import EpisodeRequest
 from mart.protocol.vocabulary import EpisodeOutcome
+from mart.runtime.ports import free_port
 from tests.contract.repository import ROOT
 from tests.lerobot.environment import LeRobotPlace
 from tests.support.processes import running_router, running_service
@@ -16,11 +24,11 @@ from tests.system.room_client import RoomClient
 
 ROOM = "room-1"
 JOINTS = ",".join(f"joint{number}.pos" for number in range(1, 8))
-DRIVER = ["mart", "driver", "--room", ROOM, "--arm", "arm0", "--driver", "mart.driver.lerobot_arm:LeRobotArm"]
 
 
-def test_it_lifts_a_cube_beside_a_simulated_arm_and_stops_the_room_where_it_hangs(tmp_path: Path) -> None:
-    hangs = tmp_path / "hangs"
+@contextlib.contextmanager
+def led_by_lerobot(folder: Path, endpoint: str, hangs: Path) -> Iterator[RoomClient]:
+    """Let a robot of LeRobot's be arm0 of the room, and the room go on."""
     options = [
         "type=rehearsal_arm",
         "kind=panda",
@@ -28,16 +36,12 @@ def test_it_lifts_a_cube_beside_a_simulated_arm_and_stops_the_room_where_it_hang
         "gripper=gripper.pos",
         f"hang_file={hangs}",
     ]
-    sim = ["sim", "--room", ROOM, "--seed", "1", "--control-hz", "20", "--driver", "arm0"]
-    data_dir = tmp_path / "data"
+    command = ["mart", "driver", "--room", ROOM, "--arm", "arm0"]
+    command += ["--driver", "mart.driver.lerobot_arm:LeRobotArm"]
+    command += [word for option in options for word in ("--option", option)]
     with (
-        running_router() as endpoint,
-        running_service(sim, endpoint, data_dir, kind="sim", id=ROOM),
-        running_service(["experts"], endpoint, data_dir, kind="experts", id="experts"),
         RoomClient(endpoint, ROOM) as client,
-        LeRobotPlace(tmp_path / "lerobot", endpoint).started(
-            [*DRIVER, *(word for option in options for word in ("--option", option))]
-        ) as log,
+        LeRobotPlace(folder, endpoint).started(command) as log,
     ):
         ready = client.statuses.wait_for(
             lambda status: bool(status.driven_arms[0].driver) and not status.driven_arms[0].fault,
@@ -45,6 +49,19 @@ def test_it_lifts_a_cube_beside_a_simulated_arm_and_stops_the_room_where_it_hang
         )
         assert ready.driven_arms[0].driver == "LeRobotArm", log.read_text()
         client.episode(EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Ana")))
+        yield client
+
+
+def test_it_lifts_a_cube_beside_a_simulated_arm_and_stops_the_room_where_it_hangs(tmp_path: Path) -> None:
+    hangs = tmp_path / "hangs"
+    sim = ["sim", "--room", ROOM, "--seed", "1", "--control-hz", "20", "--driver", "arm0"]
+    data_dir = tmp_path / "data"
+    with (
+        running_router() as endpoint,
+        running_service(sim, endpoint, data_dir, kind="sim", id=ROOM),
+        running_service(["experts"], endpoint, data_dir, kind="experts", id="experts"),
+        led_by_lerobot(tmp_path / "lerobot", endpoint, hangs) as client,
+    ):
         (outcome,) = drive_seats(
             _example().CubeLifter(),
             ROOM,
@@ -61,6 +78,25 @@ def test_it_lifts_a_cube_beside_a_simulated_arm_and_stops_the_room_where_it_hang
         stopped = client.statuses.wait_for(lambda status: status.HasField("stop"), since=len(client.statuses))
         assert "get_observation" in stopped.stop.fault
         assert "rehearsal_arm" in stopped.stop.fault
+
+
+def test_emulated_phones_lift_the_cubes_and_the_episode_is_saved(tmp_path: Path) -> None:
+    options = PlatformOptions(
+        tmp_path / "data",
+        router=f"tcp/127.0.0.1:{free_port()}",
+        port=free_port(),
+        control_hz=20.0,
+        seed=1,
+        drivers=("arm0",),
+    )
+    with (
+        running_platform(options) as platform,
+        led_by_lerobot(tmp_path / "lerobot", options.router, tmp_path / "hangs"),
+        EmulatedUsers(platform, skill="expert", seed=0).seated(["arm0", "arm1"]) as people,
+        contextlib.closing(LiveSession(platform.bus, ROOM, SavedEpisodes(options.data_dir).find)) as session,
+    ):
+        episode = session.run_episode(people)
+    assert episode.outcome is EpisodeOutcome.SUCCESS
 
 
 def _example() -> ModuleType:
