@@ -199,9 +199,10 @@ def hardware() -> Iterator[dict[str, Hardware]]:
             one.close()
 
 
-def until(happens: Callable[[], bool], timeout_s: float = 20.0, every_s: float = 0.05) -> None:
-    """Waits for what only asking tells."""
+def until(happens: Callable[[], bool], why: Callable[[], str], timeout_s: float = 30.0) -> None:
+    """Waits for what only asking tells; `why` it did not happen is told where it takes too long."""
     deadline_s = clock.monotonic_s() + timeout_s
     while not happens():
-        assert clock.monotonic_s() < deadline_s
-        clock.sleep_s(every_s)
+        if clock.monotonic_s() >= deadline_s:
+            raise AssertionError(why())
+        clock.sleep_s(0.05)

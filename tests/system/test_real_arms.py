@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -43,7 +44,10 @@ class Rehearsal:
         command = ["driver", "--room", ROOM, "--arm", arm, "--driver", "mart.driver.simulated:SimulatedArm"]
         command += ["--option", f"address=127.0.0.1:{self.hardware[arm].port}"]
         command += ["--tool-speed-m-s", "0.5", "--joint-speed-rad-s", "2"]
-        return self._opened.enter_context(started(command, self.endpoints[arm], self._data_dir))
+        secret = {
+            "MART_BUS_SECRET_FILE": f"{os.environ['XDG_STATE_HOME']}/bus"
+        }  # by the link's address, none is noted
+        return self._opened.enter_context(started(command, self.endpoints[arm], self._data_dir, secret))
 
     def seat(self, operators: Callable[[str], Operator]) -> None:
         for person in self.people.values():
@@ -53,7 +57,13 @@ class Rehearsal:
     def go_on(self) -> None:
         """A person lets the stop go, as soon as the drivers are ready."""
         request = EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Eva"))
-        until(lambda: not self.client.episode(request).error.code or not self._stopped())
+        said = [""]
+
+        def goes_on() -> bool:
+            said.append(self.client.episode(request).error.message)
+            return not said[-1] or not self._stopped()
+
+        until(goes_on, lambda: "\n".join([said[-1], *(driver.log() for driver in self.drivers.values())]))
 
     def _stopped(self) -> bool:
         seen = len(self.client.statuses)
@@ -77,7 +87,7 @@ class Rehearsal:
             now_s = clock.monotonic_s()
             return all(one.moved_rad(now_s - 0.2) > 0.01 for one in self.hardware.values())
 
-        until(both_move, timeout_s=40.0)
+        until(both_move, lambda: "\n".join(driver.log() for driver in self.drivers.values()), timeout_s=40.0)
 
 
 @pytest.fixture(scope="module")

@@ -54,6 +54,17 @@ def test_without_a_plan_nothing_is_counted() -> None:
     assert "episode " not in in_words(m.RoomStatus(room="room-1"))
 
 
+def test_real_arms_are_named_with_their_drivers() -> None:
+    status = m.RoomStatus(room="room-1")
+    status.driven_arms.add(arm="arm0", driver="OurArm", age_s=0.012)
+    status.driven_arms.add(arm="arm1", fault="No driver has connected.")
+    assert in_words(status).splitlines()[1:] == [
+        "  arm0 is real, OurArm: measured 0.01 s ago",
+        "  arm1 is real, without a driver: No driver has connected.",
+    ]
+    assert [one["driver"] for one in as_json(status)["driven_arms"]] == ["OurArm", ""]
+
+
 def test_the_score_of_the_course_is_shown_station_by_station() -> None:
     status = m.RoomStatus(room="room-2", task="practice_course", practice=True)
     status.seats.append(m.Seat(arm="arm0", operator=m.OPERATOR_HUMAN, name="Ana"))

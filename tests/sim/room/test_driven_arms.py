@@ -160,6 +160,22 @@ def test_a_fault_beside_another_stop_is_told_too(room: DrivenRoom) -> None:
     assert sum("It is hot." in text for text in room.texts()) == 2  # once for each arm
 
 
+def test_troubles_that_come_and_go_are_told_once_until_the_arm_is_well(room: DrivenRoom) -> None:
+    room.opened()
+    room.drive(2)
+    for _ in range(3):
+        for fault in ("It is hot.", "It is cold."):
+            room.drivers.fault = fault
+            room.pass_time(0.1)
+    told = [text for text in room.texts() if "It is" in text]
+    assert len(told) == len(set(told)) == 4
+    room.drivers.fault = ""
+    room.pass_time(0.1)
+    room.drivers.fault = "It is hot."
+    room.pass_time(0.1)
+    assert len([text for text in room.texts() if "It is" in text]) == 6
+
+
 def test_what_nobody_could_hear_is_no_silence(room: DrivenRoom) -> None:
     room.opened()
     room.drive(2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mart.protocol.messages import Plan, RoomStatus, Seat, barrier_word, operator_word, phase_word
+from mart.protocol.messages import DrivenArm, Plan, RoomStatus, Seat, barrier_word, operator_word, phase_word
 from mart.protocol.practice import has_passed, stations_of
 
 
@@ -27,6 +27,10 @@ def as_json(status: RoomStatus) -> dict[str, Any]:
         "plan": _plan_json(status),
         "practice": status.practice,
         "course_required": status.course_required,
+        "driven_arms": [
+            {"arm": one.arm, "driver": one.driver, "age_s": round(one.age_s, 3), "fault": one.fault}
+            for one in status.driven_arms
+        ],
         "course": [_course_json(status, seat) for seat in status.seats if stations_of(status, seat.arm)],
     }
 
@@ -52,7 +56,7 @@ def in_words(status: RoomStatus) -> str:
     if waiting:
         line = f"{line}  waiting for {waiting}"
     scores = [_course_in_words(status, seat) for seat in status.seats if stations_of(status, seat.arm)]
-    return "\n".join([line, *scores])
+    return "\n".join([line, *map(_driven_in_words, status.driven_arms), *scores])
 
 
 def _course_json(status: RoomStatus, seat: Seat) -> dict[str, Any]:
@@ -81,6 +85,12 @@ def _course_in_words(status: RoomStatus, seat: Seat) -> str:
         f"  passed in {sum(one.seconds for one in stations):.1f} s" if has_passed(status, seat.arm) else ""
     )
     return f"  {seat.arm} {seat.name or operator_word(seat.operator)}: {told}{total}"
+
+
+def _driven_in_words(arm: DrivenArm) -> str:
+    """Return how a real arm stands, in a line."""
+    how = arm.fault or f"measured {arm.age_s:.2f} s ago"
+    return f"  {arm.arm} is real, {arm.driver or 'without a driver'}: {how}"
 
 
 def _plan_in_words(plan: Plan) -> str:

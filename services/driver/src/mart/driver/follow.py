@@ -165,7 +165,8 @@ class Follower:
             sent = np.array(measured.joint_positions, dtype=np.float64)
         else:
             sent = self._sent
-        share = min(1.0, (now_s - self._heard_s) * target.control_hz) if target.control_hz > 0.0 else 1.0
+        waited_s = max(now_s - self._heard_s, 0.0)  # what came while the arm was read is of this turn
+        share = min(1.0, waited_s * target.control_hz) if target.control_hz > 0.0 else 1.0
         wanted = _between(self._line_from, self._line_to, share)
         self._setpoint = _within_speed(self._setpoint, wanted, self._limits, elapsed_s)
         joints = self._kinematics.towards(sent, self._setpoint, self._preferred())

@@ -28,6 +28,7 @@ _log = logging.getLogger(__name__)
 
 _KEPT_TARGETS = 32  # between two turns of the servo
 _REST_S = 1.0  # before the hardware is connected anew
+_FAULT_EVERY_S = 0.05
 _HELLO_REST_S = 0.3
 _CONFLICT_PATIENCE_S = 5.0  # for which a driver that has died may still seem to be there
 
@@ -69,9 +70,11 @@ def _lead(settings: DriverSettings, driver: Driver, room: RoomSide, stop: thread
 def _report_fault(room: RoomSide, fault: str, stop: threading.Event) -> None:
     """Tell everybody again and again, for as long as the hardware rests."""
     until_s = clock.monotonic_s() + _REST_S
-    while clock.monotonic_s() < until_s and not stop.wait(0.05):
+    while clock.monotonic_s() < until_s:
         if (session := room.session()) is not None:
             room.reporter.fault(session.number, fault)
+        if stop.wait(_FAULT_EVERY_S):
+            return
 
 
 class Refused(InvalidInput):

@@ -34,7 +34,7 @@ class StopLatch:
         self._paced = paced
         self._barrier, self._seats, self._changed = barrier, seats, changed
         self._pressed = pressed
-        self._troubles: frozenset[Trouble] = frozenset()
+        self._troubles: set[Trouble] = set()  # that were told, of arms that are not well yet
         if pressed is not None:
             known = any(seat.arm == pressed.arm for seat in seats)
             barrier.stop(pressed.arm if known else "", now_s)
@@ -67,7 +67,8 @@ class StopLatch:
     def hear_drivers(self, troubles: Sequence[Trouble], now_s: float) -> None:
         """Stop everything while a driver is in trouble; each trouble is told once, by the names of arm and driver."""
         new = [trouble for trouble in troubles if trouble not in self._troubles]
-        self._troubles = frozenset(troubles)
+        troubled = {trouble.arm for trouble in troubles}
+        self._troubles = {one for one in self._troubles if one.arm in troubled} | set(troubles)
         for trouble in new or troubles[: 0 if self._barrier.stopped else 1]:
             name = f"Driver of {trouble.arm}" + (f" ({trouble.driver})" if trouble.driver else "")
             self._barrier.stop(trouble.arm, now_s)
