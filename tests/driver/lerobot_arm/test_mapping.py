@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mart.driver import DriverFault
@@ -41,6 +41,7 @@ def test_signs_zeros_units_and_the_gripper() -> None:
     assert gripper == 0.75
 
 
+@settings(max_examples=30)
 @given(
     st.lists(st.floats(-3.0, 3.0), min_size=4, max_size=4),
     st.floats(0.0, 1.0),
