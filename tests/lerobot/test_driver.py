@@ -9,14 +9,8 @@ from pathlib import Path
 from types import ModuleType
 
 from mart.operators import drive_seats
-from mart.platform.collect.emulated_users import EmulatedUsers
-from mart.platform.collect.live_session import LiveSession
-from mart.platform.collect.saved_episodes import SavedEpisodes
-from mart.platform.run.plan import PlatformOptions
-from mart.platform.run.running import running_platform
 from mart.protocol.messages import EpisodeRequest
 from mart.protocol.vocabulary import EpisodeOutcome
-from mart.runtime.ports import free_port
 from tests.contract.repository import ROOT
 from tests.lerobot.environment import LeRobotPlace
 from tests.support.processes import running_router, running_service
@@ -78,25 +72,6 @@ def test_it_lifts_a_cube_beside_a_simulated_arm_and_stops_the_room_where_it_hang
         stopped = client.statuses.wait_for(lambda status: status.HasField("stop"), since=len(client.statuses))
         assert "get_observation" in stopped.stop.fault
         assert "rehearsal_arm" in stopped.stop.fault
-
-
-def test_emulated_phones_lift_the_cubes_and_the_episode_is_saved(tmp_path: Path) -> None:
-    options = PlatformOptions(
-        tmp_path / "data",
-        router=f"tcp/127.0.0.1:{free_port()}",
-        port=free_port(),
-        control_hz=20.0,
-        seed=1,
-        drivers=("arm0",),
-    )
-    with (
-        running_platform(options) as platform,
-        led_by_lerobot(tmp_path / "lerobot", options.router, tmp_path / "hangs"),
-        EmulatedUsers(platform, skill="expert", seed=0).seated(["arm0", "arm1"]) as people,
-        contextlib.closing(LiveSession(platform.bus, ROOM, SavedEpisodes(options.data_dir).find)) as session,
-    ):
-        episode = session.run_episode(people)
-    assert episode.outcome is EpisodeOutcome.SUCCESS
 
 
 def _example() -> ModuleType:

@@ -15,6 +15,7 @@ from mart.protocol import clock
 
 SLOW_S = 0.09  # without a reading: told by name before a driver without one counts as stopped
 _CLOSE_S = 2.0
+_PAUSE = "pause"
 
 T = TypeVar("T")
 
@@ -85,8 +86,11 @@ class RobotThread:
         return self._newest
 
     def slowness(self, now_s: float) -> str:
-        """Return by what it is held up, a sentence; empty while readings come."""
-        if self._newest is None or now_s - self._newest.had_s < SLOW_S:
+        """Return by which of its calls it is held up, a sentence; empty while readings come.
+
+        Between two calls it is this machine that is late, which is not the robot's fault and is noticed by the driver.
+        """
+        if self._newest is None or self._calling == _PAUSE or now_s - self._newest.had_s < SLOW_S:
             return ""
         return (
             f"{self._name} is too slow: no reading for {now_s - self._newest.had_s:.2f} s; its {self._calling} has "
@@ -139,7 +143,7 @@ class RobotThread:
             self._newest = Reading(asked_s, clock.monotonic_s(), observation)
             self._begun.set()
             self._send_wanted()
-            self._calling, self._since_s = "pause", clock.monotonic_s()
+            self._calling, self._since_s = _PAUSE, clock.monotonic_s()
             self._closing.wait(asked_s + self._period_s - clock.monotonic_s())
         self._send_wanted()
 
