@@ -13,7 +13,7 @@ NODE := node_modules
 NODE_BIN := $(NODE)/.bin
 
 # Every part is a distribution of its own; this is the one list of them.
-DISTRIBUTIONS := protocol libraries/runtime libraries/episodes libraries/render libraries/rollouts libraries/operators services/sim services/teleop-gateway services/recorder services/driver services/trainer services/web platform
+DISTRIBUTIONS := protocol libraries/runtime libraries/episodes libraries/render libraries/rollouts libraries/operators libraries/lerobot services/sim services/teleop-gateway services/recorder services/driver services/trainer services/web platform
 PARTS := $(patsubst %/pyproject.toml,%,$(wildcard $(addsuffix /pyproject.toml,$(DISTRIBUTIONS))))
 PART_SOURCES := $(addsuffix /pyproject.toml,$(PARTS)) $(wildcard services/sim/setup.py services/sim/src/mart/sim/world/*.c)
 
@@ -23,6 +23,10 @@ PROTOC = $(BIN)/python -m grpc_tools.protoc --proto_path=$(PROTO_DIR) --python_o
 
 # What the pages use of three.js, as one module: made from its package, not in the repository.
 PAGE_LIBRARIES := services/web/src/mart/web/static/vendor/three.mjs
+
+# LeRobot needs other versions than the parts, so it is installed beside them (docs/decisions/0075).
+LEROBOT := .venv-lerobot
+LEROBOT_PARTS := protocol libraries/runtime libraries/operators libraries/render libraries/lerobot services/driver
 
 BENCHMARKS := $(subst _,-,$(filter-out report,$(basename $(notdir $(wildcard benchmarks/*.py)))))
 
@@ -71,6 +75,10 @@ test-fast: $(VENV)/.tools ## Run the quick unit tests: at most 90 s on two cores
 .PHONY: test-compose
 test-compose: $(VENV)/.tools ## Build the images and collect an episode through the containers; needs an engine
 	@$(BIN)/pytest tests/compose
+
+.PHONY: test-lerobot
+test-lerobot: $(VENV)/.tools $(LEROBOT)/.installed ## Try LeRobot's robots, commands and data sets against a room, in an environment of their own: 2 GB
+	@LEROBOT_ENVIRONMENT=$(LEROBOT) $(BIN)/pytest tests/lerobot
 
 .PHONY: check
 check: $(VENV)/.tools check-proto check-pages docs ## Check style, types, import rules, generated code, the documentation and the repository's own rules
@@ -147,7 +155,7 @@ constraints: ## Pin the newest versions of everything anew, from a real installa
 
 .PHONY: clean
 clean: ## Remove everything that was built or recorded by tests; recorded episodes stay
-	@rm -rf $(VENV) $(NODE) $(PAGE_LIBRARIES) build dist test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	@rm -rf $(VENV) $(LEROBOT) $(NODE) $(PAGE_LIBRARIES) build dist test-output .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	@find protocol libraries services platform -name '*.egg-info' -prune -exec rm -rf {} + -o -name '*.so' -delete
 
 .PHONY: help
@@ -175,6 +183,10 @@ $(VENV)/.parts: $(VENV)/.build $(PART_SOURCES) $(PAGE_LIBRARIES)
 $(VENV)/.tools: $(VENV)/.parts pyproject.toml
 	@tools/system-packages browser
 	@$(PIP) install --constraint constraints.txt --group dev
+	@touch $@
+
+$(LEROBOT)/.installed: tools/lerobot-environment constraints.txt $(addsuffix /pyproject.toml,$(LEROBOT_PARTS))
+	@PYTHON=$(PYTHON) tools/lerobot-environment $(LEROBOT) $(LEROBOT_PARTS)
 	@touch $@
 
 # Nothing of these packages is run but esbuild, eslint and tsc, and none of their install scripts.

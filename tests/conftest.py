@@ -19,7 +19,7 @@ from mart.runtime.router import admitting_router
 from tests.support import fuzzing, processes
 
 # Tests in these folders are of the kind of that name; others are unit tests, unless they say `system` themselves.
-_FOLDERS = ("contract", "system", "browser", "compose")
+_FOLDERS = ("contract", "system", "browser", "compose", "lerobot")
 _KINDS = ("unit", *_FOLDERS)  # a broken unit explains a broken session, so units run first
 
 
