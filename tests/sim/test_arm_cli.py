@@ -62,4 +62,7 @@ def test_the_verdict_is_in_words() -> None:
     assert verdict([fine, near]) == "It can be used in every task."
     assert verdict([fine, near, far]) == "It can be used in 1 of 2 tasks."
     assert verdict([fine, weak, far]) == "It can be used, but look at what is marked BAD."
-    assert verdict([ArmFinding("loads", ok=False, said="")]) == "It cannot be used as it is: mend what is marked BAD."
+    assert (
+        verdict([ArmFinding("loads", ok=False, said="")])
+        == "It cannot be used as it is: mend what is marked BAD."
+    )
