@@ -50,7 +50,9 @@ class RehearsedDriver:
     def __init__(self, world: World, arm: str, session: int, hardware: ArmHardware, now_s: float) -> None:
         self.arm, self.hardware, self.session = arm, hardware, session
         self.killed = self.unplugged = self.cut = False
-        self._follower = Follower(ArmKinematics(world.model, arm), world.task.workspace, LIMITS, now_s)
+        self._follower = Follower(
+            ArmKinematics(world.model, arm), world.task.arm(arm).kind.workspace, LIMITS, now_s
+        )
         self._sequence, self._report_due_s = 0, now_s
 
     def hear(self, target: ArmTarget, now_s: float) -> None:

@@ -9,7 +9,8 @@ from functools import cached_property
 from mart.protocol import clock, codec, keys
 from mart.protocol.errors import NotFound, Unavailable
 from mart.protocol.messages import ArmState, Model, RoomStatus, State
-from mart.protocol.tasks import Task, get_task
+from mart.protocol.room_task import task_of_model
+from mart.protocol.tasks import Task
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.decoding_subscriber import DecodingSubscriber
 from mart.runtime.settings import Settings
@@ -48,7 +49,7 @@ class RoomSubscription:
     @cached_property
     def task(self) -> Task:
         """The room's task."""
-        return get_task(self.model.task, len(self.model.arms))
+        return task_of_model(self.model)
 
     def close(self) -> None:
         """Hear nothing more."""

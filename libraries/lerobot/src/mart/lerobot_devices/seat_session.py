@@ -126,7 +126,9 @@ class SeatSession:
         numbers = action_numbers(action)
         feed = self._held()
         measured = pose_from_message(feed.arm_state(feed.state()).tool_in_base)
-        self._operator.say(ToolTarget(*target_from_action(measured, numbers, feed.task.limits)))
+        self._operator.say(
+            ToolTarget(*target_from_action(measured, numbers, feed.task.arm(self.choice.arm).kind.limits))
+        )
         return dict(zip(ACTION_NAMES, numbers.tolist(), strict=True))
 
     def close(self) -> None:
