@@ -29,7 +29,7 @@ REQUEST = {
     "changes": {},
     "selection": {
         "outcomes": ["success"],
-        "verdicts": ["verified"],
+        "verdicts": ["verified", "real"],
         "operators": [],
         "names": [],
         "first": None,
