@@ -16,6 +16,17 @@ declare namespace Api {
     arm_counts: number[];
   }
 
+  interface ArmKind {
+    name: string;
+    title: string;
+  }
+
+  interface RoomOptions {
+    tasks: TaskOption[];
+    arm_kinds: ArmKind[];
+    opens_rooms: boolean;
+  }
+
   interface NewRoom {
     task: string;
     room: string;

@@ -43,6 +43,9 @@ async def test_a_room_is_opened_and_closed(enter: Enter, asked: list[RoomsReques
     assert told["opens_rooms"]
     arms = {task["name"]: task["arms"] for task in told["tasks"]}
     assert (arms["three_arm_lift_wiping"], arms["two_arm_multi_cube_lifting"]) == (3, 2)
+    kinds = {kind["name"]: kind["title"] for kind in told["arm_kinds"]}
+    assert (next(iter(kinds)), kinds["ur5e"]) == ("panda", "Universal Robots UR5e")
+    assert not any(name.startswith("menagerie:") for name in kinds)  # it would have to be fetched
     opened = await ana.post(
         "/api/rooms", json={"task": "three_arm_lift_wiping", "control_hz": 30, "episodes": 50}
     )

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from mart.protocol import clock
+from mart.protocol.arms import arm_kind, arm_kind_names
 from mart.protocol.control_rate import require_control_hz
-from mart.protocol.errors import InvalidInput
+from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import (
     OUTCOME_DISCARDED,
     OUTCOME_FAILURE,
@@ -67,7 +70,11 @@ async def rooms(app: App, user: WatchingUser) -> Json:
 @router.get("/tasks")
 async def tasks(app: App, _user: JoinedUser) -> Json:
     """Send what a new room may be for, and whether anything here opens rooms."""
-    return {"tasks": [_task_json(name) for name in task_names()], "opens_rooms": app.platform.is_running}
+    return {
+        "tasks": [_task_json(name) for name in task_names()],
+        "arm_kinds": list(_arm_kinds_json()),
+        "opens_rooms": app.platform.is_running,
+    }
 
 
 @router.post("/rooms")
@@ -160,6 +167,14 @@ async def let_go_of_stop(room: str, app: App, user: JoinedUser) -> Json:
 
 def _still(jpeg: bytes) -> Response:
     return Response(jpeg, media_type="image/jpeg", headers={"Cache-Control": "private, max-age=60"})
+
+
+def _arm_kinds_json() -> Iterator[Json]:
+    """Yield the kinds of arms whose files are here and can be read; what has to be fetched is for the terminal."""
+    for name in arm_kind_names():
+        with contextlib.suppress(MartError):  # `mart arms check` says what is wrong with a file
+            if (kind := arm_kind(name)).mjcf is None or kind.mjcf.menagerie is None:
+                yield {"name": name, "title": kind.title}
 
 
 def _task_json(name: str) -> Json:

@@ -92,7 +92,7 @@ const roomPath = (room) => `/rooms/${encoded(room)}`;
 /** The rooms as they are now. @type {() => Promise<{ rooms: Api.Room[] }>} */
 export const rooms = () => request("GET", "/rooms");
 
-/** What a new room may be for. @type {() => Promise<{ tasks: Api.TaskOption[], opens_rooms: boolean }>} */
+/** What a new room may be for, and with. @type {() => Promise<Api.RoomOptions>} */
 export const tasks = () => request("GET", "/tasks");
 
 /** Opens a room; the answer is its name. @type {(wanted: Api.NewRoom) => Promise<{ room: string }>} */

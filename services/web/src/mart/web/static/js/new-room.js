@@ -1,6 +1,7 @@
-// A room more: its task, seen, its name, its rate and how many episodes are wanted.
+// A room more: its task, seen, its arms, its name, its rate and how many episodes are wanted.
 
 import { messageOf, openRoom } from "./api.js";
+import { kindSelects } from "./arm-kinds.js";
 import { COURSE } from "./course.js";
 import { byId, element, setText } from "./dom.js";
 import { plural } from "./formatting.js";
@@ -21,10 +22,11 @@ const isCourse = ({ name }) => name === COURSE;
 /**
  * Fills the card `new-room` with a form.
  * @param {Api.TaskOption[]} tasks
+ * @param {Api.ArmKind[]} armKinds
  */
-export function newRoom(tasks) {
-  const fields = inputs(tasks.toSorted((one, other) => Number(isCourse(one)) - Number(isCourse(other))));
-  const { task, arms, name, rate, episodes, rules } = fields;
+export function newRoom(tasks, armKinds) {
+  const fields = inputs(tasks.toSorted((one, other) => Number(isCourse(one)) - Number(isCourse(other))), armKinds);
+  const { task, arms, name, rate, episodes, rules, kinds } = fields;
   const picture = element("img", { alt: "", width: 384, height: 288 });
   const about = element("p", { class: "soft" });
   const button = element("button", { type: "submit", class: "primary" }, "Open room");
@@ -40,6 +42,7 @@ export function newRoom(tasks) {
     arms.replaceChildren(...counts);
     arms.value = String(chosen.arms);
     arms.disabled = counts.length < 2;
+    arms.dispatchEvent(new Event("change"));
     rules.value = isCourse(chosen) ? "practice" : "everybody";
     showRules();
   }
@@ -68,6 +71,7 @@ export function newRoom(tasks) {
     control_hz: Number(rate.value),
     episodes: Number(episodes.value),
     arms: Number(arms.value),
+    arm_kinds: kinds.chosen(),
     practice: rules.value === "practice",
     course_required: rules.value === "course",
   });
@@ -88,7 +92,7 @@ export function newRoom(tasks) {
  * @param {HTMLElement} refusal
  * @param {HTMLElement} button
  */
-function labelled({ task, arms, name, rate, episodes, rules }, about, refusal, button) {
+function labelled({ task, arms, name, rate, episodes, rules, kinds }, about, refusal, button) {
   return element(
     "div",
     { class: "fields" },
@@ -99,13 +103,18 @@ function labelled({ task, arms, name, rate, episodes, rules }, about, refusal, b
     element("label", {}, "Control rate", rate),
     element("label", {}, "Recording", rules),
     element("label", {}, "Good episodes wanted", episodes),
+    kinds.node,
     refusal,
     button,
   );
 }
 
-/** @param {Api.TaskOption[]} tasks */
-function inputs(tasks) {
+/**
+ * @param {Api.TaskOption[]} tasks
+ * @param {Api.ArmKind[]} armKinds
+ */
+function inputs(tasks, armKinds) {
+  const arms = element("select", { id: "new-arms" });
   return {
     task: element(
       "select",
@@ -120,7 +129,8 @@ function inputs(tasks) {
       autocapitalize: "none",
       autocomplete: "off",
     }),
-    arms: element("select", { id: "new-arms" }),
+    arms,
+    kinds: kindSelects(armKinds, arms),
     rate: element(
       "select",
       { id: "new-rate" },

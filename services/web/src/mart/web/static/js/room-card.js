@@ -2,11 +2,11 @@
 
 import * as api from "./api.js";
 import { armName, badge, hasPicture, holderName, isMachine, theArm } from "./arms.js";
-import { rulesText } from "./course.js";
 import { element, keepChildren, setShown, setText } from "./dom.js";
 import { emergencyStop } from "./emergency-stop.js";
-import { keptText, phaseText, plural, planText, waitingText } from "./formatting.js";
+import { keptText, phaseText, waitingText } from "./formatting.js";
 import { machineSelect } from "./machine-select.js";
+import { roomFacts } from "./room-facts.js";
 import { taskPicture } from "./task-picture.js";
 
 /** @import { Attempt } from "./api.js" */
@@ -36,13 +36,7 @@ export function roomCard(attempt, onClosed) {
     onStop: () => attempt(() => api.stopRoom(name)),
     onLetGo: () => attempt(() => api.letGoOfStop(name)),
   });
-  const facts = {
-    rules: element("strong"),
-    id: element("span"),
-    rate: element("span"),
-    plan: element("strong"),
-    saved: element("span"),
-  };
+  const facts = roomFacts();
   const about = element("div", {}, element("header", {}, title, phase), instruction);
   const node = element(
     "article",
@@ -50,7 +44,7 @@ export function roomCard(attempt, onClosed) {
     element("div", { class: "about" }, scene.node, about),
     seats,
     stop.node,
-    element("p", { class: "room-facts figures" }, ...Object.values(facts), close.node),
+    element("p", { class: "room-facts figures" }, ...facts.nodes, close.node),
   );
   /** @type {Map<string, Part<[SeatNews]>>} */
   const rows = new Map();
@@ -67,14 +61,7 @@ export function roomCard(attempt, onClosed) {
     close.update(room);
     setText(phase, room.stale ? "Not answering" : waitingText(room) || phaseText(room.episode));
     setText(instruction, room.instruction);
-    setText(facts.rules, rulesText(room));
-    setShown(facts.rules, rulesText(room) !== "");
-    setText(facts.id, room.room);
-    setText(facts.rate, `${room.control_hz} Hz, ${room.real_time_factor.toFixed(2)}× real time`);
-    setText(facts.plan, planText(room.plan));
-    setShown(facts.plan, room.plan !== null);
-    setText(facts.saved, savedText(room));
-    setShown(facts.saved, !room.practice);
+    facts.update(room);
     const arms = room.seats.map((seat) => seat.arm);
     keepChildren(seats, arms, rows, (arm) => seatRow(room.room, arm, attempt));
     const holdsOne = room.seats.some((seat) => seat.mine);
@@ -143,11 +130,6 @@ function closeButton(attempt, onClosed) {
   }
 
   return { node, update };
-}
-
-/** @param {Api.Room} room */
-function savedText({ episodes_saved: saved, episodes_good: good }) {
-  return saved === 0 ? "No episode yet" : `${plural(saved, "episode")} saved, ${good} good`;
 }
 
 /**
