@@ -107,6 +107,7 @@ def talks_by_phone(phone: Page, url: str, operator: Page, spectator: Page) -> No
     talk = phone.get_by_role("button", name="Talk", exact=True)
     phone.get_by_role("button", name="Start").click()
     expect(talk).to_be_visible()
+    expect(phone.locator("#link")).to_contain_text("Turning is off")  # its last words: below them nothing moves
     assert phone.evaluate("() => window.asked") == 0
     before = stat(spectator, HEARD)
     talk.hover()
