@@ -17,7 +17,7 @@ def ticked(kept: TimeKept, from_s: float, seconds: float, rate_hz: float) -> flo
 
 def test_a_moment_tells_nothing() -> None:
     kept = TimeKept(STALLED_AFTER_S)
-    ticked(kept, 0.0, 1.5, 20.0)
+    ticked(kept, 0.0, 5.5, 20.0)
     assert kept.ticks_per_s() is None
 
 
@@ -25,6 +25,14 @@ def test_most_of_the_time_counts() -> None:
     kept = TimeKept(STALLED_AFTER_S)
     ticked(kept, ticked(kept, 0.0, 4.0, 10.0), 8.0, 20.0)
     assert abs((kept.ticks_per_s() or 0.0) - 20.0) < 0.5
+
+
+def test_what_is_over_counts_no_more_and_what_goes_on_does() -> None:
+    kept = TimeKept(STALLED_AFTER_S)
+    end_s = ticked(kept, ticked(kept, 0.0, 10.0, 10.0), 6.5, 20.0)
+    assert abs((kept.ticks_per_s() or 0.0) - 20.0) < 0.5
+    ticked(kept, end_s, 12.0, 15.0)
+    assert abs((kept.ticks_per_s() or 0.0) - 15.0) < 0.5
 
 
 def test_what_was_waited_for_and_a_world_that_began_anew_are_left_out() -> None:

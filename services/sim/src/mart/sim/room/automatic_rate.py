@@ -121,9 +121,9 @@ class AutomaticRate:
         after_hz = self._choice.between_episodes(self._cost(), held, now_s, self._own_rates_hz())
         self._look_s = now_s + LOOK_EVERY_S
         self._is_fresh = False
-        self._kept.forget()
         if after_hz == before_hz:
             return None
+        self._kept.forget()
         return f"The room now ticks {after_hz:g} times a second: {self._choice.why}."
 
     def _is_between_episodes(self) -> bool:

@@ -1,14 +1,17 @@
 """Tell how fast a room really ticked. Pure: `now_s` comes in.
 
-A machine that is too slow is so most of the time; one on which a browser has just been started was so for some seconds.
-What counts is therefore the median of short stretches, not the mean.
+A machine that is too slow is so most of the time, and still; one on which a browser has just been started was so for
+some seconds. What counts is therefore the median of short stretches, not the mean: of the last ones, or of the newest
+where these were better.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from statistics import median
 
 _STRETCH_S = 2.0  # of ticks: what one of them is late by changes it by a hundredth at most
+_LAST, _NEWEST = 10, 3  # stretches
 
 
 class TimeKept:
@@ -20,7 +23,7 @@ class TimeKept:
 
     def forget(self) -> None:
         """Begin anew, with the next tick."""
-        self._rates_hz: list[float] = []
+        self._rates_hz: deque[float] = deque(maxlen=_LAST)
         self._took_s, self._ticks = 0.0, 0
         self.interrupt()
 
@@ -39,5 +42,8 @@ class TimeKept:
             self._took_s, self._ticks = 0.0, 0
 
     def ticks_per_s(self) -> float | None:
-        """Return the median; None where less than a stretch was seen."""
-        return median(self._rates_hz) if self._rates_hz else None
+        """Return the rate; None where too little was seen to tell."""
+        if len(self._rates_hz) < _NEWEST:
+            return None
+        last = list(self._rates_hz)
+        return max(median(last), median(last[-_NEWEST:]))
