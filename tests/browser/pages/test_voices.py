@@ -107,7 +107,8 @@ def talks_by_phone(phone: Page, url: str, operator: Page, spectator: Page) -> No
     talk = phone.get_by_role("button", name="Talk", exact=True)
     phone.get_by_role("button", name="Start").click()
     expect(talk).to_be_visible()
-    expect(phone.locator("#link")).to_contain_text("Turning is off")  # its last words: below them nothing moves
+    # Its last words; below them nothing moves any more.
+    expect(phone.locator("#link")).to_contain_text("Turning is off")
     assert phone.evaluate("() => window.asked") == 0
     before = stat(spectator, HEARD)
     talk.hover()
