@@ -15,6 +15,7 @@ from mart.protocol.messages import (
     OPERATOR_HUMAN,
     OPERATOR_POLICY,
     OPERATOR_SCRIPT,
+    OPERATOR_UNSPECIFIED,
     EmergencyStop,
     Episode,
     EpisodePhase,
@@ -38,11 +39,11 @@ def status(
     ready: bool = False,
     engaged: bool = False,
     stop: EmergencyStop | None = None,
-    relieved: str = "",
+    relieved: Operator = OPERATOR_UNSPECIFIED,
 ) -> RoomStatus:
     """The first seat's person has said to be ready, or has the arm in hand."""
     seats = [Seat(arm=f"arm{number}", operator=operator) for number, operator in enumerate(operators)]
-    seats[0].ready, seats[0].engaged, seats[0].relieved = ready, engaged, relieved
+    seats[0].ready, seats[0].engaged, seats[0].relieved_operator = ready, engaged, relieved
     return RoomStatus(seats=seats, episode=Episode(phase=phase), stop=stop)
 
 
@@ -190,8 +191,16 @@ def test_a_policy_gets_a_rate_that_suits_it_before_anybody_hears_that_it_sits_th
 
 def test_a_machine_that_may_come_back_to_its_seat_still_counts() -> None:
     rate = AutomaticRate(CHEAP, 2, 0.0, policies=True)
-    rate.see_status(status(relieved="policy pick"), 0.0)
+    rate.see_status(status(relieved=OPERATOR_POLICY), 0.0)
     assert rate.change(1000.0) is None
+
+
+def test_a_script_that_may_come_back_drives_at_any_rate() -> None:
+    rate = fast_rate()
+    rate.see_status(status(relieved=OPERATOR_SCRIPT), 0.0)
+    rate.see_picture("arm1", 0.021)
+    assert rate.change(LOOK_EVERY_S) is not None
+    assert rate.control_hz == 30.0
 
 
 def test_only_seats_that_are_drawn_cost_pictures() -> None:

@@ -3,6 +3,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -35,6 +36,20 @@ def asked(app_state: AppState, bus: MemoryBus) -> Iterator[list[RoomsRequest]]:
         contextlib.closing(bus.announce(keys.alive(ServiceKind.PLATFORM, "platform-1"))),
     ):
         yield requests
+
+
+async def test_a_robot_file_that_cannot_be_read_takes_nothing_from_the_others(
+    enter: Enter,
+    asked: list[RoomsRequest],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    (tmp_path / "crooked.toml").write_text("title = ")
+    monkeypatch.setenv("MART_ARMS_DIR", str(tmp_path))
+    told = (await (await enter("Ana")).get("/api/tasks")).json()
+    assert [kind["name"] for kind in told["arm_kinds"]] == ["panda", "gen3", "ur5e"]
+    assert "crooked" in caplog.text
 
 
 async def test_a_room_is_opened_and_closed(enter: Enter, asked: list[RoomsRequest]) -> None:

@@ -81,7 +81,7 @@ CUE_LET_GO: Cue
 CUE_COME_CLOSER: Cue
 
 class Seat(_message.Message):
-    __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged", "policy", "relieved", "holder_tag", "passed_course", "kept_s")
+    __slots__ = ("arm", "operator", "epoch", "holder_id", "name", "ready", "engaged", "policy", "relieved", "relieved_operator", "holder_tag", "passed_course", "kept_s")
     ARM_FIELD_NUMBER: _ClassVar[int]
     OPERATOR_FIELD_NUMBER: _ClassVar[int]
     EPOCH_FIELD_NUMBER: _ClassVar[int]
@@ -91,6 +91,7 @@ class Seat(_message.Message):
     ENGAGED_FIELD_NUMBER: _ClassVar[int]
     POLICY_FIELD_NUMBER: _ClassVar[int]
     RELIEVED_FIELD_NUMBER: _ClassVar[int]
+    RELIEVED_OPERATOR_FIELD_NUMBER: _ClassVar[int]
     HOLDER_TAG_FIELD_NUMBER: _ClassVar[int]
     PASSED_COURSE_FIELD_NUMBER: _ClassVar[int]
     KEPT_S_FIELD_NUMBER: _ClassVar[int]
@@ -103,10 +104,11 @@ class Seat(_message.Message):
     engaged: bool
     policy: str
     relieved: str
+    relieved_operator: _command_pb2.Operator
     holder_tag: str
     passed_course: bool
     kept_s: float
-    def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., epoch: _Optional[int] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., ready: _Optional[bool] = ..., engaged: _Optional[bool] = ..., policy: _Optional[str] = ..., relieved: _Optional[str] = ..., holder_tag: _Optional[str] = ..., passed_course: _Optional[bool] = ..., kept_s: _Optional[float] = ...) -> None: ...
+    def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., epoch: _Optional[int] = ..., holder_id: _Optional[str] = ..., name: _Optional[str] = ..., ready: _Optional[bool] = ..., engaged: _Optional[bool] = ..., policy: _Optional[str] = ..., relieved: _Optional[str] = ..., relieved_operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., holder_tag: _Optional[str] = ..., passed_course: _Optional[bool] = ..., kept_s: _Optional[float] = ...) -> None: ...
 
 class Waiting(_message.Message):
     __slots__ = ("arm", "since_s")

@@ -54,10 +54,11 @@ def _lead(settings: DriverSettings, driver: Driver, room: RoomSide, stop: thread
         try:
             driver.connect()
             _log.info("%s is connected", type(driver).__name__)
-            ServoLoop(settings, driver, room).run(stop)
+            try:
+                ServoLoop(settings, driver, room).run(stop)
+            finally:
+                _stop(driver)
         finally:
-            with contextlib.suppress(Exception):
-                driver.stop()
             driver.close()
     except Refused:
         raise
@@ -65,6 +66,14 @@ def _lead(settings: DriverSettings, driver: Driver, room: RoomSide, stop: thread
         fault = str(error) if isinstance(error, MartError) else f"{type(error).__name__}: {error}"
         _log.error("The hardware of %s failed: %s", settings.arm, fault)
         _report_fault(room, fault, stop)
+
+
+def _stop(driver: Driver) -> None:
+    """Stop the arm at the end; a driver that can do that no more is closed all the same."""
+    try:
+        driver.stop()
+    except Exception as error:  # noqa: BLE001 - it is anybody's code; why it ended is told by whoever raised first
+        _log.warning("The arm could not be told to stop at the end: %s: %s", type(error).__name__, error)
 
 
 def _report_fault(room: RoomSide, fault: str, stop: threading.Event) -> None:
@@ -144,6 +153,10 @@ class RoomSide:
                     return
             except MartError as error:
                 self._refusal = error
+                return
+            except Exception as error:  # noqa: BLE001 - nobody would ask again, and the arm wait for ever
+                _log.error("What the room answered cannot be used", exc_info=error)
+                self._refusal = InvalidInput(f"What the room answered cannot be used: {error}.")
                 return
             else:
                 conflict_since_s = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import logging
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
@@ -12,6 +13,8 @@ from typing import Any, Protocol, TypeVar
 
 from mart.driver.interface import DriverFault
 from mart.protocol import clock
+
+_log = logging.getLogger(__name__)
 
 SLOW_S = 0.09  # without a reading: told by name before a driver without one counts as stopped
 _CLOSE_S = 2.0
@@ -126,9 +129,15 @@ class RobotThread:
             said = next(iter(str(error).strip().splitlines()), "")
             self._failure = f"{self._name} failed in {self._calling}: {type(error).__name__}: {said}"
         finally:
-            with contextlib.suppress(Exception), _nobody_at_the_terminal():
-                self._robot.disconnect()
+            self._disconnect()
             self._begun.set()
+
+    def _disconnect(self) -> None:
+        try:
+            with _nobody_at_the_terminal():
+                self._robot.disconnect()
+        except Exception as error:  # noqa: BLE001 - anybody's code; what failed before is told already
+            _log.info("%s did not disconnect: %s: %s", self._name, type(error).__name__, error)
 
     def _require_calibrated(self) -> None:
         if not self._robot.is_calibrated:

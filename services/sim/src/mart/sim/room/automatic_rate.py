@@ -150,4 +150,4 @@ class AutomaticRate:
 
 def _may_be_policy(seat: Seat) -> bool:
     """Whether a policy drives, or may drive again when its seat is handed back; its own rate is the usual one."""
-    return seat.operator == OPERATOR_POLICY or bool(seat.relieved)
+    return OPERATOR_POLICY in (seat.operator, seat.relieved_operator)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mart.protocol.holders import holder_tag
 from mart.protocol.messages import (
+    OPERATOR_UNSPECIFIED,
     BarrierPhase,
     Episode,
     Event,
@@ -107,6 +108,7 @@ def seat(holder: SeatHolder, ready: bool, newest: ReceivedCommand | None, salt: 
         engaged=newest is not None and newest.command.engaged,
         policy=holder.driver.policy,
         relieved=holder.relieved.called if holder.relieved else "",
+        relieved_operator=holder.relieved.operator if holder.relieved else OPERATOR_UNSPECIFIED,
         kept_s=kept_s,
         passed_course=holder.passed_course,
     )

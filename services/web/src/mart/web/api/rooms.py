@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
+import logging
 from collections.abc import Iterator
 from typing import Annotated, Literal
 
@@ -27,6 +27,7 @@ from mart.web.api.texts import Name, Word
 from mart.web.lobby.room_json import Json, seat_json
 
 router = APIRouter(prefix="/api")
+_log = logging.getLogger(__name__)
 
 _OUTCOMES = {"success": OUTCOME_SUCCESS, "failure": OUTCOME_FAILURE, "discard": OUTCOME_DISCARDED}
 
@@ -172,9 +173,13 @@ def _still(jpeg: bytes) -> Response:
 def _arm_kinds_json() -> Iterator[Json]:
     """Yield the kinds of arms whose files are here and can be read; what has to be fetched is for the terminal."""
     for name in arm_kind_names():
-        with contextlib.suppress(MartError):  # `mart arms check` says what is wrong with a file
-            if (kind := arm_kind(name)).mjcf is None or kind.mjcf.menagerie is None:
-                yield {"name": name, "title": kind.title}
+        try:
+            kind = arm_kind(name)
+        except MartError as error:
+            _log.warning("New rooms are not offered %s: %s", name, error)
+            continue
+        if kind.mjcf is None or kind.mjcf.menagerie is None:
+            yield {"name": name, "title": kind.title}
 
 
 def _task_json(name: str) -> Json:

@@ -155,7 +155,7 @@ function follow(seat) {
 function onEvent(event) {
   if (event.room !== roomName) return;
   if (event.kind === "cue_given") cues.onGiven(event, room);
-  if (event.kind === "notice") showNotice(inPlainWords(event.text));
+  if (event.kind === "notice") showNotice(inPlainWords(event.text), event.level === "info");
   render();
 }
 
