@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
-from mart.protocol.errors import Corrupt, Unavailable
+from mart.protocol.errors import Corrupt
 from mart.protocol.keys import alive, rollout
 from mart.protocol.messages import Error, RolloutReply, RolloutRequest, State
 from mart.protocol.recording import RoomRecord, VerificationRecord
@@ -21,7 +21,7 @@ from mart.recorder.verify.stretches import stretches
 from mart.runtime.bus.memory import MemoryNetwork
 from tests.recorder import synthetic
 from tests.recorder.files import write_part
-from tests.support.deaf_bus import DeafBus
+from tests.support.deaf_bus import DeafBus, DistantBus
 
 _BEFORE_FINGERPRINTS = RoomRecord(
     room=synthetic.ROOM, task=synthetic.TASK, control_hz=20.0, model_sha256=synthetic.MODEL.sha256
@@ -237,22 +237,13 @@ def test_a_replica_of_which_the_router_knows_nothing_for_a_moment_is_awaited(
 
 
 def test_a_router_that_is_away_when_the_first_file_is_verified_is_awaited(tmp_path: Path) -> None:
-    class Away(DeafBus):
-        asked = 0
-
-        def alive(self, alive_expression: str, timeout_s: float = 1.0) -> list[str]:
-            self.asked += 1
-            if self.asked == 1:
-                raise Unavailable("The router is away.")
-            return super().alive(alive_expression, timeout_s)
-
     network = MemoryNetwork()
     server = network.connect()
     server.serve(
         rollout("replica-1"), lambda request: request.reply(synthetic.rollout_reply(request.payload))
     )
     server.announce(alive(ServiceKind.REPLICA, "replica-1"))
-    said = verify(recorded(tmp_path, synthetic.states(3)), _ROOM, replica(Away(network), "replica-1"))
+    said = verify(recorded(tmp_path, synthetic.states(3)), _ROOM, replica(DistantBus(network), "replica-1"))
     assert said.verdict is Verdict.VERIFIED, said.detail
 
 
