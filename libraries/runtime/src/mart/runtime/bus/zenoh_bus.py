@@ -188,9 +188,7 @@ class ZenohBus(Bus):
         # one answer in a thousand.
         was_linked = self._is_linked()
         found = set(self._tokens(alive_expression, timeout_s)) | self._watched_alive(alive_expression)
-        if not found and not (
-            was_linked and self._is_linked()
-        ):  # without a link nobody is found, and at once
+        if not found and not (was_linked and self._is_linked()):  # without a link nobody is found, at once
             raise Unavailable("The router is away, so nobody can say who is alive; see `mart doctor`.")
         return sorted(found)
 
