@@ -31,7 +31,8 @@ def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile(config.getoption("--hypothesis-profile") or "mart")
     for name in [name for name in os.environ if name.startswith("MART_")]:
         del os.environ[name]
-    os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")  # as mart.trainer does, which tests import after torch
+    # As mart.trainer does, which tests import after torch.
+    os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
     # Where routers are noted for this user's programs: tests have a place of their own.
     os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="mart-tests-")
 
