@@ -261,12 +261,33 @@ def test_a_machine_is_engaged_by_the_people_who_let_the_stop_go() -> None:
 
 
 @pytest.mark.parametrize(
-    "other",
-    [{"kind": "ur5e"}, {"joints": 6}, {"model_sha256": "n"}, {"wire_version": DRIVER_WIRE_VERSION + 1}],
+    ("other", "said"),
+    [
+        ({"kind": "ur5e"}, "The driver OurArm is of a ur5e with 7 joints; arm0 of room-1 is a panda with 7."),
+        ({"joints": 6}, "The driver OurArm is of a panda with 6 joints; arm0 of room-1 is a panda with 7."),
+        ({"model_sha256": "n"}, "The driver OurArm computes by another model than room-1 has"),
+        ({"wire_version": DRIVER_WIRE_VERSION + 1}, "install the same version of MART on both machines."),
+    ],
 )
-def test_a_driver_of_another_arm_model_or_version_is_refused(other: dict[str, object]) -> None:
-    with pytest.raises(InvalidInput):
-        Drivers().arms.hello(hello(other=other), 0.0)
+def test_a_driver_of_another_arm_model_or_version_is_refused_in_a_sentence_and_the_room_stands(
+    room: DrivenRoom, other: dict[str, object], said: str
+) -> None:
+    with pytest.raises(InvalidInput) as refused:
+        room.drivers.arms.hello(hello(other=other), room.now_s)
+    assert said in str(refused.value)
+    room.pass_time(0.3)
+    assert room.status().stop.fault.startswith("No driver has connected")
+    assert room.ask(EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Eva"))) == "Conflict"
+
+
+def test_a_room_that_stutters_hears_of_a_silent_driver_all_the_same() -> None:
+    drivers = Drivers()
+    drivers.arms.begin(1, 0.0)
+    drivers.connect(0.0)
+    drivers.measure(0.0)
+    looks = [(0.08 * look, drivers.arms.troubles(0.08 * look)) for look in range(1, 10)]
+    first_s = next(at_s for at_s, troubles in looks if troubles)
+    assert first_s <= 0.3
 
 
 def test_an_arm_that_is_simulated_has_no_driver() -> None:
@@ -287,7 +308,16 @@ def test_an_arm_has_one_driver_until_that_falls_silent() -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"joint_positions": [0.0] * 6}, {"gripper": 2.0}, {"age_s": -1.0}, {"sequence": 0}]
+    "wrong",
+    [
+        {"joint_positions": [0.0] * 6},
+        {"joint_positions": [*HOME_RAD[:6], float("nan")]},
+        {"gripper": 2.0},
+        {"gripper": float("nan")},
+        {"age_s": -1.0},
+        {"age_s": float("nan")},
+        {"sequence": 0},
+    ],
 )
 def test_what_is_no_reading_of_the_arm_is_counted_and_left(wrong: dict[str, object]) -> None:
     drivers = Drivers()
