@@ -38,7 +38,8 @@ def after(replay: Replay, ended: Replayed, file: EpisodeFile) -> tuple[dict[str,
     arms = " and ".join(replay.drivers)
     if not ended.why:
         return told, f"{arms} of {replay.room} went the whole way, {total_s:.0f} s."
-    return told, f"{arms} of {replay.room} stand after {ended.led_s:.0f} of {total_s:.0f} s: {ended.why}"
+    stand = "stands" if len(replay.drivers) == 1 else "stand"
+    return told, f"{arms} of {replay.room} {stand} after {ended.led_s:.0f} of {total_s:.0f} s: {ended.why}"
 
 
 def _arm(replay: Replay, arm: str) -> str:
