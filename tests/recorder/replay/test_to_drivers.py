@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable
 
 import pytest
+from click.testing import CliRunner
 
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec, keys
@@ -22,6 +23,7 @@ from mart.protocol.messages import (
 )
 from mart.recorder.replay import saying, to_drivers
 from mart.recorder.replay.to_drivers import Replay, Replayed, lead, prepare
+from mart.recorder.replay_cli import confirm
 from mart.runtime.bus import Bus
 from mart.runtime.bus.memory import MemoryNetwork
 from mart.sim.world import World
@@ -152,3 +154,18 @@ def test_a_seat_that_cannot_be_had_ends_it_with_the_room_s_words(met: Met) -> No
     assert ended.led_s == 0.0
     assert ended.why
     assert stop.is_set()
+
+
+@pytest.mark.parametrize("answer", ["", "n\n", "\n"])
+def test_without_a_yes_nothing_moves(answer: str) -> None:
+    with (
+        CliRunner().isolation(input=answer),
+        pytest.raises(InvalidInput, match="Nobody said yes, so nothing moved"),
+    ):
+        confirm(yes=False)
+
+
+def test_a_yes_is_said_or_given_beforehand() -> None:
+    with CliRunner().isolation(input="y\n"):
+        confirm(yes=False)
+    confirm(yes=True)

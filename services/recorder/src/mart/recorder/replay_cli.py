@@ -81,14 +81,14 @@ def _lead(
     with ZenohBus.connect(RecorderSettings().router, wait_for_router=False) as bus:
         intended = prepare(bus, file, room, arms, speed)
         click.echo(saying.before(intended, file), err=True)
-        _confirm(yes)
+        confirm(yes=yes)
         with stop_requested() as stop:
             ended = lead(bus, intended, stop)
     print_result(*saying.after(intended, ended, file), as_json)
     return 1 if ended.why else 0
 
 
-def _confirm(yes: bool) -> None:
+def confirm(*, yes: bool) -> None:
     """Go on only where a person says yes; an answer that cannot be had is none. Raises InvalidInput."""
     if yes:
         return
