@@ -165,6 +165,29 @@ def test_clocks_may_differ_by_days_and_run_at_their_own_pace(arm: LedArm) -> Non
     assert arm.step.phase == DRIVER_PHASE_FOLLOWING
 
 
+def test_a_clock_that_is_set_back_by_minutes_stops_it_once_with_a_sentence(arm: LedArm) -> None:
+    led(arm)
+    arm.hardware._offset_s -= 180.0
+    arm.pass_time(0.1)
+    assert arm.step is not None
+    assert arm.step.phase == DRIVER_PHASE_STOPPED
+    assert arm.step.fault == "The stamps of readings went back by 180 s: the clock they are of was set."
+    arm.stop = True
+    arm.pass_time(0.1)
+    arm.stop = False
+    arm.press_clutch()
+    assert arm.step.phase == DRIVER_PHASE_FOLLOWING
+
+
+def test_joints_that_are_read_in_degrees_stop_it_with_a_sentence(arm: LedArm) -> None:
+    arm.pass_time(0.1)
+    step = arm.follower.advance(Measured(1e9, np.degrees(arm.hardware.joints)), arm.now_s + PERIOD_S)
+    assert step.phase == DRIVER_PHASE_STOPPED
+    assert step.fault == (
+        "Joint 3 was read at 108.86 rad; the model has it between -3.10 and 3.10. Is it in degrees, or of other zeros?"
+    )
+
+
 _EVENTS = st.lists(
     st.one_of(
         st.tuples(st.just("lead"), st.tuples(*[st.floats(-0.5, 0.5)] * 3)),

@@ -11,8 +11,11 @@ import pytest
 from mart.driver import Driver, Measured
 from mart.driver.hello import say_hello
 from mart.driver.interface import Array
-from mart.protocol.errors import Conflict, InvalidInput, NotFound, Unavailable
-from mart.protocol.messages import DRIVER_PHASE_HOLDING, ArmMeasured
+from mart.protocol import codec
+from mart.protocol.errors import Conflict, Corrupt, InvalidInput, NotFound, Unavailable
+from mart.protocol.keys import Topic
+from mart.protocol.messages import DRIVER_PHASE_HOLDING, ArmMeasured, Model
+from mart.protocol.wire_version import DRIVER_WIRE_VERSION
 from mart.runtime.bus.memory import MemoryNetwork
 from mart.sim.room.bus_drivers import BusDrivers
 from mart.sim.room.room import Room
@@ -100,6 +103,35 @@ def test_a_driver_of_another_kind_or_number_of_joints_is_refused(met: Met) -> No
     other.joint_count = 6
     with pytest.raises(InvalidInput):
         say_hello(met.network.connect(), "room-1", "arm0", other, "a")
+
+
+def test_a_driver_of_another_version_of_the_wire_or_of_mujoco_is_refused_in_a_sentence(
+    met: Met, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    both = "install the same version of MART on both machines"
+    with monkeypatch.context() as changed:
+        changed.setattr("mart.driver.hello.DRIVER_WIRE_VERSION", DRIVER_WIRE_VERSION + 1)
+        with pytest.raises(InvalidInput, match=f"The driver StillArm speaks version .* of the wire.*{both}"):
+            say_hello(met.network.connect(), "room-1", "arm0", StillArm(), "a")
+    monkeypatch.setattr("mujoco.__version__", "9.9.9")
+    with pytest.raises(InvalidInput, match=rf"is of MuJoCo .*; this driver has 9\.9\.9: {both}"):
+        say_hello(met.network.connect(), "room-1", "arm0", StillArm(), "a")
+
+
+def test_a_model_that_was_changed_on_its_way_is_not_computed_by(
+    met: Met, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bus = met.network.connect()
+    query = bus.query
+
+    def changed(topic: Topic, payload: bytes, timeout_s: float) -> bytes:
+        model = codec.decode(Model, query(topic, payload, timeout_s))
+        model.mjb = model.mjb[:-1] + b"x"
+        return codec.encode(model)
+
+    monkeypatch.setattr(bus, "query", changed)
+    with pytest.raises(Corrupt, match="it was changed on its way"):
+        say_hello(bus, "room-1", "arm0", StillArm(), "a")
 
 
 def test_an_arm_that_is_simulated_takes_no_driver_and_none_that_is_not_there(met: Met) -> None:

@@ -157,7 +157,7 @@ def replica(monkeypatch: pytest.MonkeyPatch) -> None:
         assert not wherever_possible
         yield synthetic.ToyReplica()
 
-    monkeypatch.setattr("mart.recorder.cli._resimulation", toy)
+    monkeypatch.setattr("mart.recorder.cli.resimulation", toy)
 
 
 @pytest.mark.usefixtures("replica")

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
-
 import numpy as np
 import pytest
 
@@ -13,98 +10,19 @@ from mart.protocol.messages import (
     BARRIER_PHASE_RUNNING,
     BARRIER_PHASE_STOPPED,
     DRIVER_PHASE_FOLLOWING,
-    DRIVER_PHASE_HOLDING,
-    DRIVER_PHASE_STOPPED,
     ArmMeasured,
-    ArmTarget,
-    DriverHello,
-    DriverPhase,
     EpisodeRequest,
 )
 from mart.protocol.wire_version import DRIVER_WIRE_VERSION
 from mart.sim.room.clutches import Clutch
-from mart.sim.room.driven_arms import ArmFacts, DrivenArms
 from mart.sim.world import World
-from mart.sim.world.driven_world import DrivenWorld
+from tests.sim.room.driven_room import HOME_RAD, DrivenRoom, Drivers, hello
 from tests.sim.room.room_harness import RoomHarness
-
-HOME_RAD = [0.0, 0.2, 0.0, -2.1, 0.0, 2.3, 0.785]
-
-
-def hello(
-    arm: str = "arm0", instance: str = "a", other: Mapping[str, object] = MappingProxyType({})
-) -> DriverHello:
-    said = {"kind": "panda", "joints": 7, "model_sha256": "m", "wire_version": DRIVER_WIRE_VERSION, **other}
-    return DriverHello(arm=arm, driver="OurArm", instance=instance, **said)  # type: ignore[arg-type]
-
-
-class Drivers:
-    """The drivers of some arms, as they look from the room."""
-
-    def __init__(self, arms: tuple[str, ...] = ("arm0",)) -> None:
-        self.told: list[ArmTarget] = []
-        facts = {arm: ArmFacts("panda", 7, "m") for arm in arms}
-        self.arms = DrivenArms("room-1", facts, 20.0, self._keep)
-        self._sessions: dict[str, int] = {}
-        self._sequence = 0
-        self.fault = ""
-        self.silent: set[str] = set()
-
-    def _keep(self, target: ArmTarget) -> None:
-        kept = ArmTarget()
-        kept.CopyFrom(target)
-        self.told.append(kept)
-
-    def connect(self, now_s: float) -> None:
-        for arm in self.arms.arms:
-            self._sessions[arm] = self.arms.hello(hello(arm, instance=arm), now_s).session
-
-    def measure(
-        self, now_s: float, joints: list[float] = HOME_RAD, phase: DriverPhase = DRIVER_PHASE_HOLDING
-    ) -> None:
-        for arm in set(self.arms.arms) - self.silent:
-            self._sequence += 1
-            self.arms.hear(
-                ArmMeasured(
-                    arm=arm,
-                    session=self._sessions[arm],
-                    sequence=self._sequence,
-                    joint_positions=joints,
-                    phase=DRIVER_PHASE_STOPPED if self.fault else phase,
-                    fault=self.fault,
-                ),
-                now_s,
-            )
 
 
 @pytest.fixture(scope="module")
 def compiled() -> World:
     return World.build("two_arm_multi_cube_lifting")
-
-
-class DrivenRoom(RoomHarness):
-    """A room whose arms are driven by drivers that measure 100 times a second."""
-
-    def __init__(self, compiled: World, arms: tuple[str, ...] = ("arm0", "arm1")) -> None:
-        self.drivers = Drivers(arms)
-        super().__init__(DrivenWorld(compiled, self.drivers.arms), drivers=self.drivers.arms)
-
-    def pass_time(self, elapsed_s: float) -> None:
-        for _ in range(round(elapsed_s / 0.01)):
-            if self.drivers._sessions:
-                self.drivers.measure(self.now_s)
-            super().pass_time(0.01)
-
-    def opened(self) -> None:
-        """Drivers connect, and a person lets it go on."""
-        self.drivers.connect(self.now_s)
-        self.pass_time(0.1)
-        assert self.ask(EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Eva"))) == ""
-        for arm in ("arm0", "arm1"):
-            self.take(arm)
-
-    def texts(self) -> list[str]:
-        return [event.notice.text for event in self.publisher.of("notice")]
 
 
 @pytest.fixture
@@ -261,12 +179,33 @@ def test_a_machine_is_engaged_by_the_people_who_let_the_stop_go() -> None:
 
 
 @pytest.mark.parametrize(
-    "other",
-    [{"kind": "ur5e"}, {"joints": 6}, {"model_sha256": "n"}, {"wire_version": DRIVER_WIRE_VERSION + 1}],
+    ("other", "said"),
+    [
+        ({"kind": "ur5e"}, "The driver OurArm is of a ur5e with 7 joints; arm0 of room-1 is a panda with 7."),
+        ({"joints": 6}, "The driver OurArm is of a panda with 6 joints; arm0 of room-1 is a panda with 7."),
+        ({"model_sha256": "n"}, "The driver OurArm computes by another model than room-1 has"),
+        ({"wire_version": DRIVER_WIRE_VERSION + 1}, "install the same version of MART on both machines."),
+    ],
 )
-def test_a_driver_of_another_arm_model_or_version_is_refused(other: dict[str, object]) -> None:
-    with pytest.raises(InvalidInput):
-        Drivers().arms.hello(hello(other=other), 0.0)
+def test_a_driver_of_another_arm_model_or_version_is_refused_in_a_sentence_and_the_room_stands(
+    room: DrivenRoom, other: dict[str, object], said: str
+) -> None:
+    with pytest.raises(InvalidInput) as refused:
+        room.drivers.arms.hello(hello(other=other), room.now_s)
+    assert said in str(refused.value)
+    room.pass_time(0.3)
+    assert room.status().stop.fault.startswith("No driver has connected")
+    assert room.ask(EpisodeRequest(go_on=EpisodeRequest.GoOn(name="Eva"))) == "Conflict"
+
+
+def test_a_room_that_stutters_hears_of_a_silent_driver_all_the_same() -> None:
+    drivers = Drivers()
+    drivers.arms.begin(1, 0.0)
+    drivers.connect(0.0)
+    drivers.measure(0.0)
+    looks = [(0.08 * look, drivers.arms.troubles(0.08 * look)) for look in range(1, 10)]
+    first_s = next(at_s for at_s, troubles in looks if troubles)
+    assert first_s <= 0.3
 
 
 def test_an_arm_that_is_simulated_has_no_driver() -> None:
@@ -287,7 +226,16 @@ def test_an_arm_has_one_driver_until_that_falls_silent() -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"joint_positions": [0.0] * 6}, {"gripper": 2.0}, {"age_s": -1.0}, {"sequence": 0}]
+    "wrong",
+    [
+        {"joint_positions": [0.0] * 6},
+        {"joint_positions": [*HOME_RAD[:6], float("nan")]},
+        {"gripper": 2.0},
+        {"gripper": float("nan")},
+        {"age_s": -1.0},
+        {"age_s": float("nan")},
+        {"sequence": 0},
+    ],
 )
 def test_what_is_no_reading_of_the_arm_is_counted_and_left(wrong: dict[str, object]) -> None:
     drivers = Drivers()

@@ -15,6 +15,7 @@ from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_C
 from mart.runtime.arm_option import arm_kinds_option
 from mart.runtime.cli import cli, json_option, print_result
 from mart.runtime.rate_option import room_rate_option
+from mart.runtime.room_file import real_room_option
 
 if TYPE_CHECKING:
     from mart.platform.run.running import Platform
@@ -34,6 +35,7 @@ _CONTROL_HZ_OPTION = click.option(
 
 
 @click.command()
+@real_room_option
 @_TASK_OPTION
 @click.option("--room", default="room-1", show_default=True, help="Id of the room.")
 @arm_kinds_option

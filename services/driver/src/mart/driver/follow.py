@@ -66,7 +66,7 @@ class Follower:
         now_s: float,
     ) -> None:
         self._kinematics, self._workspace, self._limits = kinematics, workspace, limits
-        self._watch = ReadingWatch(kinematics.joint_count, limits)
+        self._watch = ReadingWatch(kinematics.lowest, kinematics.highest, limits)
         self._target: RoomTarget | None = None
         self._heard_s = self._advanced_s = now_s
         self._let_go = self._armed = False  # of the clutch, since the last stop; and pressed after that

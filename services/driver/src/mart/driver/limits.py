@@ -8,6 +8,7 @@ HOLD_AFTER_S = 0.25  # without a target
 LOST_AFTER_S = 1.0  # a room repeats its targets 20 times a second, also while it stands still
 FROZEN_AFTER_S = 0.1
 FOLLOWS_WITHIN_RAD = 0.02  # of what was sent, a reading may stay the same: coarse sensors at slow motion
+BEYOND_RANGE_RAD = 0.2  # of a joint, that a reading may be: zeros are never quite the model's
 SAME_TOOL_M = 0.05  # where the arm and the room's model may disagree about the tool
 
 

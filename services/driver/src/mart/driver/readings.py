@@ -5,14 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from mart.driver.interface import Array, Measured
-from mart.driver.limits import FOLLOWS_WITHIN_RAD, FROZEN_AFTER_S, MotionLimits
+from mart.driver.limits import BEYOND_RANGE_RAD, FOLLOWS_WITHIN_RAD, FROZEN_AFTER_S, MotionLimits
 
 
 class ReadingWatch:
     """Say what is wrong with the readings of one connection, each looked at as it comes."""
 
-    def __init__(self, joint_count: int, limits: MotionLimits) -> None:
-        self._joint_count, self._limits = joint_count, limits
+    def __init__(self, lowest: Array, highest: Array, limits: MotionLimits) -> None:
+        """Watch an arm whose joints are between `lowest` and `highest`, radians, shape (joint_count,)."""
+        self._lowest, self._highest, self._limits = lowest, highest, limits
         self._stamp_s: float | None = None
         self._stamped_s = 0.0  # by our clock, when the newest stamp came
         self._joints: Array | None = None
@@ -34,19 +35,30 @@ class ReadingWatch:
 
     def _not_a_reading(self, measured: Measured) -> str:
         joints = np.asarray(measured.joint_positions, dtype=np.float64)
-        if joints.shape != (self._joint_count,):
-            return f"A reading of {joints.size} joints came; the arm has {self._joint_count}."
+        if joints.shape != self._lowest.shape:
+            return f"A reading of {joints.size} joints came; the arm has {self._lowest.size}."
         if not np.isfinite([measured.stamp_s, measured.gripper, *joints]).all():
             return "A reading with NaN or infinity came."
         if not -0.5 <= measured.gripper <= 1.5:
             return f"A gripper of {measured.gripper:g} was read; 0 is open and 1 closed."
-        return ""
+        return self._out_of_range(joints)
+
+    def _out_of_range(self, joints: Array) -> str:
+        beyond = np.maximum(self._lowest - joints, joints - self._highest)
+        joint = int(beyond.argmax())
+        if beyond[joint] <= BEYOND_RANGE_RAD:
+            return ""
+        return (
+            f"Joint {joint + 1} was read at {joints[joint]:.2f} rad; the model has it between "
+            f"{self._lowest[joint]:.2f} and {self._highest[joint]:.2f}. Is it in degrees, or of other zeros?"
+        )
 
     def _clock(self, measured: Measured, now_s: float) -> str:
         if self._stamp_s is None or measured.stamp_s > self._stamp_s:
             self._stamp_s, self._stamped_s = measured.stamp_s, now_s
         elif measured.stamp_s < self._stamp_s:
-            return "The stamps of readings went back."
+            back_s, self._stamp_s, self._stamped_s = self._stamp_s - measured.stamp_s, measured.stamp_s, now_s
+            return f"The stamps of readings went back by {back_s:.3g} s: the clock they are of was set."
         if self.age_s(now_s) >= FROZEN_AFTER_S:
             return f"No new reading came for {FROZEN_AFTER_S:g} s."
         return ""

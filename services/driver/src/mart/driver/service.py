@@ -15,6 +15,7 @@ from mart.driver.hello import Session, say_hello
 from mart.driver.interface import Driver, Measured
 from mart.driver.loading import load_driver
 from mart.driver.reporting import Reporter
+from mart.driver.scheduling import go_first
 from mart.driver.settings import DriverSettings
 from mart.protocol import clock, keys
 from mart.protocol.errors import Conflict, InvalidInput, MartError, Unavailable
@@ -39,11 +40,14 @@ def serve_driver(settings: DriverSettings) -> None:
     Raises InvalidInput for a driver that cannot be made or is of another arm, and Conflict where another one has it.
     """
     driver = load_driver(settings.driver, settings.options)
+    refused = go_first()  # before there are threads that are to follow
     with (
         connected(settings, ServiceKind.DRIVER, settings.id) as service,
         announced(service),
         contextlib.closing(RoomSide(service.bus, settings, driver)) as room,
     ):
+        if refused:
+            _log.warning("%s", refused)
         while not service.stop.is_set():
             _lead(settings, driver, room, service.stop)
 

@@ -5,40 +5,36 @@ Heavy modules are imported inside: `mart --help` loads this file.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from mart.protocol import clock
-from mart.protocol.errors import Forbidden, InvalidInput, Unavailable
+from mart.protocol.errors import InvalidInput
 from mart.protocol.vocabulary import GOOD_VERDICTS, EpisodeOutcome
 from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
+from mart.recorder.replay_cli import replay
+from mart.recorder.replica_option import recorder_settings, replica_option, resimulation
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
 from mart.runtime.progress import progress, tracked
 from mart.runtime.rate_option import control_hz_option
 
-if TYPE_CHECKING:
-    from mart.recorder.verify.replica import AskReplica
-
 _path = click.argument("path", type=click.Path(path_type=Path))
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
-_replica = click.option("--replica", help="Which replica re-simulates.  [default: replica-1]")
 
 
 @click.command()
 @click.option("--name", default="recorder-1", show_default=True, help="Id of this recorder.")
-@_replica
+@replica_option
 def recorder(name: str, replica: str | None) -> None:
     """Record every episode of every room into a file of its own."""
     from mart.recorder.service import serve_recorder
 
-    serve_recorder(_settings(replica), name)
+    serve_recorder(recorder_settings(replica), name)
 
 
 @click.command()
@@ -53,6 +49,9 @@ def catalogue(name: str) -> None:
 @click.group(cls=Gathered, entry_group="mart.commands.episodes")
 def episodes() -> None:
     """Work on episode files or folders of them; without a path, on all that were recorded here."""
+
+
+episodes.add_command(replay)
 
 
 @episodes.command("list")
@@ -86,7 +85,7 @@ def show(path: Path, as_json: bool) -> None:
 
 @episodes.command()
 @_paths
-@_replica
+@replica_option
 @json_option
 def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     """Step episodes again in a replica: do their states follow from their actions bit for bit?
@@ -100,7 +99,7 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
 
     found: list[dict[str, Any]] = []
     listed = described(episode_files(_given(paths)))
-    with _resimulation(replica) as ask:
+    with resimulation(replica) as ask:
         for one in tracked(readable(listed, paths), "Verified", as_json=as_json):
             file = one.open()
             said = verify_file(file, file.room, ask)
@@ -130,25 +129,8 @@ def check(paths: tuple[Path, ...], as_json: bool) -> int:
 
 
 @episodes.command()
-@_path
-@_replica
-@json_option
-def replay(path: Path, replica: str | None, as_json: bool) -> int:
-    """Step one episode again in a replica and report every stretch of ticks: where it agrees, where it does not."""
-    from mart.episodes.reader import EpisodeFile
-    from mart.recorder import formatting
-    from mart.recorder.verify.resimulation import compare
-
-    file = EpisodeFile.open(path)
-    with _resimulation(replica) as resimulate:
-        stretches = list(compare(file, file.room, resimulate))
-    print_result(*formatting.replayed(path, stretches), as_json)
-    return 1 if any(stretch.different for stretch in stretches) else 0
-
-
-@episodes.command()
 @_paths
-@_replica
+@replica_option
 @json_option
 def repair(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     """Make episodes of what crashes have left (.part files), and of damaged files new ones beside them.
@@ -161,7 +143,7 @@ def repair(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
 
     given = _given(paths)
     with (
-        _resimulation(replica, wherever_possible=True) as ask,
+        resimulation(replica, wherever_possible=True) as ask,
         progress("Files", file_count(given), as_json=as_json) as shown,
     ):
         mended = repair_paths(given, lambda file, room: verify_file(file, room, ask), shown.advance)
@@ -252,28 +234,6 @@ def export(
     )
 
 
-def _settings(replica: str | None) -> RecorderSettings:
-    return RecorderSettings() if replica is None else RecorderSettings(replica=replica)
-
-
 def _given(paths: tuple[Path, ...]) -> tuple[Path, ...]:
     default = RecorderSettings().episodes_dir
     return paths or ((default,) if default.exists() else ())
-
-
-@contextmanager
-def _resimulation(replica: str | None, *, wherever_possible: bool = False) -> Iterator[AskReplica]:
-    """Ask a replica. Without a router this raises Unavailable: at once, or `wherever_possible` when it is asked."""
-    from mart.recorder.verify import resimulation as verification
-    from mart.runtime.bus.zenoh_bus import ZenohBus
-
-    settings = _settings(replica)
-    try:
-        bus = ZenohBus.connect(settings.router, wait_for_router=False)
-    except (Unavailable, Forbidden) as error:
-        if not wherever_possible:
-            raise
-        yield verification.nobody(error)
-    else:
-        with bus:
-            yield verification.replica(bus, settings.replica)

@@ -13,6 +13,7 @@ from typing import Any
 
 import click
 
+from mart.driver.scheduling import go_first
 from mart.driver.simulated.hardware import SERVO_HZ, ArmHardware, HardwareFault
 from mart.protocol import clock
 
@@ -82,6 +83,7 @@ class HardwareServer:
 @click.option("--seed", default=0, show_default=True, help="Of its delays, its noise and its clock.")
 def main(port: int, joints: str, seed: int) -> None:
     """Simulate an arm's hardware behind a socket of this machine."""
+    go_first()  # hardware waits for no processor; where that is refused, the driver says so
     hardware = ArmHardware([float(value) for value in joints.split(",")], seed)
     with contextlib.suppress(KeyboardInterrupt):
         asyncio.run(HardwareServer(hardware).serve(port))

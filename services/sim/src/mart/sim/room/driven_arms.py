@@ -63,6 +63,7 @@ class _DriverState:
     reading: ArmReading | None = None
     read_s: float = 0.0  # when the newest reading was measured
     heard_s: float = 0.0
+    excused_s: float = 0.0  # when the room itself had stood still and listened again
     target: ArmTarget = field(default_factory=ArmTarget)
     clutch: Clutch = field(default_factory=Clutch)
 
@@ -81,7 +82,7 @@ class DrivenArms:
         self._room, self._control_hz, self._send = room, control_hz, send
         self._states = {arm: _DriverState(facts) for arm, facts in arms.items()}
         self._boot_ns = self._sessions = self._sequence = self._tick = 0
-        self._attentive_s = self._watched_s = 0.0
+        self._watched_s = 0.0
         self._stopped, self._repeat_due_s = True, 0.0
 
     @property
@@ -91,7 +92,9 @@ class DrivenArms:
 
     def begin(self, boot_ns: int, now_s: float) -> None:
         """Begin a run of the sim."""
-        self._boot_ns, self._attentive_s, self._watched_s = boot_ns, now_s, now_s
+        self._boot_ns, self._watched_s = boot_ns, now_s
+        for state in self._states.values():
+            state.excused_s = now_s
 
     def hello(self, hello: DriverHello, now_s: float) -> DriverReply:
         """Welcome a driver. Raises NotFound, InvalidInput or Conflict where it is refused."""
@@ -121,8 +124,9 @@ class DrivenArms:
         joints = np.array(measured.joint_positions, dtype=np.float64)
         if (
             joints.size not in (0, state.facts.joints)
+            or not np.isfinite(joints).all()
             or not 0.0 <= measured.gripper <= 1.0
-            or measured.age_s < 0.0
+            or not 0.0 <= measured.age_s < np.inf
         ):
             self.rejected["no reading of this arm"] += 1
             return
@@ -137,7 +141,11 @@ class DrivenArms:
     def troubles(self, now_s: float) -> list[Trouble]:
         """Return what is wrong now. Call often: what nobody could hear, because nobody listened, is no silence."""
         if now_s - self._watched_s > REPEAT_S + 0.02:
-            self._attentive_s = now_s
+            for state in self._states.values():
+                if (
+                    state.excused_s <= state.heard_s
+                ):  # once for each silence: who stutters would never hear of any
+                    state.excused_s = now_s
         self._watched_s = now_s
         found = ((arm, state, self._fault(state, now_s)) for arm, state in self._states.items())
         return [Trouble(arm, state.called, fault) for arm, state, fault in found if fault]
@@ -200,7 +208,7 @@ class DrivenArms:
     def _fault(self, state: _DriverState, now_s: float) -> str:
         if state.hello is None:
             return "No driver has connected; start `mart driver` beside its hardware."
-        if now_s - max(state.heard_s, self._attentive_s) > SILENT_AFTER_S:
+        if now_s - max(state.heard_s, state.excused_s) > SILENT_AFTER_S:
             return f"It was silent for {SILENT_AFTER_S:g} s."
         if state.newest is None:
             return "It has not measured anything yet."
