@@ -143,7 +143,7 @@ class ArmKind(FilePart):
         return self.model_copy(
             update={
                 "name": f"{self.name}+{end_effector.name}",
-                "title": f"{self.title} + {end_effector.title}",
+                "title": f"{self.title} with {end_effector.title}",
                 "end_effector": end_effector,
                 "workspace": replace(space, reach_center_z_m=space.reach_center_z_m - longer_m),
             }

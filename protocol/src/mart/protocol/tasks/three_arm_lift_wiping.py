@@ -32,7 +32,8 @@ _WIPE = "Press the sponge lightly onto the table and rub over the dirt until it 
 
 # The same for an arm whose end effector is what wipes.
 _INSTRUCTION_WITH_PAD = (
-    "Blue and orange carry the tray of drinks together onto the rack. Green wipes away the dirt that was under it."
+    "Blue and orange carry the tray of drinks together onto the rack. "
+    "Green wipes away the dirt that was under it."
 )
 _WAIT_WITH_PAD = "Wait beside the tray, with your pad up, until the tray is out of the way."
 _WIPE_WITH_PAD = "Press your pad lightly onto the table and rub over the dirt until it is gone."
@@ -112,7 +113,7 @@ def _fitted(task: Task) -> Task:
     kind = task.arm(WIPER).kind
     if kind.end_effector.wiping is None:
         raise InvalidInput(
-            f"{WIPER}, a {kind.title} ({kind.name}), has neither fingers for the sponge of {task.title} nor a face that "
+            f"{WIPER}, a {kind.title} ({kind.name}), has no fingers for the sponge of {task.title}, and no face that "
             "wipes: give it an end effector with one of them, such as +two_finger or +wiping_pad."
         )
     subtasks = tuple(

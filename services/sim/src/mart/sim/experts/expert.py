@@ -93,9 +93,7 @@ class Expert:
         told, self._told_to_go = self._told_to_go, False
         seen = observations.get(gripper_observation(name))
         gripper = 0.0 if seen is None else float(seen[0])
-        return OperatorObservation(
-            observations, sim_time_s, tool, gripper, arrived, told
-        )
+        return OperatorObservation(observations, sim_time_s, tool, gripper, arrived, told)
 
     def _next_waypoint(self, obs: OperatorObservation) -> Waypoint:
         if self._plan is None or self._waypoint is None:

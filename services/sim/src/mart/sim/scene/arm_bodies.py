@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import mujoco
 
-from mart.protocol.arms import EndEffector
+from mart.protocol.arms.end_effector import SymbolPlace
 from mart.protocol.arms.parts import ArmBody, LinkBox, LinkMesh, LinkShape, LinkSphere, LinkTube
 from mart.protocol.tasks import MAX_ARMS, Arm
 from mart.sim.scene import gripper
@@ -86,19 +86,15 @@ def _add_links(
 def _add_hand(spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: Arm, index: int, detail: Detail) -> None:
     masks, end_effector = _masks(index, reaches_objects=True), arm.kind.end_effector
     _fill(hand, end_effector, arm, detail, masks)
-    _add_symbols(spec, hand, arm, end_effector)
-    gripper.add_tool(
-        spec, hand, arm.name, end_effector, masks, lambda body, shape: _add_look(body, shape, arm)
-    )
+    if end_effector.symbol is not None:
+        _add_symbols(spec, hand, arm.symbol, end_effector.symbol)
+    gripper.add_tool(spec, hand, arm, masks, lambda body, shape: _add_look(body, shape, arm))
 
 
-def _add_symbols(
-    spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: Arm, end_effector: EndEffector
-) -> None:
-    place = end_effector.symbol
-    for side in () if place is None else (-1, 1):
+def _add_symbols(spec: mujoco.MjSpec, hand: mujoco.MjsBody, symbol: str, place: SymbolPlace) -> None:
+    for side in (-1, 1):
         position = (place.x_m * side, 0.0, place.z_m)
-        add_tile(spec, hand, arm.symbol, radius_m=place.radius_m, position=position, normal=(side, 0, 0))
+        add_tile(spec, hand, symbol, radius_m=place.radius_m, position=position, normal=(side, 0, 0))
 
 
 def _masks(index: int, *, reaches_objects: bool) -> dict[str, int]:

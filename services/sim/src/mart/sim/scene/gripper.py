@@ -20,10 +20,14 @@ import mujoco
 from mart.protocol.arms import EndEffector
 from mart.protocol.arms.end_effector import Fingers, WipingFace
 from mart.protocol.arms.parts import LinkShape
+from mart.protocol.tasks import Arm
 
 _SOLREF = (0.004, 1.0)  # the default 0.02 s lets pads sink 4 mm into what they hold
 GRASPABLE = {"condim": 4, "friction": (1.0, 0.05, 0.0001), "solref": _SOLREF}  # for an object's geom
-WIPES = {"friction": (0.3, 0.005, 0.0001), "priority": 2}  # low, and it counts, or it would drag the hand back
+WIPES = {
+    "friction": (0.3, 0.005, 0.0001),
+    "priority": 2,
+}  # low, and it counts, or it would drag the hand back
 
 _STIFFNESS_N_PER_M = 2000.0
 _ARMATURE_KG = 0.1
@@ -37,12 +41,7 @@ def stroke_m(end_effector: EndEffector) -> float:
 
 
 def add_tool(
-    spec: mujoco.MjSpec,
-    hand: mujoco.MjsBody,
-    arm: str,
-    end_effector: EndEffector,
-    masks: dict[str, int],
-    look: AddShape,
+    spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: Arm, masks: dict[str, int], look: AddShape
 ) -> None:
     """Add the site `{arm}/tool`, and fingers with their servos or the face that wipes, to a hand.
 
@@ -50,12 +49,16 @@ def add_tool(
     """
     # Turned over, so that the tool's axes are the base's while the hand points straight down: its usual orientations
     # are then far from where a canonical quaternion (w >= 0) jumps.
-    z_m, fingers = end_effector.tool_z_m, end_effector.fingers
-    hand.add_site(name=f"{arm}/tool", pos=(0, 0, z_m), quat=(0, 1, 0, 0), size=(0.005, 0, 0), group=4)
-    if fingers is not None:
-        _add_fingers(spec, hand, arm, z_m, fingers, masks, look)
+    end_effector = arm.kind.end_effector
+    place = (0, 0, end_effector.tool_z_m)
+    hand.add_site(name=f"{arm.name}/tool", pos=place, quat=(0, 1, 0, 0), size=(0.005, 0, 0), group=4)
+    if end_effector.fingers is not None:
+        for finger in _add_fingers(spec, hand, arm.name, end_effector.fingers):
+            _add_pads(finger, end_effector.tool_z_m, end_effector.fingers, masks)
+            for shape in end_effector.fingers.shapes:
+                look(finger, shape)
     if end_effector.wiping is not None:
-        _add_face(hand, z_m, end_effector.wiping, masks)
+        _add_face(hand, end_effector.tool_z_m, end_effector.wiping, masks)
 
 
 def _add_face(hand: mujoco.MjsBody, z_m: float, face: WipingFace, masks: dict[str, int]) -> None:
@@ -71,14 +74,10 @@ def _add_face(hand: mujoco.MjsBody, z_m: float, face: WipingFace, masks: dict[st
 
 
 def _add_fingers(
-    spec: mujoco.MjSpec,
-    hand: mujoco.MjsBody,
-    arm: str,
-    tool_z_m: float,
-    fingers: Fingers,
-    masks: dict[str, int],
-    look: AddShape,
-) -> None:
+    spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: str, fingers: Fingers
+) -> list[mujoco.MjsBody]:
+    """Add both fingers with their servos, and what keeps them centred; return them."""
+    added = []
     for side, turn in (("left", (1.0, 0.0, 0.0, 0.0)), ("right", (0.0, 0.0, 0.0, 1.0))):
         finger = hand.add_body(name=f"{arm}/{side}_finger", pos=(0, 0, fingers.z_m), quat=turn)
         finger.mass, finger.ipos, finger.fullinertia, finger.explicitinertial = (
@@ -95,10 +94,8 @@ def _add_fingers(
             armature=_ARMATURE_KG,
             damping=[fingers.force_n / fingers.speed_m_s, 0, 0],
         )
-        _add_pads(finger, f"{arm}/{side}", tool_z_m, fingers, masks)
-        for shape in fingers.shapes:
-            look(finger, shape)
         _add_servo(spec, f"{arm}/{side}_finger", fingers)
+        added.append(finger)
     spec.add_equality(
         type=mujoco.mjtEq.mjEQ_JOINT,
         objtype=mujoco.mjtObj.mjOBJ_JOINT,
@@ -107,12 +104,11 @@ def _add_fingers(
         data=[0, 1, *[0] * 10],
         solref=_SOLREF,
     )
+    return added
 
 
-def _add_pads(
-    finger: mujoco.MjsBody, name: str, tool_z_m: float, fingers: Fingers, masks: dict[str, int]
-) -> None:
-    box = mujoco.mjtGeom.mjGEOM_BOX
+def _add_pads(finger: mujoco.MjsBody, tool_z_m: float, fingers: Fingers, masks: dict[str, int]) -> None:
+    box, name = mujoco.mjtGeom.mjGEOM_BOX, finger.name.removesuffix("_finger")
     finger.add_geom(
         name=f"{name}_pad",
         type=box,

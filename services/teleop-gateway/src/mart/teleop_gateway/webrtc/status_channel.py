@@ -22,6 +22,7 @@ from mart.protocol.messages import (
     cue_word,
     phase_word,
 )
+from mart.protocol.room_task import has_fingers
 from mart.teleop_gateway.input.driving import Driving, InputDevice, PhoneState
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 from mart.teleop_gateway.video.tool_projection import ToolPlaces
@@ -192,7 +193,7 @@ def tick(
             "rtf": round(state.real_time_factor, 3),
             "engaged": driving.engaged(now_s),
             "let_go": driving.let_go(now_s) or "",
-            "gripper": round(driving.gripper, 3),
+            "gripper": round(driving.gripper, 3) if has_fingers(room, driving.arm) else None,
             "gripper_set": driving.gripper_set,
             "holding": driving.holding,
             "hand_scale": driving.retarget.scale,
