@@ -1,5 +1,5 @@
-// Kinds of arms, and what they hold at their ends: chosen for each arm of a room that is to be; and how a room says which
-// it has.
+// Kinds of arms, and what they hold at their ends: chosen for each arm of a room that is to be; and how a room says
+// which it has.
 
 import { armName } from "./arms.js";
 import { element, setText } from "./dom.js";
