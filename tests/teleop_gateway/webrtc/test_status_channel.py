@@ -240,8 +240,11 @@ def test_an_arm_without_fingers_says_so() -> None:
 
     def gripper(*kinds: str) -> float | None:
         room = RoomStatus(task="three_arm_lift_wiping", seats=seats, arm_kinds=kinds)
-        text = status_channel.tick(State(), room, driving(), 10.0, frames_per_s=20.0, latency=None)
-        said: float | None = json.loads(text)["gripper"]
+        hand = driving()
+        hand.holding = True  # told to close, it stands still, as what holds something does
+        told = json.loads(status_channel.tick(State(), room, hand, 10.0, frames_per_s=20.0, latency=None))
+        assert told["holding"] == (told["gripper"] is not None)
+        said: float | None = told["gripper"]
         return said
 
     assert gripper("ur5e+wiping_pad", "panda", "panda") is None

@@ -87,6 +87,7 @@ class _Wiper:
         self._human = human
         face = arm.kind.end_effector.wiping
         self._grips = arm.kind.has_fingers or face is None
+        self._gripper = CLOSED if self._grips else OPEN
         if self._grips or face is None:
             self._sponge, self._length_m, self._lying_z_m = seen(arm, "sponge"), _SPONGE_LENGTH_M, _SPONGE_Z_M
         else:
@@ -99,7 +100,7 @@ class _Wiper:
     def wait_aside(self, obs: OperatorObservation) -> PlanStep:
         """Hold the sponge up until the tray has left the dirt."""
         up_m = _OVER_M if self._grips else 0.0
-        up = Waypoint(raised(obs.pose_tool_in_base, up_m), CLOSED, _PACE)
+        up = Waypoint(raised(obs.pose_tool_in_base, up_m), self._gripper, _PACE)
 
         def has_news(now: OperatorObservation) -> bool:
             return _is_aside(now) or self.has_lost(now)
@@ -116,7 +117,7 @@ class _Wiper:
             if len(dirty) < left:
                 since_s, left = obs.sim_time_s, len(dirty)
             place = self._next_place(obs, dirty, obs.sim_time_s - since_s)
-            obs = yield Waypoint(Pose(place + offset, turn), CLOSED, _PACE)
+            obs = yield Waypoint(Pose(place + offset, turn), self._gripper, _PACE)
         return obs
 
     def has_lost(self, now: OperatorObservation) -> bool:
