@@ -17,6 +17,7 @@ from mart.protocol.arms.parts import ArmBody, ArmFrame, FilePart, Positive
 from mart.protocol.arms.workspace import Limits, Workspace
 
 MIN_JOINTS, MAX_JOINTS = 5, 7
+_WORK_Z_M = 0.2  # over the table, where much of what tasks ask for is done
 _MOST_RAD = 7.0  # of an angle: beyond a whole turn it is in degrees
 
 
@@ -134,18 +135,23 @@ class ArmKind(FilePart):
     def with_end_effector(self, end_effector: EndEffector) -> ArmKind:
         """The same arm with something else at its end: a kind of its own, `{kind}+{end effector}`.
 
-        A longer one sends the arm that much higher: the point from which its reach is counted sinks by as much.
+        A longer one keeps the arm that much higher: the point from which its reach is counted sinks by as much, and its
+        base stands as much nearer to the work as it then reaches less far over the table.
         """
         if end_effector == self.end_effector:
             return self
         longer_m = end_effector.tool_z_m - self.end_effector.tool_z_m
         space = self.workspace
+        lower = replace(space, reach_center_z_m=space.reach_center_z_m - longer_m)
+        nearer_m = max(0.0, space.reach_at_m(_WORK_Z_M) - lower.reach_at_m(_WORK_Z_M))
+        placement = self.placement
         return self.model_copy(
             update={
                 "name": f"{self.name}+{end_effector.name}",
                 "title": f"{self.title} with {end_effector.title}",
                 "end_effector": end_effector,
-                "workspace": replace(space, reach_center_z_m=space.reach_center_z_m - longer_m),
+                "workspace": lower,
+                "placement": placement.model_copy(update={"forward_m": placement.forward_m + nearer_m}),
             }
         )
 
