@@ -1,8 +1,9 @@
-"""What the phone does for an arm without fingers."""
+"""What pages do for an arm without fingers."""
 
 from __future__ import annotations
 
 from tests.browser.pages.conftest import Run
+from tests.browser.pages.test_status_bar import LIVE, room, seat
 
 
 def test_the_coach_does_not_ask_an_arm_without_fingers_to_grip(run: Run) -> None:
@@ -26,3 +27,12 @@ def test_the_phone_greys_the_bar_of_an_arm_without_fingers(run: Run) -> None:
       });
     }"""
     assert run("phone/controls.js", script) == [["true", "No gripper"], ["false", "Gripper"]]
+
+
+def test_nobody_is_told_of_a_gripper_that_is_not_there(run: Run) -> None:
+    script = """({ statusBarView }, known) => [false, true].map(
+      (fingerless) => statusBarView({ ...known, fingerless }).hint)"""
+    mine = seat(mine=True)
+    known = {"room": room(mine), "seat": mine, "link": LIVE, "isNew": True}
+    usual, without = run("hud/status-bar-view.js", script, known)
+    assert usual == f"{without} G works the gripper."

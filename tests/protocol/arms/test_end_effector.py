@@ -41,7 +41,9 @@ def test_a_kind_with_something_else_at_its_end_is_a_kind_of_its_own() -> None:
     longer_m = kind.end_effector.tool_z_m - usual.end_effector.tool_z_m
     sunk_m = usual.workspace.reach_center_z_m - kind.workspace.reach_center_z_m
     assert sunk_m == pytest.approx(longer_m)
-    assert 0.01 < kind.placement.forward_m - usual.placement.forward_m < 0.03  # it reaches less far over the table
+    assert (
+        0.01 < kind.placement.forward_m - usual.placement.forward_m < 0.03
+    )  # it reaches less far over the table
     assert (kind.links, kind.home_rad, kind.limits) == (usual.links, usual.home_rad, usual.limits)
     assert arm_kind("ur5e+wiping_pad").placement == usual.placement  # as long as what it has otherwise
 
