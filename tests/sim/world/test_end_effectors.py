@@ -16,7 +16,7 @@ from mart.sim.world.driven_world import DrivenWorld
 from mart.sim.world.reach import missed
 from tests.sim.world.simulated_drivers import SimulatedDrivers
 
-CUBES, WIPING = "two_arm_multi_cube_lifting", "three_arm_lift_wiping"
+WIPING = "three_arm_lift_wiping"
 WITH_PAD = ("panda+robotiq_2f85", "ur5e", "panda+wiping_pad")
 OPEN, CLOSE = -1.0, 1.0
 
@@ -122,19 +122,19 @@ def test_a_driver_leads_an_arm_without_fingers(wiping: World) -> None:
     assert "arm2/gripper" not in world.observations()
 
 
-@pytest.mark.parametrize("arm", ["panda", "ur5e", "gen3"])
-def test_every_arm_reaches_with_everything_at_its_end(arm: str) -> None:
-    assert missed(World.build(WIPING, kinds=(f"{arm}+robotiq_2f85",) * 2 + (f"{arm}+wiping_pad",))) == ()
+def test_the_arm_with_the_shortest_reach_has_enough_of_it() -> None:
+    kinds = ("gen3+robotiq_2f85", "gen3+robotiq_2f85", "gen3+wiping_pad")
+    assert missed(World.build(WIPING, kinds=kinds)) == ()
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("task", "kinds"),
+    ("task", "kind"),
     [
-        (CUBES, ("gen3+robotiq_2f85", "ur5e+robotiq_2f85")),
-        ("two_arm_pick_place_handover", ("panda", "ur5e+robotiq_2f85")),
+        ("two_arm_pick_place_handover", "gen3+robotiq_2f85"),  # at the end of its reach
+        ("practice_course", "panda+robotiq_2f85"),  # of the two who carry, one is up long before the other
     ],
 )
-def test_scripts_grip_with_the_second_one(task: str, kinds: tuple[str, ...]) -> None:
-    world = World.build(task, kinds=kinds)
-    assert run_experts(world, seed=2, until_s=world.task.trial_limit_s).success
+def test_scripts_grip_with_the_second_one(task: str, kind: str) -> None:
+    world = World.build(task, kinds=(kind, kind))
+    assert run_experts(world, seed=0, until_s=world.task.trial_limit_s).success

@@ -27,8 +27,8 @@
 /**
  * What is known. `room` is null while it is not; `pending`: what has to be pressed once more; `isNew`: whoever looks
  * has not recorded yet; `touch`: with fingers; `fingerless`: the arm cannot grip; `reached`: the goal was just seen
- * reached in practice; `achieved`: the step of the practice course that was just done; `course`: the room of the course,
- * where one is open.
+ * reached in practice; `achieved`: the step of the practice course that was just done; `course`: the room of the
+ * course, where one is open.
  * @typedef {object} Known
  * @property {Api.Room | null} room
  * @property {Api.Seat | undefined} seat one's own
