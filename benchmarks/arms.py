@@ -1,6 +1,6 @@
-"""Scripted experts with other arms than Pandas: successes of fifty seeds, beside a pair of Pandas in the same run.
+"""Scripted experts with other arms than Pandas, and other end effectors: successes of fifty seeds, beside Pandas.
 
-    python benchmarks/arms.py            # 50 seeds of cubes and tray for each pair, an hour on a busy machine
+    python benchmarks/arms.py            # 50 seeds a row, a quarter of an hour to an hour
     python benchmarks/arms.py 10         # as many seeds as are said
 
 Control, the part of a step that moves the arms, is timed for mixed arms too, beside bare mj_step as in control.py.
@@ -20,9 +20,18 @@ from mart.sim.experts.run_experts import run_experts
 from mart.sim.world import World
 
 SEEDS = 50
-TASKS = ("two_arm_multi_cube_lifting", "two_arm_drink_tray_lifting")
-PANDAS = ("panda", "panda")
-PAIRS = (("panda", "ur5e"), ("ur5e", "ur5e"), ("gen3", "gen3"))
+CUBES, TRAY, WIPING = "two_arm_multi_cube_lifting", "two_arm_drink_tray_lifting", "three_arm_lift_wiping"
+PANDA, UR5E, GEN3 = "panda", "ur5e", "gen3"
+SECOND_GRIPPER, PAD = "robotiq_2f85", "wiping_pad"
+_PAIRS = (
+    (PANDA, UR5E),
+    (UR5E, UR5E),
+    (GEN3, GEN3),
+    (f"{PANDA}+{SECOND_GRIPPER}",) * 2,
+    (f"{UR5E}+{SECOND_GRIPPER}",) * 2,
+)
+_WIPERS = ((PANDA, PANDA, f"{PANDA}+{PAD}"), (UR5E, UR5E, f"{UR5E}+{PAD}"))
+ROWS = {CUBES: _PAIRS, TRAY: _PAIRS, WIPING: _WIPERS}
 TIMED = (("panda", "ur5e"), ("ur5e", "gen3"))
 _ROUNDS = 5
 
@@ -31,21 +40,22 @@ def main() -> None:
     seeds = int(sys.argv[1]) if len(sys.argv) > 1 else SEEDS
     metrics: dict[str, float] = {"seeds": seeds}
     bars: list[Bar] = []
-    peer: dict[str, float | str] = {"name": "two Pandas"}
-    for task in TASKS:
-        for kinds in (PANDAS, *PAIRS):
+    peer: dict[str, float | str] = {"name": "Pandas"}
+    for task, rows in ROWS.items():
+        pandas = (PANDA,) * len(rows[0])
+        for kinds in (pandas, *rows):
             successes, time_s = attempts(task, kinds, seeds)
             name = f"{task}_{'_'.join(kinds)}"
             figures = {f"{name}_success": successes / seeds, f"{name}_time_s": time_s}
             print(f"{name}: {successes} of {seeds}, {time_s:.1f} s", flush=True)
-            if kinds == PANDAS:
+            if kinds == pandas:
                 peer |= figures
                 continue
             metrics |= figures
             bars.append(Bar.at_least(f"{task}, {' and '.join(kinds)}: successes", successes / seeds, 0.95))
-    peer["control_over_bare"] = control_over_bare(World.build(TASKS[0]))
+    peer["control_over_bare"] = control_over_bare(World.build(CUBES))
     for kinds in TIMED:
-        over_bare = control_over_bare(World.build(TASKS[0], kinds=kinds))
+        over_bare = control_over_bare(World.build(CUBES, kinds=kinds))
         metrics[f"control_over_bare_{'_'.join(kinds)}"] = over_bare
         bars.append(Bar.at_most(f"control of {' and '.join(kinds)}, times bare mj_step", over_bare, 1.10))
     report("arms", metrics, peer=peer, bars=bars)

@@ -31,11 +31,14 @@ def test_all_kinds_are_listed_one_that_cannot_be_used_with_the_reason(folder: Pa
     assert any(line.startswith("ur5e") and "Universal Robots UR5e, 6 joints" in line for line in lines)
     assert any(line.startswith("broken") and "home_rad: Field required" in line for line in lines)
     assert lines[-1] == f"Robot files of your own: {folder}"
-    told = json.loads(run("list", "--json").output)["arms"]
+    told = json.loads(run("list", "--json").output)
+    held = {one["name"]: one["fingers"] for one in told["end_effectors"]}
+    assert held == {"two_finger": True, "robotiq_2f85": True, "wiping_pad": False}
+    told = told["arms"]
     assert told[0] == {"name": "panda", "title": "Franka Emika Panda, 7 joints", "joints": 7}
 
 
-@pytest.mark.parametrize("name", ["panda", "ur5e", "menagerie:kinova_gen3"])
+@pytest.mark.parametrize("name", ["panda", "ur5e", "menagerie:kinova_gen3", "gen3+wiping_pad"])
 def test_a_kind_is_shown(name: str) -> None:
     assert "workspace" in run("show", name).output
     assert json.loads(run("show", name, "--json").output)["name"] == name
@@ -54,6 +57,17 @@ def test_an_arm_that_can_be_used_and_one_that_cannot(folder: Path) -> None:
     short = run("check", str(folder / "short.toml"))
     assert short.exit_code == 1
     assert "BAD  reach        Pick-place handover: arm0 misses" in short.output
+
+
+@pytest.mark.slow
+def test_an_arm_without_fingers_is_looked_at_where_it_can_be_used(folder: Path) -> None:
+    checked = run("check", "ur5e+wiping_pad", "--pictures", str(folder / "pictures"))
+    assert checked.exit_code == 0
+    assert "Lift and wipe: scripts did it" in checked.output
+    assert "Table assembly: it has no fingers to grip with" in checked.output
+    assert "It can be used in 1 of 6 tasks." in checked.output
+    names = {picture.name for picture in (folder / "pictures").iterdir()}
+    assert names == {"ur5e-wiping_pad-front.png", "ur5e-wiping_pad-arm2.png"}
 
 
 def test_the_verdict_is_in_words() -> None:

@@ -45,8 +45,10 @@ def by_scripts(_tick: int, _arm: int) -> Operator:
     return OPERATOR_SCRIPT
 
 
-def perform(world: World, seed: int, number: int = 1, source: Source = by_scripts) -> list[State]:
-    """The states of one episode, from the reset to success."""
+def perform(
+    world: World, seed: int, number: int = 1, source: Source = by_scripts, most_ticks: int = _MOST_TICKS
+) -> list[State]:
+    """The states of one episode, from the reset to success, or so many ticks."""
     world.reset(seed)
     randoms = np.random.default_rng(seed).spawn(len(world.arms))
     experts = {
@@ -55,7 +57,7 @@ def perform(world: World, seed: int, number: int = 1, source: Source = by_script
     }
     targets = {arm: world.tool_pose_in_base(arm) for arm in world.arms}
     states = [_state(world, number, 0, None, source)]
-    while not world.progress().success and len(states) <= _MOST_TICKS:
+    while not world.progress().success and len(states) <= most_ticks:
         actions = []
         for arm, expert in experts.items():
             intent = expert.act(world.observations_for(arm), world.sim_time_s)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from pathlib import Path
 
 import pytest
@@ -16,10 +17,14 @@ from mart.trainer.data.data_spec import Selection
 from mart.trainer.data.dataset import load_dataset
 from mart.trainer.evaluate.rollouts import common_task
 from mart.trainer.serve.policy_seats import require_fit
+from mart.trainer.train.progress import TrainingProgress
+from mart.trainer.train.spec import TrainingSpec
+from mart.trainer.train.training import train
 from tests.trainer import recorded
 from tests.trainer.serve.toys import Wanderer
 
 KINDS = ("panda", "ur5e")
+WIPING = "three_arm_lift_wiping"
 
 
 @pytest.fixture(scope="module")
@@ -72,3 +77,22 @@ def test_a_policy_sits_only_where_its_arms_are() -> None:
         InvalidInput, match=r"several kinds of arms \(arm_kinds\) were given: Pandas; panda, ur5e"
     ):
         common_task([policy, Wanderer()])
+
+
+def test_an_arm_without_fingers_is_recorded_exported_and_learned_from(tmp_path: Path) -> None:
+    kinds = ("panda", "panda", "ur5e+wiping_pad")
+    world, folder = World.build(WIPING, kinds=kinds), tmp_path / "episodes"
+    path = recorded.write(folder, world, recorded.perform(world, seed=1, most_ticks=20), task=WIPING)
+    file = open_episode(path)
+    assert file.episode.arm_kinds == kinds
+    assert "arm1/gripper" in file.arrays().observations
+    assert "arm2/gripper" not in file.arrays().observations
+    learned = load_dataset([folder], Selection())
+    assert learned.digest.arm_kinds == kinds
+    out = tmp_path / "out"
+    export.main([str(folder), "--format", "lerobot", "--out", str(out)], standalone_mode=False)
+    assert "Universal Robots UR5e with Wiping pad" in (out / "meta" / "info.json").read_text()
+    spec = {"model": "none/joint/joint/mlp/gmm", "seeds": (0,), "preset": "debug", "data": (folder,)}
+    progress: list[TrainingProgress] = []
+    train(TrainingSpec.model_validate(spec), tmp_path / "run", threading.Event(), progress.append)
+    assert progress

@@ -21,9 +21,17 @@ declare namespace Api {
     title: string;
   }
 
+  /** What an arm holds at its end: said after its kind and a plus sign. */
+  interface EndEffector {
+    name: string;
+    title: string;
+    about: string;
+  }
+
   interface RoomOptions {
     tasks: TaskOption[];
     arm_kinds: ArmKind[];
+    end_effectors: EndEffector[];
     opens_rooms: boolean;
   }
 

@@ -18,7 +18,8 @@ declare namespace StatusChannel {
     rtf: number;
     engaged: boolean;
     let_go: LetGo;
-    gripper: number;
+    /** null where the arm has no fingers: whatever is said of its gripper counts for nothing. */
+    gripper: number | null;
     gripper_set: number;
     holding: boolean;
     hand_scale: number;

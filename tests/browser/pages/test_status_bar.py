@@ -279,10 +279,10 @@ def test_the_coach_leaves_out_what_the_phone_cannot_do(run: Run) -> None:
         tips.push(tutorial.tip);
       };
       be({ held: true }, 600);
-      tutorial.leaveOutTurning();
+      tutorial.leaveOut("turns");
       be({ position: [0, 0.1, 0] });
       be({ position: [0, 0.3, 0] });
-      tutorial.leaveOutTurning();
+      tutorial.leaveOut("turns");
       be({ gripper: 1 });
       return [tips, tutorial.finished];
     }"""

@@ -20,10 +20,31 @@ OF_0_2 = {
     ("three_arm_lift_wiping", 3): "349e4e9a7c6fccbb11f7854dfe675b263c7bb5c9b1b1ee308f0d9f1d825bb89c",
 }
 
+# The same with arms of other kinds, as the version before end effectors were files compiled them.
+OF_OTHER_ARMS = {
+    (
+        "two_arm_multi_cube_lifting",
+        "panda",
+        "ur5e",
+    ): "2fcdbe2cde5cf7365375ee618e1ff5ae777fec57eacd16ee22a6eae034ab8a2e",
+    (
+        "three_arm_lift_wiping",
+        "ur5e",
+        "gen3",
+        "panda",
+    ): "1d42673027b37afd2289f84367e4dbdb5308626d4ee219e7e9505d1ec8a8aa9a",
+}
+
 
 @pytest.mark.parametrize(("task", "arms"), OF_0_2, ids=str)
 def test_pandas_compile_to_the_same_bytes_as_ever(task: str, arms: int) -> None:
     assert World.build(task, 20.0, arms).model_sha256 == OF_0_2[task, arms]
+
+
+@pytest.mark.parametrize("room", OF_OTHER_ARMS, ids=" ".join)
+def test_other_arms_compile_to_the_same_bytes_as_before_end_effectors(room: tuple[str, ...]) -> None:
+    task, *kinds = room
+    assert World.build(task, 20.0, kinds=kinds).model_sha256 == OF_OTHER_ARMS[room]
 
 
 def test_every_task_is_held() -> None:

@@ -233,3 +233,21 @@ def test_a_ping_comes_back_as_it_was_sent() -> None:
     assert json.loads(status_channel.pong(ping, 42)) == {"type": "pong", "t_us": 123456.75, "gateway_ns": 42}
     assert json.loads(status_channel.pong(ping, 42, 351_400.0))["picture_kbit_s"] == 351
     assert status_channel.parse(status_channel.clock_offset(-5)) == status_channel.ClockMessage(-5)
+
+
+def test_an_arm_without_fingers_says_so() -> None:
+    seats = [Seat(arm=arm) for arm in ("arm0", "arm1", "arm2")]
+
+    def gripper(*kinds: str) -> float | None:
+        room = RoomStatus(task="three_arm_lift_wiping", seats=seats, arm_kinds=kinds)
+        hand = driving()
+        hand.holding = True  # told to close, it stands still, as what holds something does
+        told = json.loads(status_channel.tick(State(), room, hand, 10.0, frames_per_s=20.0, latency=None))
+        assert told["holding"] == (told["gripper"] is not None)
+        said: float | None = told["gripper"]
+        return said
+
+    assert gripper("ur5e+wiping_pad", "panda", "panda") is None
+    assert gripper("ur5e+robotiq_2f85", "panda", "panda+wiping_pad") == 0.25
+    assert gripper("of_another_machine", "panda", "panda") == 0.25
+    assert gripper() == 0.25

@@ -60,6 +60,8 @@ async def test_a_room_is_opened_and_closed(enter: Enter, asked: list[RoomsReques
     assert (arms["three_arm_lift_wiping"], arms["two_arm_multi_cube_lifting"]) == (3, 2)
     kinds = {kind["name"]: kind["title"] for kind in told["arm_kinds"]}
     assert (next(iter(kinds)), kinds["ur5e"]) == ("panda", "Universal Robots UR5e")
+    held = {one["name"]: one["about"] for one in told["end_effectors"]}
+    assert held["wiping_pad"] == "no fingers, wipes"
     assert not any(name.startswith("menagerie:") for name in kinds)  # it would have to be fetched
     opened = await ana.post(
         "/api/rooms", json={"task": "three_arm_lift_wiping", "control_hz": 30, "episodes": 50}
@@ -93,9 +95,10 @@ async def test_a_room_for_practice_and_one_that_asks_for_the_course(
 
 async def test_a_room_with_other_arms(enter: Enter, asked: list[RoomsRequest]) -> None:
     ana = await enter("Ana")
-    body = {"task": "three_arm_lift_wiping", "arm_kinds": {"arm1": "ur5e"}}
+    chosen = {"arm1": "ur5e", "arm2": "gen3+wiping_pad"}
+    body = {"task": "three_arm_lift_wiping", "arm_kinds": chosen}
     await ana.post("/api/rooms", json=body)
-    assert dict(asked[0].open.arm_kinds) == {"arm1": "ur5e"}
+    assert dict(asked[0].open.arm_kinds) == chosen
     for kinds in ({"arm1": "../ur5e"}, {"arm1": ""}, {f"arm{n}": "ur5e" for n in range(9)}):
         assert (await ana.post("/api/rooms", json=body | {"arm_kinds": kinds})).status_code == 400
     assert len(asked) == 1

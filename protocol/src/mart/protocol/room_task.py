@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from mart.protocol.arms import arm_kind
+from mart.protocol.errors import MartError
 from mart.protocol.messages import Model, RoomStatus
 from mart.protocol.tasks import Task, get_task
 
@@ -9,6 +11,17 @@ from mart.protocol.tasks import Task, get_task
 def task_of_room(status: RoomStatus) -> Task:
     """Return the task. Raises NotFound and InvalidInput for one, or arms, that this version does not know."""
     return get_task(status.task, len(status.seats), status.arm_kinds)
+
+
+def has_fingers(status: RoomStatus, arm: str) -> bool:
+    """Return whether this arm of the room can grip; yes where its kind is not known here."""
+    arms = [seat.arm for seat in status.seats]
+    if len(status.arm_kinds) != len(arms) or arm not in arms:
+        return True
+    try:
+        return arm_kind(status.arm_kinds[arms.index(arm)]).has_fingers
+    except MartError:
+        return True
 
 
 def task_of_model(model: Model) -> Task:

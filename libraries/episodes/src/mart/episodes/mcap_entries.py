@@ -18,7 +18,7 @@ from google.protobuf.timestamp_pb2 import Timestamp
 from mart.protocol import recording
 from mart.protocol.errors import MartError
 from mart.protocol.messages import Command, Event, PoseMessage, State, pose_message
-from mart.protocol.tasks import get_task
+from mart.protocol.tasks import Arm, get_task
 
 _SEQUENCE_MASK = 0xFFFFFFFF  # MCAP has 32 bits for it
 
@@ -41,9 +41,9 @@ class McapEntry:
 def state_entries(
     state: State, payload: bytes, arrived_ns: int, task: str | None, arm_kinds: Sequence[str] = ()
 ) -> list[McapEntry]:
-    """Return the state itself and what tools without MART's schemas can draw: frames and grippers.
+    """Return the state itself and what tools without MART's schemas can draw: frames, and grippers where there are.
 
-    arm_kinds: one for each arm, none of them: Pandas; where bases stand depends on it.
+    arm_kinds: one for each arm, none of them: Pandas; where bases stand and which arms have fingers depends on it.
     """
     sent_ns = state.stamps.sent_ns or arrived_ns
     sequence = state.tick & _SEQUENCE_MASK
@@ -51,8 +51,15 @@ def state_entries(
     def entry(topic: str, message: Message, raw: bytes) -> McapEntry:
         return McapEntry(topic, type(message), raw, arrived_ns, sent_ns, sequence)
 
-    frames = _frames(state, sent_ns, _bases(task, len(state.arms), arm_kinds))
-    grippers = [(recording.gripper_topic(arm.arm), _gripper(arm.gripper, sent_ns)) for arm in state.arms]
+    known = _known_arms(task, len(state.arms), arm_kinds)
+    bases = [(arm.name, pose_message(arm.pose_base_in_world)) for arm in known]
+    without = {arm.name for arm in known if not arm.kind.has_fingers}
+    frames = _frames(state, sent_ns, bases)
+    grippers = [
+        (recording.gripper_topic(arm.arm), _gripper(arm.gripper, sent_ns))
+        for arm in state.arms
+        if arm.arm not in without
+    ]
     return [
         entry(recording.STATE, state, payload),
         entry(recording.TRANSFORMS, frames, frames.SerializeToString()),
@@ -85,13 +92,12 @@ def _frames(state: State, sent_ns: int, bases: Iterable[tuple[str, PoseMessage]]
     return FrameTransforms(transforms=transforms)
 
 
-def _bases(task: str | None, arms: int, arm_kinds: Sequence[str]) -> Iterable[tuple[str, PoseMessage]]:
-    """Return where the task's catalogue entry puts each arm; nothing for a task that is not in the catalogue."""
+def _known_arms(task: str | None, arms: int, arm_kinds: Sequence[str]) -> tuple[Arm, ...]:
+    """Return the arms as the task's catalogue entry has them; nothing for a task that is not in the catalogue."""
     try:
-        known = get_task(task or "", arms, arm_kinds)
+        return get_task(task or "", arms, arm_kinds).arms
     except MartError:
         return ()
-    return [(arm.name, pose_message(arm.pose_base_in_world)) for arm in known.arms]
 
 
 def _frame(parent: str, child: str, pose: PoseMessage, sent_ns: int) -> FrameTransform:

@@ -1,100 +1,24 @@
 """Define what a robot file says: one kind of arm, as TOML. docs/how-to-bring-your-own-robot.md is for who writes one.
 
 Frames: the base frame stands level, x towards the work. Every joint turns about the z axis of its own link's frame,
-whose place in the link before is what the file says for angle 0. The tool's own frame is the gripper's.
+whose place in the link before is what the file says for angle 0. The tool's own frame is the end effector's.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Self
+from dataclasses import replace
+from typing import Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
+from mart.protocol.arms.end_effector import EndEffector
+from mart.protocol.arms.parts import ArmBody, ArmFrame, FilePart, Positive
 from mart.protocol.arms.workspace import Limits, Workspace
 
-Vector = tuple[float, float, float]
-Positive = Annotated[float, Field(gt=0.0)]
-
 MIN_JOINTS, MAX_JOINTS = 5, 7
+_WORK_Z_M = 0.2  # over the table, where much of what tasks ask for is done
 _MOST_RAD = 7.0  # of an angle: beyond a whole turn it is in degrees
-_UNTURNED = (1.0, 0.0, 0.0, 0.0)
-
-GripperKind = Literal["two-finger"]  # MART's own, with every arm
-
-
-class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-def _has_length(quaternion: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
-    if math.hypot(*quaternion) < 1e-3:
-        raise ValueError("a quaternion of length 0 is no turn; [1, 0, 0, 0] is none at all")
-    return quaternion
-
-
-class ArmFrame(_Part):
-    """Place a frame in another: metres, and a quaternion wxyz of any length."""
-
-    position_m: Vector = (0.0, 0.0, 0.0)
-    quaternion_wxyz: tuple[float, float, float, float] = _UNTURNED
-
-    _has_length = field_validator("quaternion_wxyz")(_has_length)
-
-
-class LinkMesh(_Part):
-    """Look like a part of the Panda (link0 … link7), whose meshes come with the package gymnasium-robotics."""
-
-    form: Literal["mesh"]
-    part: str = Field(pattern=r"^link[0-7]$")
-
-
-class _Solid(_Part):
-    material: str = "shell"  # of the scene's palette
-    accent: bool = False  # painted in the arm's own colour
-
-
-class LinkTube(_Solid):
-    """A capsule or a cylinder between two points of the link's frame."""
-
-    form: Literal["capsule", "cylinder"]
-    from_m: Vector
-    to_m: Vector
-    radius_m: Positive
-
-    @model_validator(mode="after")
-    def _long(self) -> Self:
-        if math.dist(self.from_m, self.to_m) < 1e-4:
-            raise ValueError("from_m and to_m are the same point; a sphere has a form of its own")
-        return self
-
-
-class LinkBox(_Solid):
-    """A box around a point of the link's frame, along its axes."""
-
-    form: Literal["box"]
-    center_m: Vector
-    half_m: tuple[Positive, Positive, Positive]
-
-
-class LinkSphere(_Solid):
-    """A ball around a point of the link's frame."""
-
-    form: Literal["sphere"]
-    center_m: Vector
-    radius_m: Positive
-
-
-LinkShape = Annotated[LinkMesh | LinkTube | LinkBox | LinkSphere, Field(discriminator="form")]
-
-
-class ArmBody(_Part):
-    """Weigh and show a part. inertia_kg_m2: xx yy zz xy xz yz about the centre of mass, along the link's axes."""
-
-    mass_kg: Positive
-    center_of_mass_m: Vector
-    inertia_kg_m2: tuple[float, float, float, float, float, float]
-    shapes: tuple[LinkShape, ...] = ()
 
 
 class ArmLink(ArmBody, ArmFrame):
@@ -116,11 +40,11 @@ class ArmLink(ArmBody, ArmFrame):
         return limits
 
 
-class ArmModel(_Part):
+class ArmModel(FilePart):
     """Name an MJCF file that has the links: a file beside the robot file, or a robot of MuJoCo Menagerie.
 
     joints: those of the arm by their names there, base first, and torques_nm what they may at most. site: where the
-    gripper is mounted, its z axis away from the arm; the hand is turned about it so that it is untwisted at home.
+    end effector is mounted, its z axis away from the arm, and is turned about it so that it is untwisted at home.
     remove: bodies of the file that are not wanted, such as a gripper of its own.
     """
 
@@ -138,21 +62,21 @@ class ArmModel(_Part):
         return self
 
 
-class ArmPlacement(_Part):
+class ArmPlacement(FilePart):
     """Say where the base stands, seen from where a Panda's would: closer to the work, and higher."""
 
     forward_m: float = Field(0.0, ge=-0.3, le=0.3)
     up_m: float = Field(0.0, ge=-0.3, le=0.6)
 
 
-class ArmPosture(_Part):
+class ArmPosture(FilePart):
     """Say which angle of joint 1 points the arm towards an azimuth: sign * azimuth + offset."""
 
     joint1_sign: Literal[-1, 1] = 1
     joint1_offset_rad: float = Field(0.0, ge=-math.pi, le=math.pi)
 
 
-class Gains(_Part):
+class Gains(FilePart):
     """Set the controller: kp in 1/s², damping critical. Larger errors are pulled in, so that no goal makes a whip.
 
     The regular mobilities are the inverse effective mass (1/kg) and inertia (1/(kg m²)) below which a direction counts
@@ -168,16 +92,17 @@ class Gains(_Part):
     regular_mobility_orientation: Positive = 0.3
 
 
-class ArmKind(_Part):
+class ArmKind(FilePart):
     """One kind of arm. `name` is the file's, and how people call it; `title` is who makes it and what it is.
 
-    home_rad: joint angles with the tool straight down before the base, from which poses are looked for. mount: where
-    the gripper sits in the last link. meets_things_from_link: links before it meet other arms only, not things.
+    home_rad: joint angles with the tool straight down before the base, from which poses are looked for. end_effector:
+    what it holds at its end; the file names one, and `workspace` is for it. mount: where that sits in the last link.
+    meets_things_from_link: links before it meet other arms only, not things.
     """
 
     name: str = Field(pattern=r"^(menagerie:)?[a-z][a-z0-9_]*$", max_length=80)
     title: str = Field(min_length=1, max_length=80)
-    gripper: GripperKind = "two-finger"
+    end_effector: EndEffector
     home_rad: tuple[float, ...]
     base: ArmBody | None = None
     links: tuple[ArmLink, ...] = Field((), max_length=MAX_JOINTS)
@@ -201,6 +126,34 @@ class ArmKind(_Part):
     def torques_nm(self) -> tuple[float, ...]:
         """What each joint may at most, newton metres."""
         return tuple(link.torque_nm for link in self.links) if self.mjcf is None else self.mjcf.torques_nm
+
+    @property
+    def has_fingers(self) -> bool:
+        """Whether it can grip; where it cannot, whatever is said of its gripper counts for nothing."""
+        return self.end_effector.fingers is not None
+
+    def with_end_effector(self, end_effector: EndEffector) -> ArmKind:
+        """The same arm with something else at its end: a kind of its own, `{kind}+{end effector}`.
+
+        A longer one keeps the arm that much higher: the point from which its reach is counted sinks by as much, and its
+        base stands as much nearer to the work as it then reaches less far over the table.
+        """
+        if end_effector == self.end_effector:
+            return self
+        longer_m = end_effector.tool_z_m - self.end_effector.tool_z_m
+        space = self.workspace
+        lower = replace(space, reach_center_z_m=space.reach_center_z_m - longer_m)
+        nearer_m = max(0.0, space.reach_at_m(_WORK_Z_M) - lower.reach_at_m(_WORK_Z_M))
+        placement = self.placement
+        return self.model_copy(
+            update={
+                "name": f"{self.name}+{end_effector.name}",
+                "title": f"{self.title} with {end_effector.title}",
+                "end_effector": end_effector,
+                "workspace": lower,
+                "placement": placement.model_copy(update={"forward_m": placement.forward_m + nearer_m}),
+            }
+        )
 
     @model_validator(mode="after")
     def _home_is_one_of_its_postures(self) -> Self:

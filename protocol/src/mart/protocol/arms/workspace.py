@@ -49,6 +49,10 @@ class Workspace:
     yaw_min_rad: float = -1.9
     yaw_max_rad: float = 2.7
 
+    def reach_at_m(self, z_m: float) -> float:
+        """How far from the base's axis a tool may go at this height; 0 where it may not be that high or low."""
+        return math.sqrt(max(0.0, self.reach_m**2 - (z_m - self.reach_center_z_m) ** 2))
+
     def clamp(self, pose_tool_in_base: Pose) -> Pose:
         """An allowed pose close to the given one; an allowed one is returned as it is, but for rounding."""
         x, y, z = self._position(*pose_tool_in_base.position.tolist())

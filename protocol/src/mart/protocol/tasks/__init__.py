@@ -20,6 +20,7 @@ from mart.protocol.tasks.task import (
     Observation,
     Subtask,
     Task,
+    gripper_observation,
     proprioception,
 )
 
@@ -37,6 +38,7 @@ __all__ = [
     "arm_counts",
     "arm_kinds_of",
     "get_task",
+    "gripper_observation",
     "proprioception",
     "task_names",
 ]

@@ -4,13 +4,14 @@ Geometry, resets, success and experts are in `mart.sim`; this is what a lobby, a
 to know without a simulator.
 
 Frames: the world's z = 0 is the table top. A base frame stands level, x towards the work. A tool frame sits in the
-middle of the finger pads; its axes are the base's while the hand points straight down and the fingers close along y.
+middle of the finger pads, or over the face that wipes; its axes are the base's while the hand points straight down, and
+fingers close along y.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -109,6 +110,8 @@ class Task:
     three to five times what a practised operator needs (decision 0012). None: as long as the horizon.
 
     afterwards: what an operator is to do whose own subtasks are done, in one line, until the others' are.
+    fingerless: arms whose part can be done without fingers; all others need an end effector that grips. fitted: what
+    becomes of the task with other end effectors than fingers; it may raise InvalidInput where those cannot do it.
     """
 
     name: str
@@ -121,6 +124,8 @@ class Task:
     trial_ticks: int | None = None
     success_hold_ticks: int = 10
     afterwards: str = ""
+    fingerless: tuple[str, ...] = ()
+    fitted: Callable[[Task], Task] | None = None
 
     @property
     def time_limit_s(self) -> float:
@@ -151,7 +156,10 @@ class Task:
         return () if set(kinds) == {PANDA.name} else kinds
 
     def with_kinds(self, kinds: Sequence[ArmKind]) -> Task:
-        """The same task with arms of these kinds, one for each; raises InvalidInput where the number differs."""
+        """The same task with arms of these kinds, one for each.
+
+        Raises InvalidInput where the number differs, or an arm has no fingers that needs some.
+        """
         if len(kinds) != len(self.arms):
             raise InvalidInput(
                 f"{len(kinds)} kinds of arms were given; {self.name} has {len(self.arms)} arms: name one for each."
@@ -159,9 +167,24 @@ class Task:
         arms = tuple(
             arm if kind == arm.kind else arm.of(kind) for arm, kind in zip(self.arms, kinds, strict=True)
         )
+        for arm in arms:
+            self._require_fingers(arm)
         shapes = {f"{arm.name}/joint_positions": (len(arm.kind.home_rad),) for arm in arms}
-        observations = tuple(replace(o, shape=shapes.get(o.name, o.shape)) for o in self.observations)
-        return replace(self, arms=arms, observations=observations)
+        none = {gripper_observation(arm.name) for arm in arms if not arm.kind.has_fingers}
+        observations = tuple(
+            replace(o, shape=shapes.get(o.name, o.shape)) for o in self.observations if o.name not in none
+        )
+        task = replace(self, arms=arms, observations=observations)
+        return task if self.fitted is None else self.fitted(task)
+
+    def _require_fingers(self, arm: Arm) -> None:
+        if arm.kind.has_fingers or arm.name in self.fingerless:
+            return
+        allowed = f" ({' and '.join(self.fingerless)} may do without)" if self.fingerless else ""
+        raise InvalidInput(
+            f"{arm.name}, a {arm.kind.title} ({arm.kind.name}), has no fingers, and {self.title} needs it to grip"
+            f"{allowed}: name its kind without that end effector, or one that grips, such as +two_finger."
+        )
 
     @property
     def viewpoints(self) -> tuple[str, ...]:
@@ -185,11 +208,16 @@ class Task:
         return tuple(observation for observation in self.observations if name in observation.arms)
 
 
+def gripper_observation(arm: str) -> str:
+    """How far the arm's gripper is closed: the observation's name. An arm without fingers has none."""
+    return f"{arm}/gripper"
+
+
 def proprioception(arm: str) -> tuple[Observation, ...]:
     """What every arm's operator knows of the own arm, in every task."""
     return (
         Observation(f"{arm}/tool_position_in_base", (3,), "m", (arm,)),
         Observation(f"{arm}/tool_quaternion_in_base", (4,), "wxyz", (arm,)),
         Observation(f"{arm}/joint_positions", (7,), "rad", (arm,)),
-        Observation(f"{arm}/gripper", (1,), "0 open … 1 closed", (arm,)),
+        Observation(gripper_observation(arm), (1,), "0 open … 1 closed", (arm,)),
     )

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
+from mart.protocol.errors import InvalidInput
 from mart.protocol.tasks.task import Arm, Observation, Subtask, Task, proprioception
 from mart.protocol.tasks.tray import CARRIERS, tray_observations
 
@@ -26,6 +28,17 @@ _CARRY = "Carry the tray together, level and slowly, onto the dark rack. Do not 
 _TAKE_SPONGE = (
     "Grip the sponge by its green block and lift it; wait with it until the tray is out of the way."
 )
+_WIPE = "Press the sponge lightly onto the table and rub over the dirt until it is gone."
+
+# The same for an arm whose end effector is what wipes.
+_INSTRUCTION_WITH_PAD = (
+    "Blue and orange carry the tray of drinks together onto the rack. "
+    "Green wipes away the dirt that was under it."
+)
+_WAIT_WITH_PAD = "Wait beside the tray, with your pad up, until the tray is out of the way."
+_WIPE_WITH_PAD = "Press your pad lightly onto the table and rub over the dirt until it is gone."
+_WITH_PAD = {_TAKE_SPONGE: _WAIT_WITH_PAD, _WIPE: _WIPE_WITH_PAD}
+_SPONGE = "sponge/"
 
 
 def task(arms: int) -> Task:
@@ -70,9 +83,7 @@ def task(arms: int) -> Task:
                 "The table is clean",
                 coordinated=False,
                 arms=(WIPER,),
-                to_do={
-                    WIPER: "Press the sponge lightly onto the table and rub over the dirt until it is gone."
-                },
+                to_do={WIPER: _WIPE},
             ),
         ),
         afterwards="Hold still until the table is clean: the drinks must stay up.",
@@ -85,4 +96,29 @@ def task(arms: int) -> Task:
         ),
         horizon_ticks=2400,  # two minutes: scripts need 12 s
         trial_ticks=840,
+        fingerless=(WIPER,),
+        fitted=_fitted,
     )
+
+
+def wipes_itself(task: Task) -> bool:
+    """Whether the wiper's end effector is what wipes: then there is no sponge to grip."""
+    return not task.arm(WIPER).kind.has_fingers
+
+
+def _fitted(task: Task) -> Task:
+    """Leave the sponge out where the wiper wipes with what is at its end."""
+    if not wipes_itself(task):
+        return task
+    kind = task.arm(WIPER).kind
+    if kind.end_effector.wiping is None:
+        raise InvalidInput(
+            f"{WIPER}, a {kind.title} ({kind.name}), has no fingers for the sponge of {task.title}, and no face that "
+            "wipes: give it an end effector with one of them, such as +two_finger or +wiping_pad."
+        )
+    subtasks = tuple(
+        replace(one, to_do={arm: _WITH_PAD.get(line, line) for arm, line in one.to_do.items()})
+        for one in task.subtasks
+    )
+    observations = tuple(o for o in task.observations if not o.name.startswith(_SPONGE))
+    return replace(task, instruction=_INSTRUCTION_WITH_PAD, subtasks=subtasks, observations=observations)

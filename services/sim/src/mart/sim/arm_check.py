@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from mart.protocol.arms import ArmKind
+from mart.protocol.arms import PANDA, ArmKind
 from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Task, get_task, task_names
@@ -19,7 +19,7 @@ from mart.sim.world.reach import missed
 from mart.sim.world.world import World
 
 _TASK = "two_arm_multi_cube_lifting"  # where an arm is looked at alone
-_ARM = "arm0"
+_FINGERLESS_TASK = "three_arm_lift_wiping"  # the same where it has no fingers
 _LOAD_KG = 0.5
 _GRAVITY = 9.81
 _MOST_SAG_M = 0.015
@@ -44,12 +44,12 @@ class ArmFinding:
 def check_arm(kind: ArmKind) -> Iterator[ArmFinding]:
     """Look at one thing after another; the first that keeps the others from being looked at is the last."""
     try:
-        world = _world_of(get_task(_TASK), kind)
+        world = _world_of(get_task(_TASK if kind.has_fingers else _FINGERLESS_TASK), kind)
         world.reset(_SEED)
     except (MartError, ValueError) as error:  # what MuJoCo cannot compile is a ValueError, in its own words
         yield ArmFinding("loads", ok=False, said=str(error))
         return
-    said = f"{kind.title}: {kind.joint_count} joints, {kind.gripper} gripper."
+    said = f"{kind.title}: {kind.joint_count} joints; at its end {kind.end_effector.about}."
     yield ArmFinding("loads", ok=True, said=said)
     yield from _alone(world, kind)
     for name in task_names():
@@ -57,17 +57,29 @@ def check_arm(kind: ArmKind) -> Iterator[ArmFinding]:
 
 
 def _world_of(task: Task, kind: ArmKind) -> World:
-    return World(scene_of(task.with_kinds([kind] * len(task.arms))), _CONTROL_HZ)
+    """Return the task's world with this kind at every place; without fingers, at those that need none."""
+    kinds = [kind if _fits(task, arm.name, kind) else PANDA for arm in task.arms]
+    return World(scene_of(task.with_kinds(kinds)), _CONTROL_HZ)
+
+
+def _fits(task: Task, arm: str, kind: ArmKind) -> bool:
+    return kind.has_fingers or arm in task.fingerless
+
+
+def _own(world: World, kind: ArmKind) -> str:
+    """Return the name of the first arm of this kind."""
+    return next(arm.name for arm in world.task.arms if arm.kind == kind)
 
 
 def _alone(world: World, kind: ArmKind) -> Iterator[ArmFinding]:
     mujoco.mj_forward(world.model, world.data)
-    joint = world.model.joint(f"{_ARM}/joint1")
+    own = _own(world, kind)
+    joint = world.model.joint(f"{own}/joint1")
     first, count = int(joint.dofadr[0]), kind.joint_count
     dofs = slice(first, first + count)
-    yield _limits(world, kind, int(joint.qposadr[0]))
+    yield _limits(world, kind, joint.id, int(joint.qposadr[0]))
     jacobian, mass = np.zeros((6, world.model.nv)), np.zeros((world.model.nv, world.model.nv))
-    site = world.model.site(f"{_ARM}/tool").id
+    site = world.model.site(f"{own}/tool").id
     mujoco.mj_jacSite(world.model, world.data, jacobian[:3], jacobian[3:], site)
     mujoco.mj_fullM(world.model, world.data, mass)
     mobility = jacobian[:, dofs] @ np.linalg.inv(mass[dofs, dofs]) @ jacobian[:, dofs].T
@@ -75,12 +87,11 @@ def _alone(world: World, kind: ArmKind) -> Iterator[ArmFinding]:
     load = jacobian[2, dofs] * _LOAD_KG * _GRAVITY
     yield _payload(kind, mobility, np.abs(world.data.qfrc_bias[dofs] + load) / torques)
     yield _singularity(kind, mobility)
-    yield _response(world)
+    yield _response(world, own)
 
 
-def _limits(world: World, kind: ArmKind, qpos: int) -> ArmFinding:
+def _limits(world: World, kind: ArmKind, first: int, qpos: int) -> ArmFinding:
     joints = world.data.qpos[qpos : qpos + kind.joint_count]
-    first = world.model.joint(f"{_ARM}/joint1").id
     ranges = world.model.jnt_range[first : first + kind.joint_count]
     margins = np.minimum(joints - ranges[:, 0], ranges[:, 1] - joints)
     nearest = int(np.argmin(margins))
@@ -108,19 +119,19 @@ def _singularity(kind: ArmKind, mobility: Array) -> ArmFinding:
     return ArmFinding("singularity", least >= 1 or kind.joint_count < 6, said)
 
 
-def _response(world: World) -> ArmFinding:
+def _response(world: World, own: str) -> ArmFinding:
     """Step the tool by 5 cm along each axis of the base, and look where it comes to rest and how far beyond it went."""
     worst_m, beyond = 0.0, 0.0
     for axis in range(3):
         world.reset(_SEED)
         start = {arm: world.tool_pose_in_base(arm) for arm in world.arms}
         shift = _STEP_M * np.eye(3)[axis]
-        goals = start | {_ARM: Pose(start[_ARM].position + shift, start[_ARM].quaternion_wxyz)}
+        goals = start | {own: Pose(start[own].position + shift, start[own].quaternion_wxyz)}
         for _ in range(_SETTLE_TICKS):
             world.step([world.action_for(arm, goal, 0.0) for arm, goal in goals.items()])
-            along = float((world.tool_pose_in_base(_ARM).position - start[_ARM].position)[axis]) / _STEP_M
+            along = float((world.tool_pose_in_base(own).position - start[own].position)[axis]) / _STEP_M
             beyond = max(beyond, along - 1.0)
-        worst_m = max(worst_m, goals[_ARM].distance_to(world.tool_pose_in_base(_ARM))[0])
+        worst_m = max(worst_m, goals[own].distance_to(world.tool_pose_in_base(own))[0])
     after_s = _SETTLE_TICKS / _CONTROL_HZ
     said = f"Steps of 5 cm end within {1000 * worst_m:.1f} mm in {after_s:g} s, {100 * beyond:.1f} % beyond."
     return ArmFinding("response", worst_m < _RIGHT_M and beyond < 0.02, said)
@@ -128,6 +139,12 @@ def _response(world: World) -> ArmFinding:
 
 def _in_task(task: Task, kind: ArmKind) -> ArmFinding:
     """Look at a task with this kind at every place: what is out of reach, and whether scripts can do it."""
+    if not any(_fits(task, arm, kind) for arm in task.arm_names):
+        return ArmFinding(
+            "fingers",
+            ok=True,
+            said=f"{task.title}: it has no fingers to grip with, and its rooms do not open.",
+        )
     try:
         world = _world_of(task, kind)
         out_of_reach = missed(world)
@@ -148,20 +165,21 @@ def _in_task(task: Task, kind: ArmKind) -> ArmFinding:
 
 def draw_arm(kind: ArmKind, draw: Callable[[World, str], None]) -> None:
     """Show the arm where cubes are lifted, beside another of its kind; `draw` is given the world and a viewpoint."""
-    world = _world_of(get_task(_TASK), kind)
+    world = _world_of(get_task(_TASK if kind.has_fingers else _FINGERLESS_TASK), kind)
     world.reset(_SEED)
-    for viewpoint in ("front", _ARM):
+    for viewpoint in ("front", _own(world, kind)):
         draw(world, viewpoint)
 
 
 def verdict(findings: list[ArmFinding]) -> str:
     """Return in a sentence whether the arm can be used."""
     bad = [finding for finding in findings if not finding.ok]
-    if not bad:
+    tasks = [finding for finding in findings if finding.what in ("reach", "fingers")]
+    usable = [finding for finding in tasks if finding.ok and finding.what == "reach"]
+    if not bad and len(usable) == len(tasks):
         return "It can be used in every task."
     if any(finding.what == "loads" for finding in bad):
         return "It cannot be used as it is: mend what is marked BAD."
     if all(finding.what == "reach" for finding in bad):
-        tasks = len([finding for finding in findings if finding.what == "reach"]) - len(bad)
-        return f"It can be used in {tasks} of {tasks + len(bad)} tasks."
+        return f"It can be used in {len(usable)} of {len(tasks)} tasks."
     return "It can be used, but look at what is marked BAD."

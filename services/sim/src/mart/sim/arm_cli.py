@@ -1,4 +1,4 @@
-"""Offer `mart arms`: which kinds of arms there are, what each one is, and whether one can be used."""
+"""Offer `mart arms`: which kinds of arms and end effectors there are, what each one is, and whether one can be used."""
 
 from __future__ import annotations
 
@@ -7,13 +7,22 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mart.protocol.arms import ArmKind, arm_kind, arm_kind_names, arms_folder, load_robot_file
+from mart.protocol.arms import (
+    ArmKind,
+    arm_kind,
+    arm_kind_names,
+    arms_folder,
+    end_effector,
+    end_effector_names,
+    load_robot_file,
+)
 from mart.protocol.errors import InvalidInput
 from mart.runtime.cli import json_option, print_result
 
 if TYPE_CHECKING:
     from mart.sim.world import World
 
+_IN_FILES = str.maketrans(":+", "--")
 _WIDTH_PX, _HEIGHT_PX = 960, 720
 
 
@@ -25,11 +34,16 @@ def arms() -> None:
 @arms.command("list")
 @json_option
 def list_kinds(as_json: bool) -> None:
-    """List the kinds of arms that --arm takes."""
-    told, width = [_told(name) for name in arm_kind_names()], max(map(len, arm_kind_names()))
+    """List the kinds of arms that --arm takes, and what they can hold at their ends."""
+    told = [_told(name) for name in arm_kind_names()]
+    held = [_told_end_effector(name) for name in end_effector_names()]
+    width = max(len(str(one["name"])) for one in (*told, *held))
     lines = [f"{one['name']:<{width}}  {one['title']}" for one in told]
+    lines.append("At its end, after a plus sign, such as ur5e+wiping_pad:")
+    lines += [f"{one['name']:<{width}}  {one['title']}" for one in held]
     lines.append(f"Robot files of your own: {arms_folder()}")
-    print_result({"arms": told, "folder": str(arms_folder())}, "\n".join(lines), as_json)
+    result = {"arms": told, "end_effectors": held, "folder": str(arms_folder())}
+    print_result(result, "\n".join(lines), as_json)
 
 
 def _told(name: str) -> dict[str, object]:
@@ -41,6 +55,15 @@ def _told(name: str) -> dict[str, object]:
     return {"name": name, "title": f"{kind.title}, {kind.joint_count} joints", "joints": kind.joint_count}
 
 
+def _told_end_effector(name: str) -> dict[str, object]:
+    """Return what is listed of an end effector; of one whose file cannot be used, why."""
+    try:
+        held = end_effector(name)
+    except InvalidInput as error:
+        return {"name": name, "title": str(error), "fingers": None}
+    return {"name": name, "title": f"{held.title}: {held.about}", "fingers": held.fingers is not None}
+
+
 @arms.command()
 @click.argument("name")
 @json_option
@@ -49,7 +72,8 @@ def show(name: str, as_json: bool) -> None:
     kind = _found(name)
     space = kind.workspace
     lines = [
-        f"{kind.name}: {kind.title}, {kind.joint_count} joints, {kind.gripper}",
+        f"{kind.name}: {kind.title}, {kind.joint_count} joints",
+        f"at its end  {kind.end_effector.title} ({kind.end_effector.name}): {kind.end_effector.about}",
         *_joints(kind),
         f"workspace  {space.radius_min_m:.2f} m from the axis … {space.reach_m:.2f} m from a point on it,",
         f"           {space.reach_center_z_m:.2f} m up; {space.z_min_m:.2f} to {space.z_max_m:.2f} m high",
@@ -108,7 +132,7 @@ def _draw(kind: ArmKind, folder: Path) -> list[Path]:
     drawn: list[Path] = []
 
     def draw(world: World, viewpoint: str) -> None:
-        path = folder / f"{kind.name.replace(':', '-')}-{viewpoint}.png"
+        path = folder / f"{kind.name.translate(_IN_FILES)}-{viewpoint}.png"
         with closing(Renderer(world.model, viewpoint, width_px=_WIDTH_PX, height_px=_HEIGHT_PX)) as renderer:
             write_png(path, renderer.draw(world.integration_state()))
         drawn.append(path)

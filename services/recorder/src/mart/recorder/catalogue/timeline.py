@@ -21,6 +21,7 @@ from mart.protocol.messages import (
     cue_word,
     operator_word,
 )
+from mart.protocol.tasks import gripper_observation
 from mart.protocol.vocabulary import OperatorKind
 
 MAX_POINTS = 500
@@ -115,6 +116,16 @@ def _finite(number: float) -> float:
     return number if math.isfinite(number) else 0.0
 
 
+def _fingerless(state: State) -> set[str]:
+    """Return the arms of which the joints are observed and no gripper is: they have no fingers."""
+    seen = {observation.name for observation in state.observations}
+    return {
+        one.arm
+        for one in state.arms
+        if f"{one.arm}/joint_positions" in seen and gripper_observation(one.arm) not in seen
+    }
+
+
 class _Timeline:
     """Gather one episode, state by state."""
 
@@ -126,6 +137,7 @@ class _Timeline:
         self._seconds = array("d")
         self._subtasks = {one.name: _Runs() for one in first.progress.subtasks[:_MAX_SUBTASKS]}
         self._arms = {one.arm: _Arm(one.arm) for one in first.arms[:_MAX_ARMS]}
+        self._fingerless = _fingerless(first)
         self._waiting: dict[str, list[Span]] = {}
 
     def add(self, state: State) -> None:
@@ -170,7 +182,10 @@ class _Timeline:
         at_s = self._seconds[::every]
         for arm in self._arms.values():
             yield Trace(arm=arm.name, quantity="height", unit="m", seconds=at_s, values=arm.height_m[::every])
-            yield Trace(arm=arm.name, quantity="gripper", unit="", seconds=at_s, values=arm.gripper[::every])
+            if arm.name not in self._fingerless:
+                yield Trace(
+                    arm=arm.name, quantity="gripper", unit="", seconds=at_s, values=arm.gripper[::every]
+                )
 
 
 def _said(events: Iterable[Event], told: _Timeline) -> Iterator[Lane]:

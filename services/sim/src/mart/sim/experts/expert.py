@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mart.operators.obedience import held, is_closed
 from mart.operators.operator import ToolTarget
 from mart.protocol.pose import Pose
-from mart.protocol.tasks import Task
+from mart.protocol.tasks import Task, gripper_observation
 from mart.sim.experts.detours import come_closer, let_go
 from mart.sim.experts.hand_motion import HandMotion
 from mart.sim.experts.human_error import HumanErrorModel
@@ -91,9 +91,9 @@ class Expert:
             self._waypoint.pose_tool_in_base, tool
         )
         told, self._told_to_go = self._told_to_go, False
-        return OperatorObservation(
-            observations, sim_time_s, tool, float(observations[f"{name}/gripper"][0]), arrived, told
-        )
+        seen = observations.get(gripper_observation(name))
+        gripper = 0.0 if seen is None else float(seen[0])
+        return OperatorObservation(observations, sim_time_s, tool, gripper, arrived, told)
 
     def _next_waypoint(self, obs: OperatorObservation) -> Waypoint:
         if self._plan is None or self._waypoint is None:

@@ -11,7 +11,7 @@ from mart.protocol.tasks import Arm
 from mart.protocol.tasks.practice_course import PLANK_GOAL_M
 from mart.sim.experts.carrying import Carrier
 from mart.sim.experts.human_error import HumanErrorModel
-from mart.sim.experts.perception import ObservedPose, across, apart_m, at, seen
+from mart.sim.experts.perception import ObservedPose, across, at, seen
 from mart.sim.experts.pick_and_place import PickAndPlace
 from mart.sim.experts.plan import OPEN, ExpertPlan, OperatorObservation, PlanStep, Until, Waypoint, go, wait
 
@@ -90,10 +90,12 @@ def _carry_together(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) 
             missing = goal - plank(obs).position
             is_low = missing[2] > _UP_M
             shift = np.array([0.0, 0.0, missing[2]]) if is_low else missing
-            start = plank(obs)
+            end = plank(obs).position + shift
+            # A partner who is up already goes on aside: what is low is there when it is up.
+            counts = np.array([0.0, 0.0, 1.0]) if is_low else np.ones(3)
 
-            def arrived(now: OperatorObservation, shift: np.ndarray = shift, start: Pose = start) -> bool:
-                return apart_m(plank(now), Pose(start.position + shift, start.quaternion_wxyz)) < _UP_M
+            def arrived(now: OperatorObservation, end: np.ndarray = end, counts: np.ndarray = counts) -> bool:
+                return float(np.linalg.norm(counts * (end - plank(now).position))) < _UP_M
 
             obs = yield from carrier.along(obs, shift, arrived)
             if not is_low and arrived(obs):

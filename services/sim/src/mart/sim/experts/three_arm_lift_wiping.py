@@ -1,4 +1,7 @@
-"""Plan lift and wipe: two carry the tray to the rack in step; the third waits with the sponge, then wipes."""
+"""Plan lift and wipe: two carry the tray to the rack in step; the third waits with the sponge, then wipes.
+
+An arm without fingers waits where it is and wipes with its own pad.
+"""
 
 from __future__ import annotations
 
@@ -70,18 +73,25 @@ def _carry(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> Expert
 def _wipe(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPlan:
     wiper = _Wiper(arm, human)
     while True:
-        obs = yield from pick(obs, human, wiper.grip)
+        if arm.kind.has_fingers:
+            obs = yield from pick(obs, human, wiper.grip)
         obs = yield from wiper.wait_aside(obs)
         obs = yield from wiper.rub(obs)
         obs = yield from stay(obs, Waypoint(obs.pose_tool_in_base, OPEN), human.settles_s())
 
 
 class _Wiper:
-    """Wipe as the third operator; all poses are in the arm's own base frame."""
+    """Wipe as the third operator, with a sponge or the own pad; all poses are in the arm's own base frame."""
 
     def __init__(self, arm: Arm, human: HumanErrorModel) -> None:
         self._human = human
-        self._sponge = seen(arm, "sponge")
+        face = arm.kind.end_effector.wiping
+        self._grips = arm.kind.has_fingers or face is None
+        self._gripper = CLOSED if self._grips else OPEN
+        if self._grips or face is None:
+            self._sponge, self._length_m, self._lying_z_m = seen(arm, "sponge"), _SPONGE_LENGTH_M, _SPONGE_Z_M
+        else:
+            self._sponge, self._length_m, self._lying_z_m = _own_tool, 2 * face.half_m[0], face.below_tool_m
         self._spots = arm.pose_base_in_world.inverse().transform_points(_SPOTS_M)
 
     def grip(self, now: OperatorObservation) -> Pose:
@@ -89,7 +99,8 @@ class _Wiper:
 
     def wait_aside(self, obs: OperatorObservation) -> PlanStep:
         """Hold the sponge up until the tray has left the dirt."""
-        up = Waypoint(raised(obs.pose_tool_in_base, _OVER_M), CLOSED, _PACE)
+        up_m = _OVER_M if self._grips else 0.0
+        up = Waypoint(raised(obs.pose_tool_in_base, up_m), self._gripper, _PACE)
 
         def has_news(now: OperatorObservation) -> bool:
             return _is_aside(now) or self.has_lost(now)
@@ -106,11 +117,11 @@ class _Wiper:
             if len(dirty) < left:
                 since_s, left = obs.sim_time_s, len(dirty)
             place = self._next_place(obs, dirty, obs.sim_time_s - since_s)
-            obs = yield Waypoint(Pose(place + offset, turn), CLOSED, _PACE)
+            obs = yield Waypoint(Pose(place + offset, turn), self._gripper, _PACE)
         return obs
 
     def has_lost(self, now: OperatorObservation) -> bool:
-        return apart_m(self.grip(now), now.pose_tool_in_base) > _LOST_M
+        return self._grips and apart_m(self.grip(now), now.pose_tool_in_base) > _LOST_M
 
     def _next_place(self, now: OperatorObservation, dirty: Vector, stuck_s: float) -> Vector:
         """Return where the sponge's middle should be, shape (3,), metres."""
@@ -119,10 +130,14 @@ class _Wiper:
             return np.array([x, y, _OVER_M])
         away_m = np.hypot(dirty[:, 0] - x, dirty[:, 1] - y)
         nearest_x, nearest_y, _ = dirty[np.argmin(away_m)]
-        if away_m.min() > _SPONGE_LENGTH_M:
+        if away_m.min() > self._length_m:
             return np.array([nearest_x, nearest_y, _OVER_M / 2])
         press_m = min(_PRESS_M + _PRESS_MORE_M_PER_S * stuck_s, _PRESS_MOST_M)
-        return np.array([nearest_x, nearest_y, _SPONGE_Z_M - press_m])
+        return np.array([nearest_x, nearest_y, self._lying_z_m - press_m])
+
+
+def _own_tool(now: OperatorObservation) -> Pose:
+    return now.pose_tool_in_base
 
 
 def _is_aside(now: OperatorObservation) -> bool:

@@ -19,6 +19,7 @@ from mart.protocol.messages import (
     SeatRequest,
     Waiting,
 )
+from mart.protocol.tasks import gripper_observation
 from mart.sim.room.barrier import FREED_AFTER_S
 from mart.sim.room.command_validation import ReceivedCommand
 from mart.sim.room.episode_state_machine import BeginEpisode, EndEpisode, EpisodeStateMachine, Terms
@@ -44,11 +45,11 @@ def arm_state(
     """
     x, y, z = seen[f"{seat.arm}/tool_position_in_base"].tolist()
     qw, qx, qy, qz = seen[f"{seat.arm}/tool_quaternion_in_base"].tolist()
-    (gripper,) = seen[f"{seat.arm}/gripper"].tolist()
+    gripper = seen.get(gripper_observation(seat.arm))
     state: Fields = {
         "arm": seat.arm,
         "tool_in_base": {"x": x, "y": y, "z": z, "qw": qw, "qx": qx, "qy": qy, "qz": qz},
-        "gripper": gripper,
+        "gripper": 0.0 if gripper is None else gripper.item(),  # none of an arm without fingers
         "action": action,
         "source": seat.operator,
         "seat_epoch": seat.epoch,

@@ -1,13 +1,13 @@
-"""Put an arm into a scene, as its robot file describes it: links, joints, motors, and the gripper in its hand."""
+"""Put an arm into a scene, as its robot file describes it: links, joints, motors, and what it holds at its end."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import mujoco
-import numpy as np
 
-from mart.protocol.arms.robot_file import ArmBody, LinkBox, LinkMesh, LinkShape, LinkSphere, LinkTube
+from mart.protocol.arms.end_effector import SymbolPlace
+from mart.protocol.arms.parts import ArmBody, LinkBox, LinkMesh, LinkShape, LinkSphere, LinkTube
 from mart.protocol.tasks import MAX_ARMS, Arm
 from mart.sim.scene import gripper
 from mart.sim.scene.arm_from_file import add_links_from_file
@@ -15,7 +15,6 @@ from mart.sim.scene.meshes import Detail, mesh_path
 from mart.sim.scene.palette import rgba
 from mart.sim.scene.symbols import add_tile
 
-_HAND_MASS = (0.73, (-0.01, 0.0, 0.03), (0.001, 0.0025, 0.0017, 0.0, 0.0, 0.0))  # the Panda's, with every arm
 _GEOMS = {
     "capsule": mujoco.mjtGeom.mjGEOM_CAPSULE,
     "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
@@ -26,14 +25,18 @@ _GEOMS = {
 
 def add_assets(spec: mujoco.MjSpec, arms: Sequence[Arm], detail: Detail) -> None:
     """Add the meshes, once for all arms: `hull/…` for contacts and, where asked, `detailed/…` to look at."""
+    hands = [arm.kind.end_effector for arm in arms]
     bodies = [body for arm in arms for body in (arm.kind.base, *arm.kind.links) if body is not None]
-    parts = dict.fromkeys(
-        shape.part for body in bodies for shape in body.shapes if isinstance(shape, LinkMesh)
-    )
+    parts = _parts(shape for body in (*bodies, *hands) for shape in body.shapes)
     for level in dict.fromkeys(("hull", detail)):
-        for part in (*parts, "hand"):
+        for part in parts:
             _add_mesh(spec, part, level)
-    _add_mesh(spec, "finger", "detailed")  # 600 triangles, and the part that everybody looks at
+    for part in _parts(shape for hand in hands if hand.fingers is not None for shape in hand.fingers.shapes):
+        _add_mesh(spec, part, "detailed")  # 600 triangles, and the part that everybody looks at
+
+
+def _parts(shapes: Iterable[LinkShape]) -> list[str]:
+    return list(dict.fromkeys(shape.part for shape in shapes if isinstance(shape, LinkMesh)))
 
 
 def _add_mesh(spec: mujoco.MjSpec, part: str, level: Detail) -> None:
@@ -44,7 +47,7 @@ def _add_mesh(spec: mujoco.MjSpec, part: str, level: Detail) -> None:
 
 
 def add_arm(spec: mujoco.MjSpec, arm: Arm, index: int, detail: Detail) -> None:
-    """Add the arm with its gripper, joints, motors and the site `{arm}/tool` at the middle of the finger pads."""
+    """Add the arm with its joints, motors, end effector and the site `{arm}/tool`."""
     base = spec.worldbody.add_body(
         name=f"{arm.name}/base",
         pos=arm.pose_base_in_world.position,
@@ -81,13 +84,17 @@ def _add_links(
 
 
 def _add_hand(spec: mujoco.MjSpec, hand: mujoco.MjsBody, arm: Arm, index: int, detail: Detail) -> None:
-    masks = _masks(index, reaches_objects=True)
-    _set_inertia(hand, *_HAND_MASS)
-    _add_shell(hand, "hand", detail, masks, rgba(arm.color))
+    masks, end_effector = _masks(index, reaches_objects=True), arm.kind.end_effector
+    _fill(hand, end_effector, arm, detail, masks)
+    if end_effector.symbol is not None:
+        _add_symbols(spec, hand, arm.symbol, end_effector.symbol)
+    gripper.add_tool(spec, hand, arm, masks, lambda body, shape: _add_look(body, shape, arm))
+
+
+def _add_symbols(spec: mujoco.MjSpec, hand: mujoco.MjsBody, symbol: str, place: SymbolPlace) -> None:
     for side in (-1, 1):
-        position = (0.0325 * side, 0.0, 0.018)
-        add_tile(spec, hand, arm.symbol, radius_m=0.016, position=position, normal=(side, 0, 0))
-    gripper.add_fingers(spec, hand, arm.name, masks)
+        position = (place.x_m * side, 0.0, place.z_m)
+        add_tile(spec, hand, symbol, radius_m=place.radius_m, position=position, normal=(side, 0, 0))
 
 
 def _masks(index: int, *, reaches_objects: bool) -> dict[str, int]:
@@ -119,11 +126,26 @@ def _set_inertia(
 def _add_shape(
     body: mujoco.MjsBody, shape: LinkShape, arm: Arm, detail: Detail, masks: dict[str, int]
 ) -> None:
+    look = _look(shape, arm)
     if isinstance(shape, LinkMesh):
-        _add_shell(body, shape.part, detail, masks)
-        return
-    look = {"material": "paint", "rgba": rgba(arm.color)} if shape.accent else {"material": shape.material}
-    body.add_geom(type=_GEOMS[shape.form], **_extent(shape), **look, **masks)
+        _add_shell(body, shape.part, detail, masks, look)
+    else:
+        body.add_geom(type=_GEOMS[shape.form], **_extent(shape), **look, **masks)
+
+
+def _add_look(body: mujoco.MjsBody, shape: LinkShape, arm: Arm) -> None:
+    """Add a shape that nothing touches."""
+    look = {**_look(shape, arm), "contype": 0, "conaffinity": 0}
+    if isinstance(shape, LinkMesh):
+        body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=f"detailed/{shape.part}", **look)
+    else:
+        body.add_geom(type=_GEOMS[shape.form], **_extent(shape), **look)
+
+
+def _look(shape: LinkShape, arm: Arm) -> dict[str, object]:
+    """Return material and colour; a mesh keeps its own material, tinted, where others are painted."""
+    painted = "paint" if not isinstance(shape, LinkMesh) else shape.material
+    return {"material": painted, "rgba": rgba(arm.color)} if shape.accent else {"material": shape.material}
 
 
 def _extent(shape: LinkTube | LinkBox | LinkSphere) -> dict[str, tuple[float, ...]]:
@@ -134,9 +156,8 @@ def _extent(shape: LinkTube | LinkBox | LinkSphere) -> dict[str, tuple[float, ..
 
 
 def _add_shell(
-    body: mujoco.MjsBody, part: str, detail: Detail, masks: dict[str, int], color: np.ndarray | None = None
+    body: mujoco.MjsBody, part: str, detail: Detail, masks: dict[str, int], look: dict[str, object]
 ) -> None:
-    look = {"material": "shell"} if color is None else {"material": "shell", "rgba": color}
     mesh = mujoco.mjtGeom.mjGEOM_MESH
     if detail == "hull":
         body.add_geom(type=mesh, meshname=f"hull/{part}", **look, **masks)

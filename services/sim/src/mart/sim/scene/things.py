@@ -8,8 +8,10 @@ from typing import cast
 import mujoco
 import numpy as np
 
+from mart.protocol.pose import Pose
+from mart.protocol.tasks import Arm
 from mart.sim.scene.data import Array, Data, into_frame
-from mart.sim.scene.gripper import STROKE_M
+from mart.sim.scene.gripper import stroke_m
 
 
 class Thing:
@@ -22,6 +24,10 @@ class Thing:
         self.rotation = body.xmat.reshape(*body.xmat.shape[:-1], 3, 3)
         self.uprightness = self.rotation[..., 2, 2]  # cosine of its tilt, shape (...)
         self._data = data
+
+    def put_at(self, pose_in_world: Pose) -> None:
+        """Put it at a pose; it is one with a free joint, of a single world. The views follow as they do in `put`."""
+        self._data.joint(self.name).qpos[:] = *pose_in_world.position, *pose_in_world.quaternion_wxyz
 
     def put(self, position: Sequence[float], yaw_rad: float = 0.0) -> None:
         """Stand it upright at a position in the world; the views follow with the next forward kinematics.
@@ -49,13 +55,14 @@ class Thing:
 
 
 class Tool:
-    """View an arm's tool, which the views follow."""
+    """View the tool of an arm with fingers, which the views follow."""
 
-    def __init__(self, data: Data, arm: str) -> None:
-        self.position = data.site(f"{arm}/tool").xpos  # in the world, shape (..., 3)
-        self._finger = data.joint(f"{arm}/left_finger").qpos
+    def __init__(self, data: Data, arm: Arm) -> None:
+        self.position = data.site(f"{arm.name}/tool").xpos  # in the world, shape (..., 3)
+        self._finger = data.joint(f"{arm.name}/left_finger").qpos
+        self._stroke_m = stroke_m(arm.kind.end_effector)
 
     @property
     def width_m(self) -> Array:
-        """Return the gap between the pads, 0 to 0.08 m, shape (...)."""
-        return 2 * np.minimum(np.maximum(self._finger[..., 0], 0.0), STROKE_M)
+        """Return the gap between the pads, 0 where they touch, shape (...)."""
+        return 2 * np.minimum(np.maximum(self._finger[..., 0], 0.0), self._stroke_m)

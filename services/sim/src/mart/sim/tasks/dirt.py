@@ -58,7 +58,10 @@ class Dirt:
     def __init__(
         self, data: Data, wiped: Array, sponge: Any, sponge_half_m: tuple[float, float, float]
     ) -> None:
-        """Attach; wiped: 1 where it is, shape (..., spots), in the state. sponge: a view of its body."""
+        """Attach; wiped: 1 where it is, shape (..., spots), in the state.
+
+        sponge: a view of its body, or of a site in its middle.
+        """
         self.wiped = wiped
         self._position = sponge.xpos
         self._rotation = sponge.xmat.reshape(*sponge.xmat.shape[:-1], 3, 3)

@@ -141,7 +141,7 @@ class _Lane:
         self.cube = Thing(data, f"cube{number}")
         self._ball, self._bar = Thing(data, f"ball{number}"), Thing(data, f"bar{number}")
         self._dish = Thing(data, f"dish{number}")
-        self._tool = Tool(data, arm.name)
+        self._tool = Tool(data, arm)
         turn = data.site(f"{arm.name}/tool").xmat
         self._tool_rotation = turn.reshape(*turn.shape[:-1], 3, 3)
         mocaps = [int(data.model.body(thing.name).mocapid[0]) for thing in (self._ball, self._bar)]

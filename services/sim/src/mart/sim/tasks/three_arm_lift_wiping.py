@@ -9,14 +9,15 @@ import numpy as np
 
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Arm
-from mart.protocol.tasks.three_arm_lift_wiping import ASIDE_Y_M, RACK_TOP_M, SPOTS_M, WIPER
+from mart.protocol.tasks.three_arm_lift_wiping import ASIDE_Y_M, RACK_TOP_M, SPOTS_M, WIPER, wipes_itself
 from mart.protocol.tasks.tray import CARRIERS
 from mart.sim.scene.data import Array, Data
-from mart.sim.scene.gripper import GRASPABLE
+from mart.sim.scene.gripper import GRASPABLE, WIPES
 from mart.sim.scene.palette import rgba
 from mart.sim.scene.scene import Scene, TaskStatus, any_of
 from mart.sim.scene.shadows import add_shadow
 from mart.sim.scene.symbols import add_tile
+from mart.sim.scene.things import Thing
 from mart.sim.tasks.dirt import Dirt, add_dirt
 from mart.sim.tasks.tray import Tray, across, add_tray
 
@@ -48,7 +49,8 @@ class LiftWiping(Scene):
 
     def add_objects(self, spec: mujoco.MjSpec) -> None:
         add_tray(spec, [self.task.arm(name) for name in CARRIERS])
-        _add_sponge(spec, self.task.arm(WIPER))
+        if not wipes_itself(self.task):
+            _add_sponge(spec, self.task.arm(WIPER))
         x, y, top = RACK_TOP_M
         spec.worldbody.add_geom(
             name="rack", type=_BOX, size=_RACK_HALF_M, pos=(x, y, top / 2), material="slate"
@@ -57,20 +59,29 @@ class LiftWiping(Scene):
 
     def attach(self, data: Data) -> None:
         self._tray = Tray(data, [self.task.arm(name) for name in CARRIERS])
-        sponge = data.body("sponge")
-        self._sponge_position, self._sponge_quaternion = sponge.xpos, sponge.xquat
-        self._sponge_joint = data.joint("sponge").qpos
-        self._dirt = Dirt(data, self.memory(data), sponge, SPONGE_HALF_M)
+        self._sponge: Thing | None = None
+        if wipes_itself(self.task):
+            face = self.task.arm(WIPER).kind.end_effector.wiping
+            assert face is not None
+            pad = data.site(f"{WIPER}/tool")
+            self._dirt = Dirt(data, self.memory(data), pad, (*face.half_m, face.below_tool_m))
+        else:
+            self._sponge = Thing(data, "sponge")
+            self._dirt = Dirt(data, self.memory(data), data.body("sponge"), SPONGE_HALF_M)
 
     def place_objects(self, random: np.random.Generator) -> None:
         x, y = random.uniform(-_TRAY_SPREAD_M, _TRAY_SPREAD_M, 2)
         self._tray.place(x, y, random.uniform(-_TRAY_SPREAD_RAD, _TRAY_SPREAD_RAD), random)
+        if self._sponge is not None:
+            self._place(self._sponge, random)
+
+    def _place(self, sponge: Thing, random: np.random.Generator) -> None:
         forward, left = _SPONGE_IN_BASE + random.uniform(-_SPONGE_SPREAD_M, _SPONGE_SPREAD_M, 2)
         yaw = random.uniform(-_SPONGE_SPREAD_RAD, _SPONGE_SPREAD_RAD)
         turn = np.array([math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)])
         sponge_in_base = Pose(np.array([forward, left, SPONGE_HALF_M[2]]), turn)
         placed = self.task.arm(WIPER).pose_base_in_world @ sponge_in_base
-        self._sponge_joint[:] = *placed.position, *placed.quaternion_wxyz
+        sponge.put_at(placed)
 
     def start_pose_in_base(self, arm: Arm, random: np.random.Generator) -> Pose:
         start = super().start_pose_in_base(arm, random)
@@ -81,21 +92,16 @@ class LiftWiping(Scene):
         return Pose(over_sponge + random.uniform(-0.03, 0.03, 3), start.quaternion_wxyz)
 
     def observe(self) -> dict[str, Array]:
-        return {
-            **self._tray.observe(),
-            "sponge/position_in_world": self._sponge_position,
-            "sponge/quaternion_in_world": self._sponge_quaternion,
-            "dirt/wiped": self._dirt.wiped,
-        }
+        sponge = {} if self._sponge is None else self._sponge.observations()
+        return {**self._tray.observe(), **sponge, "dirt/wiped": self._dirt.wiped}
 
     def remember(self) -> None:
         self._dirt.wipe()
 
     def task_status(self) -> TaskStatus:
-        failed = {
-            **self._tray.spills(),
-            "The sponge fell off the table.": self._sponge_position[..., 2] < FALLEN_Z_M,
-        }
+        failed = self._tray.spills()
+        if self._sponge is not None:
+            failed["The sponge fell off the table."] = self._sponge.position[..., 2] < FALLEN_Z_M
         lifted = (self._tray.lowest_point_m() > LIFTED_M) & ~any_of(failed.values())
         aside = lifted & (self._tray.position[..., 1] < ASIDE_Y_M)
         clean = self._dirt.is_gone()
@@ -108,7 +114,7 @@ SCENE = LiftWiping
 
 
 def _add_sponge(spec: mujoco.MjSpec, wiper: Arm) -> None:
-    """Add a sponge under a block to hold it by. Its own low friction counts, or it would drag the hand back."""
+    """Add a sponge under a block to hold it by."""
     sponge = spec.worldbody.add_body(name="sponge", pos=(0.3, 0.24, SPONGE_HALF_M[2]))
     sponge.add_freejoint(name="sponge")
     sponge.add_geom(
@@ -116,9 +122,8 @@ def _add_sponge(spec: mujoco.MjSpec, wiper: Arm) -> None:
         type=_BOX,
         size=SPONGE_HALF_M,
         mass=0.05,
-        friction=(0.3, 0.005, 0.0001),
-        priority=2,
         material="sponge",
+        **WIPES,
     )
     sponge.add_geom(
         name="sponge_block",

@@ -91,7 +91,7 @@ class PickPlaceHandover(Scene):
             Thing(data, name) for name in ("container", "bin", "trash_tray")
         )
         self._lid, self._hammer, self._trash = (Thing(data, name) for name in ("lid", "hammer", "trash"))
-        self._tools = {arm: Tool(data, arm) for arm in self.task.arm_names}
+        self._tools = {arm.name: Tool(data, arm) for arm in self.task.arms}
 
     def place_objects(self, random: np.random.Generator) -> None:
         boxes = (self._container, self._bin, self._trash_tray)

@@ -128,7 +128,7 @@ class TableAssembly(Scene):
     def attach(self, data: Data) -> None:
         self._base, self._top = Thing(data, "table_base"), Thing(data, "tabletop")
         self._columns = [Thing(data, column_of(arm)) for arm in self.task.arm_names]
-        self._tools = {arm: Tool(data, arm) for arm in self.task.arm_names}
+        self._tools = {arm.name: Tool(data, arm) for arm in self.task.arms}
 
     def place_objects(self, random: np.random.Generator) -> None:
         x, y = random.uniform(-0.02, 0.02, 2)

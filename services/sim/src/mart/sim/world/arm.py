@@ -9,7 +9,7 @@ import numpy as np
 
 from mart.protocol.tasks import Arm
 from mart.sim.scene.data import Array, ChosenRows, Data, into_frame
-from mart.sim.scene.gripper import STROKE_M
+from mart.sim.scene.gripper import stroke_m
 
 
 class MeasuredArms:
@@ -31,7 +31,9 @@ class MeasuredArms:
         )
         self._tool_positions = ChosenRows(data.site_xpos, tools)
         self._hand_quaternions = ChosenRows(data.xquat, hands)
-        fingers = [int(model.joint(f"{name}/left_finger").qposadr[0]) for name in names]
+        self._grip = [index for index, arm in enumerate(arms) if arm.kind.has_fingers]
+        self._strokes_m = np.array([stroke_m(arms[index].kind.end_effector) for index in self._grip])
+        fingers = [_finger(model, names[index]) for index in self._grip]
         self._fingers = [ChosenRows(data.qpos[..., None], [f + side for f in fingers]) for side in (0, 1)]
         self.joint_positions = []  # radians; views, one of each arm
         for arm in arms:
@@ -45,9 +47,14 @@ class MeasuredArms:
         return positions, quaternions * np.copysign(1.0, quaternions[..., :1])
 
     def grippers(self) -> Array:
-        """Return how far each is closed, 0 open … 1 closed, shape (..., arms)."""
+        """Return how far each is closed, 0 open … 1 closed, shape (..., arms); 0 of an arm without fingers."""
         left, right = (fingers.read()[..., 0] for fingers in self._fingers)
-        return np.minimum(np.maximum(1.0 - (left + right) / (2 * STROKE_M), 0.0), 1.0)
+        closed = np.minimum(np.maximum(1.0 - (left + right) / (2 * self._strokes_m), 0.0), 1.0)
+        if len(self._grip) == len(self.joint_positions):
+            return closed
+        every = np.zeros((*closed.shape[:-1], len(self.joint_positions)))
+        every[..., self._grip] = closed
+        return every
 
 
 class MeasuredArm:
@@ -55,8 +62,9 @@ class MeasuredArm:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, arm: Arm) -> None:
         self._alone = MeasuredArms(model, data, [arm])
-        fingers = int(model.joint(f"{arm.name}/left_finger").qposadr[0])
-        self._fingers = data.qpos[fingers : fingers + 2]
+        first = _finger(model, arm.name) if arm.kind.has_fingers else 0
+        self._fingers = data.qpos[first : first + 2 * arm.kind.has_fingers]
+        self._stroke_m = stroke_m(arm.kind.end_effector)
 
     def tool_in_base(self) -> tuple[Array, Array]:
         """Return position, shape (3,), and quaternion wxyz, shape (4,), w >= 0."""
@@ -70,7 +78,12 @@ class MeasuredArm:
     def place(self, joint_positions: Array) -> None:
         """Set the arm to rest at these joint positions, radians, one for each joint; gripper open."""
         self._alone.joint_positions[0][:] = joint_positions
-        self._fingers[:] = STROKE_M
+        self._fingers[:] = self._stroke_m
+
+
+def _finger(model: mujoco.MjModel, arm: str) -> int:
+    """Return where the positions of an arm's two fingers begin."""
+    return int(model.joint(f"{arm}/left_finger").qposadr[0])
 
 
 def _conjugate(quaternion_wxyz: Array) -> Array:

@@ -9,8 +9,10 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
+from mart.protocol.arms import ArmKind
+from mart.protocol.tasks import gripper_observation
 from mart.sim.scene.data import Array, Data
-from mart.sim.scene.gripper import STROKE_M
+from mart.sim.scene.gripper import stroke_m
 from mart.sim.scene.scene import Scene, TaskStatus
 from mart.sim.scene.shadows import Shadows
 from mart.sim.world import osc
@@ -25,8 +27,7 @@ class ControlInterface:
         self._scene = scene
         self._shadows = Shadows(model, data)
         self._arms = MeasuredArms(model, data, scene.task.arms)
-        limits = [arm.kind.limits for arm in scene.task.arms]
-        self._action_scale = np.array([[of.step_m] * 3 + [of.step_rad] * 3 + [-STROKE_M] for of in limits])
+        self._action_scale = np.array([_scale(arm.kind) for arm in scene.task.arms])
         blocks = data.userdata[..., : osc.BLOCK_SIZE * len(scene.task.arms)]
         blocks = blocks.reshape(*blocks.shape[:-1], len(scene.task.arms), osc.BLOCK_SIZE)
         self.modes, self.commands = blocks[..., osc.MODE], blocks[..., osc.COMMAND]
@@ -62,5 +63,11 @@ class ControlInterface:
             seen[f"{name}/tool_position_in_base"] = positions[..., index, :]
             seen[f"{name}/tool_quaternion_in_base"] = quaternions[..., index, :]
             seen[f"{name}/joint_positions"] = self._arms.joint_positions[index]
-            seen[f"{name}/gripper"] = grippers[..., index : index + 1]
+            seen[gripper_observation(name)] = grippers[..., index : index + 1]
         return {o.name: np.array(seen[o.name], dtype=np.float64) for o in self._scene.task.observations}
+
+
+def _scale(kind: ArmKind) -> list[float]:
+    """Return what each number of an action is multiplied by; the gripper's goes beyond the middle, so as to squeeze."""
+    limits = kind.limits
+    return [limits.step_m] * 3 + [limits.step_rad] * 3 + [-stroke_m(kind.end_effector)]

@@ -16,8 +16,9 @@ import mujoco
 import numpy as np
 
 from mart.protocol.pose import Pose, quaternion_exp, quaternion_multiply
+from mart.protocol.tasks import Arm, gripper_observation
 from mart.sim.scene.data import Array
-from mart.sim.scene.gripper import STROKE_M
+from mart.sim.scene.gripper import stroke_m
 from mart.sim.tasks import scene_of
 from mart.sim.world.world import World
 
@@ -55,7 +56,7 @@ class DrivenWorld(World):
     def __init__(self, world: World, link: DriverLink) -> None:
         super().__init__(scene_of(world.task), world.control_hz, compiled=copy.copy(world.model))
         self._link = link
-        self._driven = {arm: _DrivenJoints(self.model, self.data, arm) for arm in link.arms}
+        self._driven = {arm: _DrivenJoints(self.model, self.data, self.task.arm(arm)) for arm in link.arms}
         self._indices = {arm: self.arms.index(arm) for arm in link.arms}
 
     def at(self, control_hz: float) -> World:
@@ -80,8 +81,9 @@ class DrivenWorld(World):
     def observations(self) -> dict[str, Array]:
         """Return all that any operator sees, in the catalogue's order; of a driven arm what was measured."""
         seen = super().observations()
-        for arm in self._driven:
-            seen[f"{arm}/gripper"] = np.array([self.gripper(arm)])
+        for name in map(gripper_observation, self._driven):
+            if name in seen:
+                seen[name] = np.array([self.gripper(name.partition("/")[0])])
         return seen
 
     def _advance(self, actions: Array) -> None:
@@ -111,26 +113,28 @@ class DrivenWorld(World):
 class _DrivenJoints:
     """Lead the joints of one arm in a world's data."""
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, arm: str) -> None:
-        joints = [model.joint(i) for i in range(model.njnt) if model.joint(i).name.startswith(f"{arm}/joint")]
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, arm: Arm) -> None:
+        prefix, numbers = f"{arm.name}/joint", range(model.njnt)
+        joints = [model.joint(i) for i in numbers if model.joint(i).name.startswith(prefix)]
         self._data = data
         self._qpos = np.array([int(joint.qposadr[0]) for joint in joints])
         self._dof = np.array([int(joint.dofadr[0]) for joint in joints])
         own = {joint.id for joint in joints}
         self._motors = [i for i in range(model.nu) if int(model.actuator_trnid[i, 0]) in own]
-        names = (f"{arm}/left_finger", f"{arm}/right_finger")
+        names = (f"{arm.name}/left_finger", f"{arm.name}/right_finger")
         fingers = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) for name in names]
         self._fingers = [int(model.jnt_qposadr[finger]) for finger in fingers if finger >= 0]
         servos = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, name) for name in names]
         self._servos = [servo for servo in servos if servo >= 0]
         self._begin = self._end = self._data.qpos[self._qpos].copy()
+        self._stroke_m = stroke_m(arm.kind.end_effector)
         self._gripper, self._closes = 0.0, False
 
     def rest(self, reading: ArmReading | None) -> None:
         """Stand where it was measured; without a reading, where it is."""
         if reading is not None:
             self._data.qpos[self._qpos] = reading.joint_positions
-            self._data.qpos[self._fingers] = STROKE_M * (1.0 - reading.gripper)
+            self._data.qpos[self._fingers] = self._stroke_m * (1.0 - reading.gripper)
             self._gripper = reading.gripper
         self._data.qvel[self._dof] = 0.0
         self._data.ctrl[self._motors] = 0.0
@@ -155,5 +159,5 @@ class _DrivenJoints:
         data.qfrc_applied[self._dof] = data.qfrc_bias[self._dof] - data.qfrc_passive[self._dof]
 
     def _press(self) -> None:
-        target_m = STROKE_M * (1.0 - self._gripper) - (_SQUEEZE_M if self._closes else 0.0)
+        target_m = self._stroke_m * (1.0 - self._gripper) - (_SQUEEZE_M if self._closes else 0.0)
         self._data.ctrl[self._servos] = target_m

@@ -32,7 +32,7 @@ POSTURE = slice(20, 27)
 BLOCK_SIZE = 27
 
 _PANDA_ROW, _ARM_ROW = 7, 21  # numbers of a row, see osc.c
-_FINGERS = 2
+_NO_ACTUATOR = -1
 _FINGER_SCALE_AND_OFFSET = (1.0, 0.0)  # from a finger's target in metres to what its servo is told
 
 
@@ -67,17 +67,22 @@ def _panda_row(model: mujoco.MjModel, arm: Arm, userdata_start: int) -> list[flo
         dof,
         int(first.qposadr[0]),
         model.actuator(f"{arm.name}/torque1").id,
-        model.actuator(f"{arm.name}/left_finger").id,
+        _servo(model, arm, "left"),
         userdata_start,
     ]
+
+
+def _servo(model: mujoco.MjModel, arm: Arm, side: str) -> int:
+    """Return the number of a finger's servo; of an arm without fingers one that osc.c does not look at."""
+    return model.actuator(f"{arm.name}/{side}_finger").id if arm.kind.has_fingers else _NO_ACTUATOR
 
 
 def _arm_row(model: mujoco.MjModel, arm: Arm, gains: Gains | None) -> list[float]:
     """Return what osc.c is told of an arm beyond what it is told of a Panda."""
     return [
         arm.kind.joint_count,
-        _FINGERS,
-        model.actuator(f"{arm.name}/right_finger").id,
+        2 if arm.kind.has_fingers else 0,
+        _servo(model, arm, "right"),
         *_FINGER_SCALE_AND_OFFSET,
         arm.kind.posture.joint1_sign,
         arm.kind.posture.joint1_offset_rad,

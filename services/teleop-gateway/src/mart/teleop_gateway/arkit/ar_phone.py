@@ -35,7 +35,7 @@ class ARPhone:
         """Take a status message: the gripper may have been set by somebody else."""
         is_set = self._told.get("gripper_set") != tick.get("gripper_set")
         if is_set or tick.get("input") != "phone":
-            self._gripper = 1.0 if float(tick.get("gripper", 0.0)) > _CLOSED_ABOVE else 0.0
+            self._gripper = 1.0 if float(tick.get("gripper") or 0.0) > _CLOSED_ABOVE else 0.0
         self._told = tick
 
     def frame(self, sample: ARSample | None, heard_s: float, now_s: float, sent_us: int) -> PhoneFrame:

@@ -22,6 +22,7 @@ from mart.protocol.messages import (
     cue_word,
     phase_word,
 )
+from mart.protocol.room_task import has_fingers
 from mart.teleop_gateway.input.driving import Driving, InputDevice, PhoneState
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
 from mart.teleop_gateway.video.tool_projection import ToolPlaces
@@ -183,7 +184,7 @@ def tick(
 ) -> str:
     """Return what a page shows, at most MAX_CHARACTERS long."""
     sequence = next((arm.sequence for arm in state.arms if arm.arm == driving.arm), 0)
-    phone = driving.phone(now_s)
+    phone, grips = driving.phone(now_s), has_fingers(room, driving.arm)
     return _text(
         {
             "type": "tick",
@@ -192,9 +193,9 @@ def tick(
             "rtf": round(state.real_time_factor, 3),
             "engaged": driving.engaged(now_s),
             "let_go": driving.let_go(now_s) or "",
-            "gripper": round(driving.gripper, 3),
+            "gripper": round(driving.gripper, 3) if grips else None,
             "gripper_set": driving.gripper_set,
-            "holding": driving.holding,
+            "holding": driving.holding and grips,
             "hand_scale": driving.retarget.scale,
             "phase": phase_word(room.episode.phase),
             "ready": any(seat.ready for seat in room.seats if seat.arm == driving.arm),

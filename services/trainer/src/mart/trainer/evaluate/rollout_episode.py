@@ -32,7 +32,7 @@ from mart.protocol.recording import (
     Shift,
     VerificationRecord,
 )
-from mart.protocol.tasks import Task
+from mart.protocol.tasks import Task, gripper_observation
 from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind, Verdict
 
 Array = NDArray[np.float64]
@@ -111,10 +111,11 @@ class RolloutEpisode:
     def _arm(self, index: int, arm: str, tick: int) -> ArmState:
         x, y, z = self.observations[f"{arm}/tool_position_in_base"][tick].tolist()
         qw, qx, qy, qz = self.observations[f"{arm}/tool_quaternion_in_base"][tick].tolist()
+        closed = self.observations.get(gripper_observation(arm))  # none of an arm without fingers
         return ArmState(
             arm=arm,
             tool_in_base=PoseMessage(x=x, y=y, z=z, qw=qw, qx=qx, qy=qy, qz=qz),
-            gripper=float(self.observations[f"{arm}/gripper"][tick].item()),
+            gripper=0.0 if closed is None else float(closed[tick].item()),
             action=self.actions[tick - 1, index].tolist() if tick else [],
             sequence=tick,
             source=OPERATOR_POLICY,

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from mart.protocol import clock
-from mart.protocol.arms import arm_kind, arm_kind_names
+from mart.protocol.arms import arm_kind, arm_kind_names, end_effector, end_effector_names
 from mart.protocol.control_rate import require_control_hz
 from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import (
@@ -32,7 +32,7 @@ _log = logging.getLogger(__name__)
 _OUTCOMES = {"success": OUTCOME_SUCCESS, "failure": OUTCOME_FAILURE, "discard": OUTCOME_DISCARDED}
 
 
-ArmKindName = Annotated[str, Field(pattern=r"^[a-z0-9_:]{1,80}$")]
+ArmKindName = Annotated[str, Field(pattern=r"^[a-z0-9_:+]{1,144}$")]
 
 
 class NewRoom(BaseModel):
@@ -74,6 +74,7 @@ async def tasks(app: App, _user: JoinedUser) -> Json:
     return {
         "tasks": [_task_json(name) for name in task_names()],
         "arm_kinds": list(_arm_kinds_json()),
+        "end_effectors": list(_end_effectors_json()),
         "opens_rooms": app.platform.is_running,
     }
 
@@ -180,6 +181,17 @@ def _arm_kinds_json() -> Iterator[Json]:
             continue
         if kind.mjcf is None or kind.mjcf.menagerie is None:
             yield {"name": name, "title": kind.title}
+
+
+def _end_effectors_json() -> Iterator[Json]:
+    """Yield what arms can hold at their ends, of those whose files can be read."""
+    for name in end_effector_names():
+        try:
+            held = end_effector(name)
+        except MartError as error:
+            _log.warning("New rooms are not offered %s: %s", name, error)
+            continue
+        yield {"name": name, "title": held.title, "about": held.about}
 
 
 def _task_json(name: str) -> Json:

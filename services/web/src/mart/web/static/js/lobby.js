@@ -111,8 +111,9 @@ async function signOut() {
 
 /** Rooms can be opened and closed where a platform runs them; elsewhere the page says why not, and how. */
 async function offerRooms() {
-  const { tasks, arm_kinds: kinds, opens_rooms: opens } = await api.tasks();
-  if (opens && !offered) newRoom(tasks, kinds);
+  const options = await api.tasks();
+  const { tasks, opens_rooms: opens } = options;
+  if (opens && !offered) newRoom(options);
   offered ||= opens;
   setShown(byId("new-room"), true);
   setShown(byId("rooms-elsewhere"), !opens);

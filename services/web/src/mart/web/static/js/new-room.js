@@ -19,13 +19,16 @@ const RULES = [
 /** What newcomers do first, and nobody opens a room for by default. @param {Api.TaskOption} task */
 const isCourse = ({ name }) => name === COURSE;
 
+/** @param {Api.TaskOption[]} tasks */
+const courseLast = (tasks) =>
+  tasks.toSorted((one, other) => Number(isCourse(one)) - Number(isCourse(other)));
+
 /**
  * Fills the card `new-room` with a form.
- * @param {Api.TaskOption[]} tasks
- * @param {Api.ArmKind[]} armKinds
+ * @param {Api.RoomOptions} options
  */
-export function newRoom(tasks, armKinds) {
-  const fields = inputs(tasks.toSorted((one, other) => Number(isCourse(one)) - Number(isCourse(other))), armKinds);
+export function newRoom(options) {
+  const fields = inputs(options);
   const { task, arms, name, rate, episodes, rules, kinds } = fields;
   const picture = element("img", { alt: "", width: 384, height: 288 });
   const about = element("p", { class: "soft" });
@@ -34,7 +37,7 @@ export function newRoom(tasks, armKinds) {
   const form = element("form", { class: "opening" }, picture, labelled(fields, about, refusal, button));
 
   function show() {
-    const chosen = tasks.find((one) => one.name === task.value);
+    const chosen = options.tasks.find((one) => one.name === task.value);
     if (!chosen) return;
     picture.src = taskPicture(chosen.name);
     setText(about, chosen.instruction);
@@ -109,17 +112,14 @@ function labelled({ task, arms, name, rate, episodes, rules, kinds }, about, ref
   );
 }
 
-/**
- * @param {Api.TaskOption[]} tasks
- * @param {Api.ArmKind[]} armKinds
- */
-function inputs(tasks, armKinds) {
+/** @param {Api.RoomOptions} options */
+function inputs({ tasks, arm_kinds: armKinds, end_effectors: endEffectors }) {
   const arms = element("select", { id: "new-arms" });
   return {
     task: element(
       "select",
       { id: "new-task" },
-      ...tasks.map(({ name, title }) => element("option", { value: name }, title)),
+      ...courseLast(tasks).map(({ name, title }) => element("option", { value: name }, title)),
     ),
     name: element("input", {
       id: "new-name",
@@ -130,7 +130,7 @@ function inputs(tasks, armKinds) {
       autocomplete: "off",
     }),
     arms,
-    kinds: kindSelects(armKinds, arms),
+    kinds: kindSelects(armKinds, endEffectors, arms),
     rate: element(
       "select",
       { id: "new-rate" },

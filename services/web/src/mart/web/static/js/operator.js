@@ -182,7 +182,8 @@ function render() {
   const seat = ownSeat();
   const mine = seat?.mine ?? false;
   const isNew = !localStorage.getItem(RECORDED_KEY);
-  statusBar.update({ room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches, course });
+  const known = { room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches, course };
+  statusBar.update({ ...known, fingerless: status?.gripper === null });
   const told = isTold();
   const still = picture.standsStill(status);
   const forMs = performance.now() - beganMs;

@@ -242,7 +242,9 @@ function guide(hand, link, nowMs) {
  */
 function onStatus(tick, link) {
   const set = status === null || status.gripper_set !== tick.gripper_set;
-  if (set || tick.input !== "phone") gripper.set(tick.gripper);
+  if (set || tick.input !== "phone") gripper.set(tick.gripper ?? 0);
+  gripper.enable(tick.gripper !== null);
+  if (tick.gripper === null) tutorial?.leaveOut("grips");
   vibrationsFor(tick, status, arm).forEach(vibrate);
   status = tick;
   showLink(link);
@@ -286,6 +288,6 @@ function linkText(link) {
 
 function trackingText() {
   const off = tracker instanceof TouchTracker ? tracker.problem(performance.now()) : "";
-  if (off) tutorial?.leaveOutTurning();
+  if (off) tutorial?.leaveOut("turns");
   return `tracking ${tracking ? "good" : "lost"}${off && `. ${off}`}`;
 }

@@ -13,7 +13,15 @@ import { VirtualPhone } from "./virtual-phone.js";
 /** @import { HandReading } from "../headset/controller-hand.js" */
 /** @import { Vector } from "./quaternion.js" */
 
-/** @typedef {{ gripper: number, engaged: boolean, letGo: StatusChannel.LetGo, devices: string[] }} HandView */
+/**
+ * What the input panel shows of a hand.
+ * @typedef {object} HandView
+ * @property {number} gripper
+ * @property {boolean} hasFingers
+ * @property {boolean} engaged
+ * @property {StatusChannel.LetGo} letGo
+ * @property {string[]} devices
+ */
 
 const LONGEST_STEP_S = 0.1;
 const STOP_TOLD_MS = 1000;
@@ -77,7 +85,7 @@ export class KeyboardMouseInput {
    */
   adoptGripper(status, before) {
     const set = before === null || before.gripper_set !== status.gripper_set;
-    if (set || status.input !== "keyboard") this.#gripper = status.gripper > CLOSED_ABOVE ? 1 : 0;
+    if (set || status.input !== "keyboard") this.#gripper = (status.gripper ?? 0) > CLOSED_ABOVE ? 1 : 0;
   }
 
   /** What the gripper was asked for last: 0 open … 1 closed. */
@@ -125,8 +133,9 @@ export class KeyboardMouseInput {
    */
   view(status) {
     const { engaged = false, let_go: letGo = "" } = status ?? {};
+    const hasFingers = status?.gripper !== null;
     const devices = [...this.#devices.names, ...(this.headset ? ["headset"] : [])];
-    return { gripper: this.#gripper, engaged, letGo, devices };
+    return { gripper: this.#gripper, hasFingers, engaged, letGo, devices };
   }
 
   /**

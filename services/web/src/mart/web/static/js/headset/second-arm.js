@@ -100,7 +100,7 @@ export class SecondArm {
   /** @param {StatusChannel.Tick} tick */
   #hear(tick) {
     const set = this.#status?.gripper_set !== tick.gripper_set;
-    if (set || tick.input !== "phone") this.gripper = tick.gripper > CLOSED_ABOVE ? 1 : 0;
+    if (set || tick.input !== "phone") this.gripper = (tick.gripper ?? 0) > CLOSED_ABOVE ? 1 : 0;
     this.#onStatus(this.hand, tick, this.#status);
     this.#status = tick;
   }

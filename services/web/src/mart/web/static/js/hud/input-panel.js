@@ -159,7 +159,6 @@ function showInput(phone, byPhone, devices) {
   setText(byId("switch"), byPhone ? "Use the keyboard" : "Use the phone");
   setText(byId("pair"), phone ? "Pair another phone" : "Pair a phone");
   setShown(byId("switch"), phone !== null || byPhone);
-  setShown(byId("gripper"), !byPhone);
   setShown(byId("toggle"), !byPhone);
 }
 
@@ -168,9 +167,10 @@ function showInput(phone, byPhone, devices) {
  * @param {HandView} hand
  * @param {boolean} byPhone
  */
-function showHand({ gripper, engaged, letGo, devices }, byPhone) {
+function showHand({ gripper, hasFingers, engaged, letGo, devices }, byPhone) {
   const here = devices.includes("headset") ? "headset" : HERE;
   setText(byId("clutch"), engaged ? "Moving" : letGoText(letGo) || HOW_TO_MOVE[byPhone ? "phone" : here]);
+  setShown(byId("gripper"), hasFingers && !byPhone);
   setText(byId("gripper"), `${gripper > 0.5 ? "Open" : "Close"} gripper`);
 }
 

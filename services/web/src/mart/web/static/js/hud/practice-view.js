@@ -6,7 +6,8 @@ import { ACTIONS, nowText, view } from "./view-parts.js";
 
 /** @import { Looking, View } from "./view-parts.js" */
 
-const FIRST_MOVES = "Hold space: W A S D move over the table, Q lifts, E lowers, ← → turn round. G works the gripper.";
+const FIRST_MOVES = "Hold space: W A S D move over the table, Q lifts, E lowers, ← → turn round.";
+const FIRST_GRIPS = "G works the gripper.";
 const FIRST_TOUCHES = "Drag the picture to move. Two fingers: up and down go away and towards you, sideways turns.";
 const UNRECORDED = "Nothing is recorded until everybody is ready.";
 const PASSED = "You may record wherever the course is required.";
@@ -40,10 +41,10 @@ export function practiceView(room, seat, looking) {
  * @param {string} [rest] said to who has recorded before
  * @returns {View}
  */
-function before(room, seat, { isNew = false, touch = false }, shown, rest = "") {
+function before(room, seat, { isNew = false, touch = false, fingerless = false }, shown, rest = "") {
   const now = nowText(room, seat);
   const detail = shown.detail || (now ? "" : room.instruction);
-  return { ...shown, detail, now, goal: room.instruction, hint: isNew ? firstMoves(touch) : rest };
+  return { ...shown, detail, now, goal: room.instruction, hint: isNew ? firstMoves(touch, fingerless) : rest };
 }
 
 /** What somebody is told who may not record here yet. @param {Api.Room | null} course */
@@ -74,8 +75,11 @@ function inPracticeRoom(room, seat, looking) {
   return before(room, seat, looking, view("Practice room", "", [ACTIONS.reset]), "Nothing is recorded here.");
 }
 
-/** @param {boolean} touch */
-const firstMoves = (touch) => (touch ? FIRST_TOUCHES : FIRST_MOVES);
+/** @param {boolean} touch @param {boolean} fingerless */
+function firstMoves(touch, fingerless) {
+  if (touch) return FIRST_TOUCHES;
+  return fingerless ? FIRST_MOVES : `${FIRST_MOVES} ${FIRST_GRIPS}`;
+}
 
 /** @param {Api.Room} room */
 const restText = ({ plan }) => (isReached(plan) ? "All that was planned is recorded; you may go on." : UNRECORDED);

@@ -26,8 +26,9 @@
 
 /**
  * What is known. `room` is null while it is not; `pending`: what has to be pressed once more; `isNew`: whoever looks
- * has not recorded yet; `touch`: with fingers; `reached`: the goal was just seen reached in practice; `achieved`: the
- * step of the practice course that was just done; `course`: the room of the course, where one is open.
+ * has not recorded yet; `touch`: with fingers; `fingerless`: the arm cannot grip; `reached`: the goal was just seen
+ * reached in practice; `achieved`: the step of the practice course that was just done; `course`: the room of the
+ * course, where one is open.
  * @typedef {object} Known
  * @property {Api.Room | null} room
  * @property {Api.Seat | undefined} seat one's own
@@ -35,6 +36,7 @@
  * @property {string} [pending]
  * @property {boolean} [isNew]
  * @property {boolean} [touch]
+ * @property {boolean} [fingerless]
  * @property {boolean} [reached]
  * @property {Api.Subtask | null} [achieved]
  * @property {Api.Room | null} [course]
@@ -60,7 +62,7 @@ export const ACTIONS = {
   lobby: { command: "lobby", text: "Go to the lobby", key: "N", look: "primary" },
 };
 
-/** @typedef {Pick<Known, "pending" | "isNew" | "touch" | "reached" | "achieved" | "course">} Looking */
+/** @typedef {Pick<Known, "pending" | "isNew" | "touch" | "fingerless" | "reached" | "achieved" | "course">} Looking */
 
 /**
  * @param {string} label

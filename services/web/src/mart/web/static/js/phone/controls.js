@@ -79,12 +79,14 @@ export class ClutchPad {
 export class GripperBar {
   value = 0;
   #node;
+  #text;
   /** @type {{ x: number, atMs: number, before: number } | null} */
   #pressed = null;
 
   /** @param {HTMLElement} node */
   constructor(node) {
     this.#node = node;
+    this.#text = /** @type {HTMLElement} */ (node.querySelector(".name"));
     node.addEventListener("pointerdown", (event) => this.#down(event));
     node.addEventListener("pointermove", (event) => this.#move(event));
     node.addEventListener("pointerup", (event) => this.#up(event));
@@ -100,6 +102,12 @@ export class GripperBar {
     this.value = Math.min(1, Math.max(0, value));
     this.#node.style.setProperty("--closed", String(this.value));
     this.#node.setAttribute("aria-valuenow", String(Math.round(100 * this.value)));
+  }
+
+  /** Greys the bar of an arm that cannot grip. @param {boolean} hasFingers */
+  enable(hasFingers) {
+    this.#node.setAttribute("aria-disabled", String(!hasFingers));
+    setText(this.#text, hasFingers ? "Gripper" : "No gripper");
   }
 
   /** @param {PointerEvent} event */

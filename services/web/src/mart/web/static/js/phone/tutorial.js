@@ -7,7 +7,8 @@ import { angleBetween } from "../drive/quaternion.js";
 /** @typedef {"xr" | "touch"} Mode how the phone is followed */
 /** @typedef {{ held: boolean, position: Vector, quaternionWxyz: Quaternion, gripper: number }} Hand */
 /** @typedef {{ heldMs: number, upM: number, turnedRad: number, gripper: number }} Done since the clutch was pressed */
-/** @typedef {{ tips: Record<Mode, string>, isDone: (done: Done) => boolean, turns?: boolean }} Step */
+/** @typedef {{ tips: Record<Mode, string>, isDone: (done: Done) => boolean, needs?: Ability }} Step */
+/** @typedef {"turns" | "grips"} Ability of a phone that tells how it is turned, and of an arm with fingers */
 
 const HELD_MS = 500;
 const UP_M = 0.05;
@@ -33,11 +34,12 @@ const STEPS = [
   {
     tips: { xr: "Keep holding, and turn the phone.", touch: "Hold, and tilt the phone." },
     isDone: ({ heldMs, turnedRad }) => heldMs > 0 && turnedRad >= TURN_RAD,
-    turns: true,
+    needs: "turns",
   },
   {
     tips: { xr: "Slide the bar to close the gripper.", touch: "Slide the bar to close the gripper." },
     isDone: ({ gripper }) => gripper >= CLOSED,
+    needs: "grips",
   },
 ];
 
@@ -64,10 +66,10 @@ export class Tutorial {
     return step ? `${this.#done + 1} of ${this.#steps.length}: ${step.tips[this.#mode]}` : "";
   }
 
-  /** Leaves out what this phone cannot do: it does not tell how it is turned. */
-  leaveOutTurning() {
-    const done = this.#steps.slice(0, this.#done).filter((step) => !step.turns);
-    this.#steps = STEPS.filter((step) => !step.turns);
+  /** Leaves out what this phone or this arm cannot do. @param {Ability} lacking */
+  leaveOut(lacking) {
+    const done = this.#steps.slice(0, this.#done).filter((step) => step.needs !== lacking);
+    this.#steps = this.#steps.filter((step) => step.needs !== lacking);
     this.#done = done.length;
   }
 
