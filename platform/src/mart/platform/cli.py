@@ -15,15 +15,14 @@ from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_C
 from mart.runtime.arm_option import arm_kinds_option
 from mart.runtime.cli import cli, json_option, print_result
 from mart.runtime.rate_option import room_rate_option
+from mart.runtime.task_option import task_option
 
 if TYPE_CHECKING:
     from mart.platform.run.running import Platform
 
 _SKILLS = click.Choice(["expert", "average", "novice"])
 _TIME_LIMIT = click.FloatRange(0.0, 3600.0, min_open=True)
-_TASK_OPTION = click.option(
-    "--task", default=DEFAULT_TASK, show_default=True, help="Name of the task; `mart tasks` lists them."
-)
+_TASK_OPTION = task_option(DEFAULT_TASK)
 _CONTROL_HZ_OPTION = click.option(
     "--control-hz",
     type=click.FloatRange(MIN_CONTROL_HZ, MAX_CONTROL_HZ),

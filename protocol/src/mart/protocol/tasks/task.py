@@ -12,12 +12,16 @@ from __future__ import annotations
 import math
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mart.protocol.arms import PANDA, ArmKind
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.pose import Pose
+
+if TYPE_CHECKING:
+    from mart.protocol.tasks.task_file import TaskFile
 
 SHARED_VIEWPOINT = "front"
 
@@ -109,6 +113,7 @@ class Task:
     three to five times what a practised operator needs (decision 0012). None: as long as the horizon.
 
     afterwards: what an operator is to do whose own subtasks are done, in one line, until the others' are.
+    file: where the task is somebody's own, the task file that says it.
     """
 
     name: str
@@ -121,6 +126,7 @@ class Task:
     trial_ticks: int | None = None
     success_hold_ticks: int = 10
     afterwards: str = ""
+    file: TaskFile | None = None
 
     @property
     def time_limit_s(self) -> float:
