@@ -247,26 +247,6 @@ def rooms(as_json: bool) -> None:
 
 @click.command()
 @json_option
-def tasks(as_json: bool) -> None:
-    """List the tasks: the names that --task takes, and how many arms each can have."""
-    from mart.protocol.tasks import arm_counts, get_task, task_names
-
-    found = [
-        {"name": name, "title": get_task(name).title, "arm_counts": list(arm_counts(name))}
-        for name in task_names()
-    ]
-    width = max(map(len, task_names()))
-    lines = [f"{name:<{width}}  {get_task(name).title}, {_arms(arm_counts(name))}" for name in task_names()]
-    print_result({"tasks": found}, "\n".join(lines), as_json)
-
-
-def _arms(counts: tuple[int, ...]) -> str:
-    *others, last = map(str, counts)
-    return f"{', '.join(others)} or {last} arms" if others else f"{last} arms"
-
-
-@click.command()
-@json_option
 def doctor(as_json: bool) -> None:
     """Name what is missing or unreachable, layer by layer, and the mend."""
     from mart.platform.inspect.doctor import examine

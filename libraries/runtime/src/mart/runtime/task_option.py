@@ -25,5 +25,5 @@ def task_option(default: str | None = None) -> Callable[[F], F]:
         show_default=default is not None,
         callback=_called,
         metavar="NAME|FILE",
-        help="Name of the task, or a task file of your own; `mart tasks` lists them.",
+        help="`mart tasks` lists the names; or a task file of your own, NAME.toml.",
     )

@@ -20,6 +20,7 @@ from mart.protocol.tasks.own_tasks import (
     load_task_file,
     own_task_file,
     own_task_paths,
+    read_task_file,
     task_of_file,
     tasks_folder,
 )
@@ -49,8 +50,10 @@ __all__ = [
     "arm_counts",
     "arm_kinds_of",
     "get_task",
+    "is_in_catalogue",
     "load_task_file",
     "proprioception",
+    "recorded_task",
     "task_called",
     "task_names",
     "task_of_file",
@@ -72,6 +75,22 @@ _ENTRIES = {row.NAME: row for row in sorted(_rows(), key=lambda row: (row.DEFAUL
 def task_names() -> tuple[str, ...]:
     """Return the tasks that there are: those that come with MART, fewer arms first, then people's own."""
     return (*_ENTRIES, *(name for name in own_task_paths() if name not in _ENTRIES))
+
+
+def is_in_catalogue(name: str) -> bool:
+    """Whether a task of this name comes with MART; every other is somebody's own."""
+    return name in _ENTRIES
+
+
+def recorded_task(name: str, task_file: bytes, kinds: Sequence[str] = ()) -> Task:
+    """Return the task that was recorded with this task file, which need not be here. Raises InvalidInput, NotFound."""
+    source = f"The task file of {name[:64]!r}"
+    try:
+        text = task_file.decode()
+    except UnicodeDecodeError as error:
+        raise InvalidInput(f"{source} is not text (UTF-8).") from error
+    task = task_of_file(read_task_file(name, text, source))
+    return task.with_kinds([arm_kind(kind) for kind in kinds]) if kinds else task
 
 
 def task_called(given: str) -> str:

@@ -77,18 +77,20 @@ def load_task_file(path: Path) -> TaskFile:
         text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise InvalidInput(f"{path} is not text (UTF-8).") from error
-    read = read_task_file(path.stem, text, str(path))
-    beside = str(path.parent.resolve() / read.scene.mjcf)
-    return read.model_copy(update={"scene": read.scene.model_copy(update={"mjcf": beside})})
+    return read_task_file(path.stem, text, str(path)).model_copy(update={"folder": path.parent.resolve()})
 
 
 def read_task_file(name: str, text: str, source: str) -> TaskFile:
     """Read what a task file says. source: what to call it. Raises InvalidInput with what is wrong and where."""
+    if len(text) > _MAX_FILE_BYTES:
+        raise InvalidInput(
+            f"{source} is larger than {_MAX_FILE_BYTES // 1024} KiB; a task file holds text alone."
+        )
     try:
         said: dict[str, Any] = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InvalidInput(f"{source} is not TOML: {error}.") from error
-    for taken in ("name", "text"):
+    for taken in ("name", "text", "folder"):
         if taken in said:
             raise InvalidInput(f"{source} says {taken}; a task is called as its file is: leave the line out.")
     try:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Annotated, Self
 
 from pydantic import Field, field_validator, model_validator
@@ -132,10 +133,14 @@ class FileCamera(TaskFilePart):
 
 
 class TaskFile(TaskFilePart):
-    """A whole task file. `name` is the file's, and how people call the task; `text` is what it says."""
+    """A whole task file. `name` is the file's, and how people call the task; `text` is what it says.
+
+    folder: where it lies, with its MJCF; None for what came with a recording.
+    """
 
     name: _Word
     text: str = Field(repr=False)
+    folder: Path | None = None
     title: str = Field(min_length=1, max_length=60)
     instruction: str = Field(min_length=1, max_length=300)
     afterwards: str = Field("", max_length=200)
@@ -151,8 +156,19 @@ class TaskFile(TaskFilePart):
     cameras: Mapping[str, FileCamera] = Field(default_factory=dict)
 
     @property
+    def mjcf_path(self) -> Path:
+        """Where the MJCF lies: beside the task file."""
+        return (self.folder or Path()) / self.scene.mjcf
+
+    @property
+    def plan_path(self) -> Path | None:
+        """Where a plan for scripts lies, if there is one: NAME.py beside the task file."""
+        path = self.folder / f"{self.name}.py" if self.folder is not None else None
+        return path if path is not None and path.is_file() else None
+
+    @property
     def arm_names(self) -> tuple[str, ...]:
-        """arm0, arm1 and so on."""
+        """Return the names arm0, arm1 and so on."""
         return tuple(f"arm{index}" for index in range(len(self.arms)))
 
     @model_validator(mode="after")

@@ -38,7 +38,7 @@ def in_model(name: str) -> str:
 
 def add_scene_bodies(spec: mujoco.MjSpec, file: TaskFile) -> None:
     """Add what the file's MJCF holds. Raises InvalidInput and NotFound with what is wrong with it."""
-    path = Path(file.scene.mjcf)
+    path = file.mjcf_path
     source = read_scene(path)
     child = source.spec
     try:

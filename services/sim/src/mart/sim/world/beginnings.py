@@ -41,11 +41,11 @@ def _overlaps(world: World) -> Iterator[tuple[str, str]]:
         depth_m = -float(contact.dist)
         if depth_m > _INSIDE_M and any(name.startswith(PREFIX) for name in bodies):
             one, other = sorted(_called(name) for name in bodies)
-            yield (
-                f"{one} {other}",
+            sentence = (
                 f"{one} and {other} begin up to {1000 * depth_m:.0f} mm inside each other in {world.task.title}: move "
-                "one, or let their spawns lie apart",
+                "one, or let their spawns lie apart"
             )
+            yield f"{one} {other}", sentence
 
 
 def _called(body: str) -> str:
@@ -62,11 +62,11 @@ def _out_of_reach(world: World) -> Iterator[tuple[str, str]]:
         by_m = {arm.name: missed_by_m(world, arm, position) for arm in world.task.arms}
         nearest = min(by_m, key=lambda arm: by_m[arm])
         if by_m[nearest] > 0.0:
-            yield (
-                f"reach {one.name}",
+            sentence = (
                 f"{one.name} begins beyond every arm of {world.task.title}: {nearest} is nearest and misses it by "
-                f"{100 * by_m[nearest]:.0f} cm; let it begin closer, or stand an arm closer",
+                f"{100 * by_m[nearest]:.0f} cm; let it begin closer, or stand an arm closer"
             )
+            yield f"reach {one.name}", sentence
 
 
 def _done(world: World) -> Iterator[tuple[str, str]]:
