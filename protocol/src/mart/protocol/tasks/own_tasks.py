@@ -55,10 +55,11 @@ def give_task_file(path: Path) -> str:
 
 def own_task_file(name: str) -> TaskFile | None:
     """Return the file of the task called `name`, None where there is none. Raises InvalidInput as it is read."""
-    path = own_task_paths().get(name)
-    if path is None or not path.is_file():
+    if not _NAME.fullmatch(name):
         return None
-    return _load(path, path.stat().st_mtime_ns)
+    given = [path for path in _given() if path.stem == name]
+    found = next((path for path in (*given, tasks_folder() / f"{name}{SUFFIX}") if path.is_file()), None)
+    return None if found is None else _load(found, found.stat().st_mtime_ns)
 
 
 def load_task_file(path: Path) -> TaskFile:

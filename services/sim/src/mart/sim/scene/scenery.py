@@ -65,18 +65,18 @@ def add_room(spec: mujoco.MjSpec, task: Task) -> None:
     if task.file is None or task.file.scene.furniture:
         _add_table(world)
     for arm in task.arms:
-        x, y, _ = arm.pose_base_in_world.position
+        x, y, z = arm.pose_base_in_world.position
         world.add_geom(
             type=_CYLINDER,
-            size=(0.10, -FLOOR_Z_M / 2 - 0.012, 0),
-            pos=(x, y, FLOOR_Z_M / 2 - 0.012),
+            size=(0.10, -FLOOR_Z_M / 2 - 0.012 + z / 2, 0),
+            pos=(x, y, FLOOR_Z_M / 2 - 0.012 + z / 2),
             material="metal",
             **looks,
         )
         world.add_geom(
             type=_CYLINDER,
             size=(0.125, 0.012, 0),
-            pos=(x, y, -0.012),
+            pos=(x, y, z - 0.012),
             material="paint",
             rgba=rgba(arm.color),
             **looks,

@@ -31,20 +31,34 @@ export function kindSelects(kinds, count) {
     show();
   }
 
-  /** The kinds by arm, of those that are no Pandas. @returns {Record<string, string>} */
+  /** What the task's arms are unless others are chosen; none: Pandas. @type {string[]} */
+  let usual = [];
+
+  /** Takes a task's own kinds. @param {string[]} named one for each arm; none: all are Pandas */
+  function suggest(named) {
+    usual = named;
+    for (const [number, select] of selects.entries()) select.value = usual[number] ?? PANDA;
+    show();
+  }
+
+  /** The kinds by arm, of those that are not as usual. @returns {Record<string, string>} */
   const chosen = () =>
     Object.fromEntries(
-      selects.filter(({ value }) => value !== PANDA).map(({ dataset, value }) => [dataset.arm, value]),
+      selects
+        .filter(({ value }, number) => value !== (usual[number] ?? PANDA))
+        .map(({ dataset, value }) => [dataset.arm, value]),
     );
 
+  const areAllPandas = () => selects.every(({ value }) => value === PANDA);
+
   function show() {
-    const others = Object.keys(chosen()).length;
+    const others = selects.filter(({ value }) => value !== PANDA).length;
     setText(summary, others ? `Kinds of arms: ${others} chosen` : "Kinds of arms: all Pandas");
   }
 
   node.addEventListener("change", show);
   count.addEventListener("change", offer);
-  return { node, chosen };
+  return { node, chosen, suggest, areAllPandas };
 }
 
 /** What arms a room has, where they are not all Pandas. @param {Api.Room} room */
