@@ -38,7 +38,7 @@ export function newRoom(tasks, armKinds) {
     if (!chosen) return;
     setText(about, chosen.instruction);
     kinds.suggest(chosen.arm_kinds);
-    arms.replaceChildren(...chosen.arm_counts.map((count) => element("option", { value: count }, plural(count, "arm"))));
+    arms.replaceChildren(...chosen.arm_counts.map((many) => element("option", { value: many }, plural(many, "arm"))));
     arms.value = String(chosen.arms);
     arms.disabled = chosen.arm_counts.length < 2;
     arms.dispatchEvent(new Event("change"));
