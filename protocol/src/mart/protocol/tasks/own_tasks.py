@@ -142,7 +142,9 @@ def _load(path: Path, _modified_ns: int) -> TaskFile:
 
 def _sentence(error: ValidationError) -> str:
     """Say the first mistake: where, and what is wrong."""
-    first = error.errors()[0]
+    found = error.errors()
+    # A key that is written wrongly is missing as well: which one it is says more.
+    first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])
     where = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in first["loc"])
     message = first["msg"].removeprefix("Value error, ").rstrip(".")
     if first["type"] == "extra_forbidden":

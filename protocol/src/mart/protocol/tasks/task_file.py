@@ -157,12 +157,12 @@ class TaskFile(TaskFilePart):
 
     @property
     def mjcf_path(self) -> Path:
-        """Where the MJCF lies: beside the task file."""
+        """Return where the MJCF lies: beside the task file."""
         return (self.folder or Path()) / self.scene.mjcf
 
     @property
     def plan_path(self) -> Path | None:
-        """Where a plan for scripts lies, if there is one: NAME.py beside the task file."""
+        """Return where a plan for scripts lies, NAME.py beside the task file; None without one."""
         path = self.folder / f"{self.name}.py" if self.folder is not None else None
         return path if path is not None and path.is_file() else None
 
