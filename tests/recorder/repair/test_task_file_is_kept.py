@@ -21,7 +21,7 @@ TEXT = TASK_FILE.read_bytes()
 
 
 def repaired(folder: Path) -> EpisodeFile:
-    repair_all(folder, by_toy_replica)
+    (_done,) = repair_all(folder, by_toy_replica)
     (path,) = folder.rglob("*.mcap")
     return EpisodeFile.open(path)
 
@@ -58,4 +58,4 @@ def test_an_episode_of_the_catalogue_carries_none(tmp_path: Path) -> None:
     assert again.task_file() is None
     assert own_task_of(again, again.room) is None
     found = describe(again.path, again.path.name)
-    assert found.recorded_task() == get_task(synthetic.TASK, len(found.arms))
+    assert found.recorded_task().name == synthetic.TASK
