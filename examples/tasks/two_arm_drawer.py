@@ -15,6 +15,7 @@ from mart.sim.experts.plan import (
     OPEN,
     ExpertPlan,
     OperatorObservation,
+    PlanStep,
     Waypoint,
     go,
     pick,
@@ -40,43 +41,43 @@ def _puts(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertP
     while True:
         while not _in_hand(peg, obs):
             obs = yield from pick(obs, human, lambda now: across(peg(now), math.pi / 2))
-        up = _raised(obs, 0.14)
-        obs = yield from go(obs, lambda _, up=up: Waypoint(up, CLOSED))
-        obs = yield from wait(obs, Waypoint(up, CLOSED), human, _is_open)
+        up = Waypoint(_raised(obs, 0.14), CLOSED)
+        obs = yield from _to(obs, up)
+        obs = yield from wait(obs, up, human, _is_open)
         miss = human.aims()
         place = (drawer(obs) @ at(_ASIDE_M, 0.0, 0.0)).position
-        for height_m, pace in ((0.16, 1.0), (0.075, 0.6)):
-            over = upright(place + np.array([0.0, 0.0, height_m]), 0.0) @ miss
-            obs = yield from go(
-                obs, lambda _, over=over, pace=pace: Waypoint(over, CLOSED, pace), _PATIENCE_S
-            )
-        obs = yield from stay(obs, Waypoint(over, OPEN), human.grips_s())
-        away = upright(over.position + np.array([-0.12, 0.0, 0.12]), 0.0)
-        obs = yield from go(obs, lambda _, away=away: Waypoint(away, OPEN))
-        obs = yield from wait(
-            obs, Waypoint(away, OPEN), human, lambda now: not _is_filled(drawer(now), peg(now))
-        )
+        over = upright(place + np.array([0.0, 0.0, 0.16]), 0.0) @ miss
+        down = upright(place + np.array([0.0, 0.0, 0.075]), 0.0) @ miss
+        obs = yield from _to(obs, Waypoint(over, CLOSED))
+        obs = yield from _to(obs, Waypoint(down, CLOSED, 0.6))
+        obs = yield from stay(obs, Waypoint(down, OPEN), human.grips_s())
+        away = Waypoint(upright(down.position + np.array([-0.12, 0.0, 0.12]), 0.0), OPEN)
+        obs = yield from _to(obs, away)
+        obs = yield from wait(obs, away, human, lambda now: not _is_filled(drawer(now), peg(now)))
 
 
 def _holds(arm: Arm, human: HumanErrorModel, obs: OperatorObservation) -> ExpertPlan:
     handle, peg, drawer = seen(arm, "handle"), seen(arm, "peg"), seen(arm, "drawer")
     pull = arm.pose_base_in_world.rotation_matrix().T @ np.array([0.0, -_PULL_M, 0.0])
+
+    def is_over(now: OperatorObservation) -> bool:
+        return _is_filled(drawer(now), peg(now)) or not _in_hand(handle, now)
+
     while True:
         while not _in_hand(handle, obs):
             obs = yield from pick(obs, human, lambda now: upright(handle(now).position, 0.0))
         pulled = upright(obs.pose_tool_in_base.position + pull, 0.0)
-        obs = yield from go(obs, lambda _, pulled=pulled: Waypoint(pulled, CLOSED, 0.7), _PATIENCE_S)
-        here = Waypoint(pulled, CLOSED)
-        obs = yield from wait(
-            obs, here, human, lambda now: _is_filled(drawer(now), peg(now)) or not _in_hand(handle, now)
-        )
-        obs = yield from stay(obs, here, 1.0)  # until the other hand is away
+        obs = yield from _to(obs, Waypoint(pulled, CLOSED, 0.7))
+        obs = yield from wait(obs, Waypoint(pulled, CLOSED), human, is_over)
+        obs = yield from stay(obs, Waypoint(pulled, CLOSED), 1.0)  # until the other hand is away
         obs = yield from stay(obs, Waypoint(pulled, OPEN), human.grips_s())
-        away = _raised(obs, 0.12)
-        obs = yield from go(obs, lambda _, away=away: Waypoint(away, OPEN))
-        obs = yield from wait(
-            obs, Waypoint(away, OPEN), human, lambda now: not _is_filled(drawer(now), peg(now))
-        )
+        away = Waypoint(_raised(obs, 0.12), OPEN)
+        obs = yield from _to(obs, away)
+        obs = yield from wait(obs, away, human, lambda now: not _is_filled(drawer(now), peg(now)))
+
+
+def _to(obs: OperatorObservation, waypoint: Waypoint) -> PlanStep:
+    return (yield from go(obs, lambda _: waypoint, _PATIENCE_S))
 
 
 def _in_hand(thing: ObservedPose, now: OperatorObservation) -> bool:
