@@ -41,6 +41,7 @@ def test_what_it_shows_is_in_the_example() -> None:
     assert [text for kind, text in shown if _plain(text) not in _plain(sources[kind])] == []
 
 
+@pytest.mark.slow
 def test_its_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(_COMMANDS) == 3
     for command in _COMMANDS:

@@ -37,6 +37,7 @@ def replaced(text: str, old: str, new: str) -> str:
     return text.replace(old, new, 1)
 
 
+@pytest.mark.slow
 def test_two_operators_do_the_example(folder: Path) -> None:
     world = World.build(NAME)
     assert not list(problems(world))
@@ -110,6 +111,7 @@ def test_arms_are_of_the_kinds_that_the_file_says_unless_others_are_chosen(folde
     assert not list(problems(world))
 
 
+@pytest.mark.slow
 def test_other_arms_do_it_too(folder: Path) -> None:
     world = World.build(NAME, kinds=("ur5e", "gen3"))
     assert not list(problems(world))
