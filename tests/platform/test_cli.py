@@ -1,14 +1,15 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 from mart.protocol.errors import InvalidInput, MartError, NotFound, Unavailable
-from mart.protocol.tasks import task_names
 from mart.runtime.cli import cli
 from mart.runtime.ports import free_port
+from tests.support.drawer_demonstration import TASK_FILE
 
 
 def failure(command: str, *arguments: str) -> MartError:
@@ -22,17 +23,21 @@ def test_an_unknown_task_lists_the_known_ones() -> None:
     assert "two_arm_multi_cube_lifting" in str(failure("collect", "--task", "nothing"))
 
 
-def test_the_tasks_are_listed_as_they_are_given() -> None:
-    listed = CliRunner().invoke(cli, ["tasks"]).output.splitlines()
-    assert [line.split()[0] for line in listed] == list(task_names())
-    assert "Multi-cube lifting, 2, 3 or 4 arms" in listed[task_names().index("two_arm_multi_cube_lifting")]
-    (cubes,) = [
-        task
-        for task in json.loads(CliRunner().invoke(cli, ["tasks", "--json"]).output)["tasks"]
-        if task["name"] == "two_arm_multi_cube_lifting"
-    ]
-    assert (cubes["title"], cubes["arm_counts"]) == ("Multi-cube lifting", [2, 3, 4])
+def test_the_option_says_where_tasks_are_listed() -> None:
     assert "mart tasks" in CliRunner().invoke(cli, ["run", "--help"]).output
+
+
+def test_a_task_file_can_be_given_and_is_told_what_is_wrong_in_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("MART_TASK_FILES", "")
+    wrong = tmp_path / TASK_FILE.name
+    wrong.write_text(TASK_FILE.read_text().replace("[success]", "[sucess]"))
+    assert "sucess" in str(failure("run", "--task", str(wrong)))
+    assert isinstance(failure("collect", "--task", str(tmp_path / "none.toml")), NotFound)
+    assert "3 operators" in str(
+        failure("collect", "--task", str(TASK_FILE), "--operators", "script,script,script")
+    )
 
 
 @pytest.mark.parametrize(

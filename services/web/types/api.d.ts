@@ -14,6 +14,7 @@ declare namespace Api {
     instruction: string;
     arms: number;
     arm_counts: number[];
+    arm_kinds: string[];
   }
 
   interface ArmKind {

@@ -34,6 +34,17 @@ def test_a_room_is_shown_with_its_people_and_whom_it_waits_for() -> None:
     assert as_json(status)["seats"] == [{"arm": "arm0", "operator": "human", "name": "Ana"}]
 
 
+def test_the_kinds_of_arms_are_shown_where_they_are_not_all_pandas() -> None:
+    status = examples()["RoomStatus"]
+    assert isinstance(status, m.RoomStatus)
+    del status.arm_kinds[:]
+    assert "arm0 Ana" in in_words(status)
+    assert as_json(status)["arm_kinds"] == ["panda"]
+    status.arm_kinds.append("ur5e")
+    assert "arm0 (ur5e) Ana" in in_words(status)
+    assert as_json(status)["arm_kinds"] == ["ur5e"]
+
+
 def test_no_sim_means_no_room_and_no_wait() -> None:
     assert open_rooms(MemoryNetwork().connect()) == []
 

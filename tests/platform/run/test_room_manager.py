@@ -32,6 +32,7 @@ from mart.protocol.messages import (
     RoomStatus,
     Seat,
 )
+from tests.support.drawer_demonstration import TASK_FILE
 
 Open, Close = RoomsRequest.Open, RoomsRequest.Close
 KEPT = {"old": "a_task_that_was", "lab": DEFAULT_TASK}
@@ -142,6 +143,7 @@ def test_others_are_not_started_anew_when_one_closes(rooms: RoomManager, supervi
     ("asked", "error", "complaint"),
     [
         ({"task": "juggling"}, NotFound, "juggling"),
+        ({"task": str(TASK_FILE)}, NotFound, "There is no task"),  # files are for who starts the platform
         ({"room": "room-1"}, Conflict, "open already"),
         ({"room": "../x"}, InvalidInput, "lower-case"),
         ({"control_hz": 4.0}, InvalidInput, "from 5 to 100 Hz"),

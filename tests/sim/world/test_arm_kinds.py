@@ -15,6 +15,7 @@ from mart.protocol.pose import Pose
 from mart.protocol.tasks import get_task, task_names
 from mart.sim.experts.run_experts import run_experts
 from mart.sim.scene.data import ChosenRows
+from mart.sim.scene.scenery import add_room
 from mart.sim.world import World, WorldBatch, osc
 from mart.sim.world.reach import missed, require_reach
 from tests.sim.world import osc_oracle
@@ -160,3 +161,16 @@ def test_the_workspace_and_the_limits_of_each_arm_are_its_own(world: World) -> N
 def test_scripts_do_every_task_with_any_mix_of_arms(task: str, kinds: tuple[str, ...]) -> None:
     world = World.build(task, kinds=kinds)
     assert run_experts(world, seed=2, until_s=world.task.trial_limit_s).success
+
+
+def test_a_pedestal_reaches_up_to_the_base_of_an_arm_that_stands_higher(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("MART_ARMS_DIR", str(tmp_path))
+    gen3 = (Path(finding.__file__).parent / "gen3.toml").read_text()
+    (tmp_path / "high.toml").write_text(gen3.replace("forward_m = 0.06", "forward_m = 0.06\nup_m = 0.2"))
+    task = get_task("two_arm_multi_cube_lifting", kinds=("panda", "high"))
+    spec = mujoco.MjSpec()
+    add_room(spec, task)
+    tops = {round(float(geom.pos[2] + geom.size[1]), 6) for geom in spec.worldbody.geoms if geom.pos[0] > 0.6}
+    assert tops == {0.2, 0.176}  # its cap, and what stands below it

@@ -16,15 +16,14 @@ from mart.runtime.arm_option import arm_kinds_option
 from mart.runtime.cli import cli, json_option, print_result
 from mart.runtime.rate_option import room_rate_option
 from mart.runtime.room_file import real_room_option
+from mart.runtime.task_option import task_option
 
 if TYPE_CHECKING:
     from mart.platform.run.running import Platform
 
 _SKILLS = click.Choice(["expert", "average", "novice"])
 _TIME_LIMIT = click.FloatRange(0.0, 3600.0, min_open=True)
-_TASK_OPTION = click.option(
-    "--task", default=DEFAULT_TASK, show_default=True, help="Name of the task; `mart tasks` lists them."
-)
+_TASK_OPTION = task_option(DEFAULT_TASK)
 _CONTROL_HZ_OPTION = click.option(
     "--control-hz",
     type=click.FloatRange(MIN_CONTROL_HZ, MAX_CONTROL_HZ),
@@ -246,26 +245,6 @@ def rooms(as_json: bool) -> None:
         found = open_rooms(bus)
     text = "\n".join(map(view.in_words, found)) or "No room is open. `make run` opens one."
     print_result({"rooms": [view.as_json(status) for status in found]}, text, as_json)
-
-
-@click.command()
-@json_option
-def tasks(as_json: bool) -> None:
-    """List the tasks: the names that --task takes, and how many arms each can have."""
-    from mart.protocol.tasks import arm_counts, get_task, task_names
-
-    found = [
-        {"name": name, "title": get_task(name).title, "arm_counts": list(arm_counts(name))}
-        for name in task_names()
-    ]
-    width = max(map(len, task_names()))
-    lines = [f"{name:<{width}}  {get_task(name).title}, {_arms(arm_counts(name))}" for name in task_names()]
-    print_result({"tasks": found}, "\n".join(lines), as_json)
-
-
-def _arms(counts: tuple[int, ...]) -> str:
-    *others, last = map(str, counts)
-    return f"{', '.join(others)} or {last} arms" if others else f"{last} arms"
 
 
 @click.command()

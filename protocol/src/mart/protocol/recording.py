@@ -36,6 +36,7 @@ STATE = "/state"
 EVENT = "/event"
 TRANSFORMS = "/tf"
 MODEL_ATTACHMENT = "model.mjb"
+TASK_ATTACHMENT = "task.toml"  # of a task that is somebody's own: its task file
 
 # What a file and its parts may take: a reader refuses more, so that a hostile file cannot fill the memory.
 MAX_CHUNK_BYTES = 64 * 1024 * 1024

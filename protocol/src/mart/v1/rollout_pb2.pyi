@@ -42,7 +42,7 @@ class RolloutRequest(_message.Message):
         session: str
         def __init__(self, session: _Optional[str] = ...) -> None: ...
     class Resimulate(_message.Message):
-        __slots__ = ("model_sha256", "task", "control_hz", "arms", "first_state", "actions", "native", "arm_kinds")
+        __slots__ = ("model_sha256", "task", "control_hz", "arms", "first_state", "actions", "native", "arm_kinds", "task_file", "mjb")
         MODEL_SHA256_FIELD_NUMBER: _ClassVar[int]
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -51,6 +51,8 @@ class RolloutRequest(_message.Message):
         ACTIONS_FIELD_NUMBER: _ClassVar[int]
         NATIVE_FIELD_NUMBER: _ClassVar[int]
         ARM_KINDS_FIELD_NUMBER: _ClassVar[int]
+        TASK_FILE_FIELD_NUMBER: _ClassVar[int]
+        MJB_FIELD_NUMBER: _ClassVar[int]
         model_sha256: str
         task: str
         control_hz: float
@@ -59,9 +61,11 @@ class RolloutRequest(_message.Message):
         actions: bytes
         native: bool
         arm_kinds: _containers.RepeatedScalarFieldContainer[str]
-        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., first_state: _Optional[bytes] = ..., actions: _Optional[bytes] = ..., native: _Optional[bool] = ..., arm_kinds: _Optional[_Iterable[str]] = ...) -> None: ...
+        task_file: bytes
+        mjb: bytes
+        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., first_state: _Optional[bytes] = ..., actions: _Optional[bytes] = ..., native: _Optional[bool] = ..., arm_kinds: _Optional[_Iterable[str]] = ..., task_file: _Optional[bytes] = ..., mjb: _Optional[bytes] = ...) -> None: ...
     class CompareTicks(_message.Message):
-        __slots__ = ("model_sha256", "task", "control_hz", "arms", "states", "actions", "native", "arm_kinds")
+        __slots__ = ("model_sha256", "task", "control_hz", "arms", "states", "actions", "native", "arm_kinds", "task_file", "mjb")
         MODEL_SHA256_FIELD_NUMBER: _ClassVar[int]
         TASK_FIELD_NUMBER: _ClassVar[int]
         CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -70,6 +74,8 @@ class RolloutRequest(_message.Message):
         ACTIONS_FIELD_NUMBER: _ClassVar[int]
         NATIVE_FIELD_NUMBER: _ClassVar[int]
         ARM_KINDS_FIELD_NUMBER: _ClassVar[int]
+        TASK_FILE_FIELD_NUMBER: _ClassVar[int]
+        MJB_FIELD_NUMBER: _ClassVar[int]
         model_sha256: str
         task: str
         control_hz: float
@@ -78,7 +84,9 @@ class RolloutRequest(_message.Message):
         actions: bytes
         native: bool
         arm_kinds: _containers.RepeatedScalarFieldContainer[str]
-        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., states: _Optional[bytes] = ..., actions: _Optional[bytes] = ..., native: _Optional[bool] = ..., arm_kinds: _Optional[_Iterable[str]] = ...) -> None: ...
+        task_file: bytes
+        mjb: bytes
+        def __init__(self, model_sha256: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[int] = ..., states: _Optional[bytes] = ..., actions: _Optional[bytes] = ..., native: _Optional[bool] = ..., arm_kinds: _Optional[_Iterable[str]] = ..., task_file: _Optional[bytes] = ..., mjb: _Optional[bytes] = ...) -> None: ...
     class Describe(_message.Message):
         __slots__ = ("task", "control_hz", "arms", "arm_kinds")
         TASK_FIELD_NUMBER: _ClassVar[int]

@@ -117,7 +117,7 @@ class State(_message.Message):
     def __init__(self, room: _Optional[str] = ..., tick: _Optional[int] = ..., sim_time_s: _Optional[float] = ..., stamps: _Optional[_Union[TickStamps, _Mapping]] = ..., real_time_factor: _Optional[float] = ..., integration_state: _Optional[bytes] = ..., arms: _Optional[_Iterable[_Union[ArmState, _Mapping]]] = ..., straggler: _Optional[str] = ..., straggler_late_s: _Optional[float] = ..., observations: _Optional[_Iterable[_Union[Observation, _Mapping]]] = ..., progress: _Optional[_Union[Progress, _Mapping]] = ..., episode: _Optional[int] = ..., episode_tick: _Optional[int] = ..., boot: _Optional[int] = ...) -> None: ...
 
 class Model(_message.Message):
-    __slots__ = ("sha256", "mjb", "task", "control_hz", "arms", "mujoco_version", "numerics", "arm_kinds")
+    __slots__ = ("sha256", "mjb", "task", "control_hz", "arms", "mujoco_version", "numerics", "arm_kinds", "task_file")
     SHA256_FIELD_NUMBER: _ClassVar[int]
     MJB_FIELD_NUMBER: _ClassVar[int]
     TASK_FIELD_NUMBER: _ClassVar[int]
@@ -126,6 +126,7 @@ class Model(_message.Message):
     MUJOCO_VERSION_FIELD_NUMBER: _ClassVar[int]
     NUMERICS_FIELD_NUMBER: _ClassVar[int]
     ARM_KINDS_FIELD_NUMBER: _ClassVar[int]
+    TASK_FILE_FIELD_NUMBER: _ClassVar[int]
     sha256: str
     mjb: bytes
     task: str
@@ -134,7 +135,8 @@ class Model(_message.Message):
     mujoco_version: str
     numerics: Numerics
     arm_kinds: _containers.RepeatedScalarFieldContainer[str]
-    def __init__(self, sha256: _Optional[str] = ..., mjb: _Optional[bytes] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[_Iterable[str]] = ..., mujoco_version: _Optional[str] = ..., numerics: _Optional[_Union[Numerics, _Mapping]] = ..., arm_kinds: _Optional[_Iterable[str]] = ...) -> None: ...
+    task_file: bytes
+    def __init__(self, sha256: _Optional[str] = ..., mjb: _Optional[bytes] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., arms: _Optional[_Iterable[str]] = ..., mujoco_version: _Optional[str] = ..., numerics: _Optional[_Union[Numerics, _Mapping]] = ..., arm_kinds: _Optional[_Iterable[str]] = ..., task_file: _Optional[bytes] = ...) -> None: ...
 
 class Numerics(_message.Message):
     __slots__ = ("processor", "libm", "mujoco_build", "fingerprint")

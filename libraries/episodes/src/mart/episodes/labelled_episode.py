@@ -13,6 +13,7 @@ from mart.episodes.reader import EpisodeFile
 from mart.episodes.scan import ForeignFile
 from mart.protocol.errors import Corrupt, MartError, NotFound
 from mart.protocol.recording import OperatorsRecord, Shift, VerificationRecord
+from mart.protocol.tasks import Task, get_task, is_in_catalogue
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 
 _log = logging.getLogger(__name__)
@@ -91,6 +92,15 @@ class LabelledEpisode(BaseModel):
         if self.error is not None:
             raise Corrupt(self.error)
         return EpisodeFile.open(self.file_path)
+
+    def recorded_task(self) -> Task:
+        """Return the task with the arms that were recorded; that of somebody's own task as the file says it.
+
+        Raises NotFound for an unknown one, InvalidInput for arms it cannot have, Corrupt where the file is damaged.
+        """
+        if is_in_catalogue(self.task or ""):
+            return get_task(self.task or "", len(self.arms), self.arm_kinds)
+        return self.open().task()
 
     def with_labels(self, said: EpisodeLabels | None) -> LabelledEpisode:
         """Return this episode with what was said about it; None where nothing was."""

@@ -24,6 +24,7 @@ from mart.protocol.recording import (
     MODEL_ATTACHMENT,
     STATE,
     SUFFIX,
+    TASK_ATTACHMENT,
     VERSIONS,
     CadenceRecord,
     EpisodeRecord,
@@ -31,7 +32,7 @@ from mart.protocol.recording import (
     RoomRecord,
     VerificationRecord,
 )
-from mart.protocol.tasks import Task, get_task
+from mart.protocol.tasks import Task, get_task, is_in_catalogue, recorded_task
 
 _DISTRIBUTION = (
     "mart-episodes"  # whose version a file was written by; before it was one of its own, the recorder's
@@ -169,6 +170,26 @@ class EpisodeFile:
                     return attachment.data
         raise NotFound(f"{self.path} holds no {MODEL_ATTACHMENT}.")
 
+    def task_file(self) -> bytes | None:
+        """Return the task file (TOML) that an episode of somebody's own task carries, None where it has none."""
+        with BoundedFile(self.path) as file, corruption(self.path):
+            for attachment in read_attachments(file, is_finished(self.path)):
+                if attachment.name == TASK_ATTACHMENT:
+                    return attachment.data
+        return None
+
+    def task(self) -> Task:
+        """Return the task that was recorded: the catalogue's, or as the file's own task file says it.
+
+        Raises NotFound for one that neither knows, InvalidInput for arms that it cannot have.
+        """
+        episode = self.episode
+        name = episode.task or ""
+        own = None if is_in_catalogue(name) else self.task_file()
+        if own is None:
+            return get_task(name, len(episode.arms), episode.arm_kinds)
+        return recorded_task(name, own, episode.arm_kinds)
+
     def check_model(self) -> None:
         """Raise Corrupt where the file holds another model than the recorded one; one without any is as good."""
         with contextlib.suppress(NotFound):
@@ -212,9 +233,8 @@ class EpisodeFile:
         return f", written by version {wrote} of MART and read by {_own_version()}," if wrote else ""
 
     def _known_task(self) -> Task | None:
-        episode = self.episode
         try:
-            return get_task(episode.task or "", len(episode.arms), episode.arm_kinds)
+            return self.task()
         except (InvalidInput, NotFound):
             return None
 

@@ -17,7 +17,14 @@ from mcap_protobuf.schema import register_schema
 from mart.episodes.mcap_entries import McapEntry
 from mart.episodes.patient_file import PatientFile
 from mart.protocol.messages import Model
-from mart.protocol.recording import CHECKSUMS, MODEL_ATTACHMENT, PROFILE, RoomRecord, metadata_checksum
+from mart.protocol.recording import (
+    CHECKSUMS,
+    MODEL_ATTACHMENT,
+    PROFILE,
+    TASK_ATTACHMENT,
+    RoomRecord,
+    metadata_checksum,
+)
 from mart.runtime.atomic_file import rename_to_new
 
 _CHUNK_BYTES = 256 * 1024  # what one damaged sector can cost
@@ -74,8 +81,10 @@ class EpisodeWriter:
             self._mcap.add_metadata(CHECKSUMS, self._checksums)
 
     def attach_model(self, model: Model, now_ns: int) -> None:
-        """Attach the compiled MuJoCo model. now_ns: Unix time."""
+        """Attach the compiled MuJoCo model, and the task file of a task that is somebody's own. now_ns: Unix time."""
         self.has_model = True
+        if model.task_file:
+            self._mcap.add_attachment(now_ns, now_ns, TASK_ATTACHMENT, "application/toml", model.task_file)
         self._mcap.add_attachment(now_ns, now_ns, MODEL_ATTACHMENT, "application/octet-stream", model.mjb)
 
     def add_record(self, name: str, strings: Mapping[str, str]) -> None:

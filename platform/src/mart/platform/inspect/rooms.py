@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from mart.protocol.arms import PANDA
 from mart.protocol.messages import DrivenArm, Plan, RoomStatus, Seat, barrier_word, operator_word, phase_word
 from mart.protocol.practice import has_passed, stations_of
 
@@ -12,6 +13,7 @@ def as_json(status: RoomStatus) -> dict[str, Any]:
     return {
         "room": status.room,
         "task": status.task,
+        "arm_kinds": list(status.arm_kinds) or [PANDA.name] * len(status.seats),
         "control_hz": status.control_hz,
         "tick": status.tick,
         "real_time_factor": round(status.real_time_factor, 3),
@@ -41,7 +43,11 @@ def _plan_json(status: RoomStatus) -> dict[str, int] | None:
 
 
 def in_words(status: RoomStatus) -> str:
-    seats = ", ".join(f"{seat.arm} {seat.name or operator_word(seat.operator)}" for seat in status.seats)
+    kinds = status.arm_kinds or [""] * len(status.seats)  # none: all are Pandas
+    seats = ", ".join(
+        f"{seat.arm}{f' ({kind})' if kind else ''} {seat.name or operator_word(seat.operator)}"
+        for seat, kind in zip(status.seats, kinds, strict=False)
+    )
     waiting = ", ".join(f"{w.arm} for {w.since_s:.1f} s" for w in status.waiting_for)
     line = (
         f"{status.room}  {status.task}  {seats}  {phase_word(status.episode.phase)}"

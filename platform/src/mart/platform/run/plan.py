@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from mart.protocol.arms import arms_folder
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
+from mart.protocol.tasks import tasks_folder
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.arm_option import arm_arguments
 from mart.runtime.rate_option import AUTO
@@ -164,6 +165,7 @@ def environment(options: PlatformOptions) -> dict[str, str]:
         "MART_ROUTER": options.router,
         "MART_DATA_DIR": str(options.data_dir.resolve()),
         "MART_ARMS_DIR": str(arms_folder().resolve()),
+        "MART_TASKS_DIR": str(tasks_folder().resolve()),
         # Several processes share few cores; a pool of threads in each would only make them wait for each other.
         "OMP_NUM_THREADS": "1",
         "OPENBLAS_NUM_THREADS": "1",

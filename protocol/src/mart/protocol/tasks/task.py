@@ -13,12 +13,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mart.protocol.arms import PANDA, ArmKind
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.pose import Pose
+
+if TYPE_CHECKING:
+    from mart.protocol.tasks.task_file import TaskFile
 
 SHARED_VIEWPOINT = "front"
 
@@ -112,6 +116,7 @@ class Task:
     afterwards: what an operator is to do whose own subtasks are done, in one line, until the others' are.
     fingerless: arms whose part can be done without fingers; all others need an end effector that grips. fitted: what
     becomes of the task with other end effectors than fingers; it may raise InvalidInput where those cannot do it.
+    file: where the task is somebody's own, the task file that says it.
     """
 
     name: str
@@ -126,6 +131,7 @@ class Task:
     afterwards: str = ""
     fingerless: tuple[str, ...] = ()
     fitted: Callable[[Task], Task] | None = None
+    file: TaskFile | None = None
 
     @property
     def time_limit_s(self) -> float:

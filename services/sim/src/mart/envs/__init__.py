@@ -65,8 +65,9 @@ class EnvKeywords(TypedDict, total=False):
 def make_env(task: str, **keywords: Unpack[EnvKeywords]) -> JointEnv:
     """Make a task's Gymnasium environment: one agent that sees everything and moves every arm.
 
-    Actions have the shape (arms, 7) in [-1, 1]; observations are float64 arrays by name. Raises NotFound for an unknown
-    task, viewpoint or render mode, InvalidInput for a rate or arms that cannot be, Unavailable without the extra.
+    task: its name, or a task file of your own. Actions have the shape (arms, 7) in [-1, 1]; observations are float64
+    arrays by name. Raises NotFound for an unknown task, viewpoint or render mode, InvalidInput for a rate or arms that
+    cannot be, Unavailable without the extra.
 
     >>> with contextlib.closing(make_env("two_arm_table_assembly", control_hz=30.0)) as env:
     ...     env.action_space.shape

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from mart.protocol.arms import PANDA, ArmKind
-from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.errors import InvalidInput, MartError, NotFound
 from mart.protocol.pose import Pose
 from mart.protocol.tasks import Task, get_task, task_names
 from mart.sim.experts.run_experts import run_experts
@@ -25,6 +25,11 @@ _GRAVITY = 9.81
 _MOST_SAG_M = 0.015
 _LEAST_MARGIN_RAD = 0.05
 _MOST_TORQUE_SHARE = 0.9
+# Of the tool, along and about the axes of the base; with the tool straight down, x is the way it reaches.
+_DIRECTIONS = (
+    *("shifts forward", "shifts sideways", "shifts up"),
+    *("tilts to the side (turns about x)", "tilts forward (turns about y)", "turns about the vertical"),
+)
 _STEP_M = 0.05
 _RIGHT_M = 0.003
 _SETTLE_TICKS = 30
@@ -113,10 +118,25 @@ def _payload(kind: ArmKind, mobility: Array, shares: Array) -> ArmFinding:
 def _singularity(kind: ArmKind, mobility: Array) -> ArmFinding:
     gains = kind.gains
     scale = np.sqrt(np.repeat([gains.regular_mobility_position, gains.regular_mobility_orientation], 3))
-    least = float(np.linalg.eigvalsh(mobility / np.outer(scale, scale))[0])
+    mobilities, directions = np.linalg.eigh(mobility / np.outer(scale, scale))
+    least = float(mobilities[0])
+    if kind.joint_count < len(directions):
+        return _given_up(kind, directions[:, : len(directions) - kind.joint_count], mobilities)
     lost = "" if least >= 1 else "; below 1 a direction counts as lost and is damped"
     said = f"Where episodes begin, its least mobile direction has {least:.1f} times what is regular{lost}."
-    return ArmFinding("singularity", least >= 1 or kind.joint_count < 6, said)
+    return ArmFinding("singularity", least >= 1, said)
+
+
+def _given_up(kind: ArmKind, lost: Array, mobilities: Array) -> ArmFinding:
+    """Say which directions an arm with fewer joints than six gives up; lost: those, shape (6, n), each of length 1."""
+    named = [_DIRECTIONS[int(np.argmax(np.abs(direction)))] for direction in lost.T]
+    kept = float(mobilities[lost.shape[1]])
+    damped = "" if kept >= 1 else "; below 1 a direction counts as lost and is damped"
+    said = (
+        f"Its {kind.joint_count} joints give up {', '.join(named)} where episodes begin, and keep the rest: there its "
+        f"least mobile direction has {kept:.1f} times what is regular{damped}."
+    )
+    return ArmFinding("singularity", kept >= 1, said)
 
 
 def _response(world: World, own: str) -> ArmFinding:
@@ -153,6 +173,10 @@ def _in_task(task: Task, kind: ArmKind) -> ArmFinding:
             said = f"{task.title}: {worst.arm} misses {worst.thing} by {100 * worst.by_m:.0f} cm."
             return ArmFinding("reach", ok=False, said=said)
         progress = run_experts(world, _SEED, until_s=world.task.trial_limit_s)
+    except NotFound:
+        return ArmFinding(
+            "reach", ok=True, said=f"{task.title}: within reach; there is no script to try it with."
+        )
     except InvalidInput as error:
         return ArmFinding("reach", ok=False, said=f"{task.title}: {error}")
     if progress.success:

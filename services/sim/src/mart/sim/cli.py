@@ -12,6 +12,7 @@ from mart.runtime.arm_option import arm_kinds_option
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import progress
 from mart.runtime.rate_option import room_rate_option
+from mart.runtime.task_option import task_option
 from mart.sim.settings import ExpertsSettings, ReplicaSettings, SimSettings
 
 
@@ -22,7 +23,7 @@ def _given(**options: Any) -> dict[str, Any]:
 
 @click.command()
 @click.option("--room", help="Id of the room.  [default: room-1]")
-@click.option("--task", help="Name of the task; `mart tasks` lists them.")
+@task_option()
 @room_rate_option
 @click.option("--arms", type=int, help="How many arms, where the task can have several numbers.")
 @arm_kinds_option

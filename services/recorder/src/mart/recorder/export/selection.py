@@ -14,7 +14,7 @@ from mart.episodes.filter import DROPPED, EpisodeFilter
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import operator_from_word
-from mart.protocol.tasks import Task, get_task
+from mart.protocol.tasks import Task
 from mart.protocol.vocabulary import OperatorKind
 
 # What the numbers in a column of sources mean, by tick and arm.
@@ -51,7 +51,7 @@ def choose(
     first = taken[0]
     if first.task is None or first.control_hz is None:
         raise InvalidInput(f"{first.file_path} does not say its task and control rate; leave it out.")
-    task = get_task(first.task, len(first.arms), first.arm_kinds)
+    task = first.recorded_task()
     return ExportSelection(task, control_hz or first.control_hz, tuple(taken))
 
 

@@ -14,6 +14,7 @@ from mart.episodes.writer import EpisodeWriter
 from mart.protocol import keys
 from mart.protocol.errors import MartError
 from mart.protocol.messages import Command, Event, RoomStatus, State
+from mart.protocol.tasks import tasks_folder
 from mart.recorder.record.announcer import Announcer
 from mart.recorder.record.arrival_decoder import ArrivedMessage, decode_arrival
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
@@ -81,7 +82,10 @@ class RoomRecording:
             self._reported_s = now_s
             self._report()
         if self._tracker.unknown_task and self._tellings.allows(now_s):
-            text = f"The recorder does not know the task {self._tracker.unknown_task[:64]!r}: nothing is recorded here."
+            text = (
+                f"The recorder does not know the task {self._tracker.unknown_task[:64]!r}: nothing is recorded here. "
+                f"Of a task of your own, put the file into {tasks_folder()} beside the recorder."
+            )
             self._tools.announcer.notice(self._room, "error", text)
 
     def _report(self) -> None:

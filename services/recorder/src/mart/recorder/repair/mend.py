@@ -18,6 +18,7 @@ from mart.protocol.messages import Command, Event, Model, Operator, State
 from mart.protocol.recording import (
     CHECKSUMS,
     MODEL_ATTACHMENT,
+    TASK_ATTACHMENT,
     EpisodeRecord,
     OperatorsRecord,
     RoomRecord,
@@ -82,6 +83,7 @@ class _Mended:
         self._metadata: dict[str, Mapping[str, str]] = {}
         self._checksums: dict[str, str] = {}
         self._room: Mapping[str, str] | None = None
+        self._task_file = b""  # comes before the model
 
     def add(self, found: SalvagedMessage | Attachment | Metadata) -> None:
         if not isinstance(found, Metadata):
@@ -93,8 +95,10 @@ class _Mended:
                 self.unreadable += 1
         elif isinstance(found, Metadata):
             self._add_metadata(found)
+        elif found.name == TASK_ATTACHMENT:
+            self._task_file = found.data
         elif found.name == MODEL_ATTACHMENT and not self._file.has_model and self._is_recorded(found.data):
-            self._file.attach_model(Model(mjb=found.data), found.log_time)
+            self._file.attach_model(Model(mjb=found.data, task_file=self._task_file), found.log_time)
 
     def recorded(self) -> RecordedFacts:
         """Return what the file says of the episode itself, as far as its own checksums vouch for it."""

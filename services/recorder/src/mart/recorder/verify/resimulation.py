@@ -21,7 +21,7 @@ from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.state_digest import DIGEST_BYTES
 from mart.protocol.vocabulary import Verdict
 from mart.recorder.verify.replica import AskReplica, nobody, replica
-from mart.recorder.verify.stretches import Stretch, stretches
+from mart.recorder.verify.stretches import Stretch, own_task_of, stretches
 from mart.recorder.verify.tolerance import Comparison, compare_ticks
 
 _FAR = 1e15  # what a record's number may be
@@ -66,10 +66,11 @@ def compare(
             f"{file.path} does not say its task, its rate and its model; it cannot be stepped again."
         )
     EpisodeFile(file.path, {RoomRecord.NAME: room.to_strings()}).check_model()
+    own = own_task_of(file, room)
     for stretch in stretches(file.states()):
         answered, numerics = b"", Numerics()
         if stretch.digests:
-            reply = ask(RolloutRequest(resimulate=stretch.request(room, native=native)))
+            reply = ask(RolloutRequest(resimulate=stretch.request(room, own, native=native)))
             answered, numerics = reply.state_digests, reply.numerics
         if len(answered) != DIGEST_BYTES * len(stretch.digests):
             raise Corrupt(f"The replica answered {len(answered)} bytes for {len(stretch.digests)} ticks.")

@@ -7,13 +7,31 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mart.episodes.reader import EpisodeFile
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Corrupt
 from mart.protocol.messages import RolloutRequest, State
 from mart.protocol.recording import RoomRecord
 from mart.protocol.state_digest import state_digest
+from mart.protocol.tasks import is_in_catalogue
 
 _STRETCH_TICKS = 2000
+
+
+@dataclass(frozen=True)
+class OwnTask:
+    """Hold what a replica needs to step a task that is somebody's own: its task file and its compiled model."""
+
+    task_file: bytes
+    mjb: bytes
+
+
+def own_task_of(file: EpisodeFile, room: RoomRecord) -> OwnTask | None:
+    """Return what a file carries of a task that is somebody's own, None where the catalogue has the task."""
+    text = None if is_in_catalogue(room.task or "") else file.task_file()
+    if text is None:
+        return None
+    return OwnTask(text, EpisodeFile(file.path, {RoomRecord.NAME: room.to_strings()}).model())
 
 
 @dataclass
@@ -42,7 +60,9 @@ class Stretch:
         if self.states is not None:
             self.states.append(state.integration_state)
 
-    def request(self, room: RoomRecord, *, native: bool = False) -> RolloutRequest.Resimulate:
+    def request(
+        self, room: RoomRecord, own: OwnTask | None = None, *, native: bool = False
+    ) -> RolloutRequest.Resimulate:
         """Return what a replica is asked to step again. Raises Corrupt as `packed_actions` does."""
         return RolloutRequest.Resimulate(
             model_sha256=room.model_sha256 or "",
@@ -53,6 +73,8 @@ class Stretch:
             first_state=self.first_state,
             actions=self.packed_actions(),
             native=native,
+            task_file=own.task_file if own else b"",
+            mjb=own.mjb if own else b"",
         )
 
     def packed_actions(self) -> bytes:

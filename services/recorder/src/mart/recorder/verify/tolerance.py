@@ -15,7 +15,7 @@ from mart.protocol.errors import Corrupt
 from mart.protocol.messages import RolloutRequest, State
 from mart.protocol.recording import RoomRecord
 from mart.recorder.verify.replica import AskReplica
-from mart.recorder.verify.stretches import stretches
+from mart.recorder.verify.stretches import own_task_of, stretches
 
 # What one tick may differ by on another processor, in metres and radians, and those a second: measured, with room; see
 # docs/decisions/0034-what-another-processor-may-differ-by.md. Other parts of the state are told and not judged: a warm
@@ -58,6 +58,7 @@ def compare_ticks(file: EpisodeFile, room: RoomRecord, ask: AskReplica, *, nativ
     Raises Corrupt where the file cannot be stepped, or what the replica says where it cannot answer.
     """
     worst: dict[str, Difference] = {}
+    own = own_task_of(file, room)
     for stretch in stretches(_bounded(file.states()), _TICKS_A_REQUEST, with_states=True):
         if not stretch.digests:
             continue
@@ -70,6 +71,8 @@ def compare_ticks(file: EpisodeFile, room: RoomRecord, ask: AskReplica, *, nativ
             states=b"".join(stretch.states or ()),
             actions=stretch.packed_actions(),
             native=native,
+            task_file=own.task_file if own else b"",
+            mjb=own.mjb if own else b"",
         )
         for told in ask(RolloutRequest(compare_ticks=request)).differences:
             one = Difference(told.largest, stretch.first_tick + told.transition + 1)

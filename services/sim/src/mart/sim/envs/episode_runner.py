@@ -14,7 +14,7 @@ from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.errors import Conflict, InvalidInput, NotFound
 from mart.protocol.pose import Pose
-from mart.protocol.tasks import SHARED_VIEWPOINT, Observation, Task, arm_kinds_of
+from mart.protocol.tasks import SHARED_VIEWPOINT, Observation, Task, arm_kinds_of, task_called
 from mart.render import Image, Renderer
 from mart.sim.scene.meshes import Detail
 from mart.sim.world import Diverged, World
@@ -79,9 +79,13 @@ class EpisodeRunner:
     """Run one world of a task, one episode after the other, and draw it."""
 
     def __init__(self, task: str, options: EnvOptions) -> None:
-        """Build the world; raises NotFound for an unknown task or viewpoint, InvalidInput for what it cannot have."""
-        kinds = arm_kinds_of(task, options.arms, options.arm_kinds)
-        self._world = World.build(task, options.control_hz, options.arms, options.detail, kinds)
+        """Build the world of a task, by its name or its task file.
+
+        Raises NotFound for an unknown task or viewpoint, InvalidInput for what it cannot have.
+        """
+        name = task_called(task)
+        kinds = arm_kinds_of(name, options.arms, options.arm_kinds)
+        self._world = World.build(name, options.control_hz, options.arms, options.detail, kinds)
         self._options = options
         self._horizon_ticks = self.task.horizon_at(options.control_hz)
         self._ticks: int | None = None  # None: the episode is over, or none has begun

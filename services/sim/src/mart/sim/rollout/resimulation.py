@@ -16,7 +16,7 @@ from mart.protocol.batch_state import ACTION_SIZE, Array
 from mart.protocol.errors import Conflict, InvalidInput
 from mart.protocol.messages import RolloutReply, RolloutRequest, StateDifference
 from mart.protocol.state_digest import state_digest
-from mart.sim.rollout.compiled_worlds import CompiledWorlds, WorldSpec
+from mart.sim.rollout.compiled_worlds import CompiledWorlds, RecordedWorld, WorldSpec
 from mart.sim.world import World
 from mart.sim.world.numerics import own_numerics
 
@@ -86,8 +86,13 @@ class Resimulator:
 
     def _world(self, request: RolloutRequest.Resimulate | RolloutRequest.CompareTicks) -> World:
         kinds = tuple(request.arm_kinds)
-        world = self._worlds.get(WorldSpec(request.task, request.control_hz, request.arms or None, kinds))
-        if request.model_sha256 != world.model_sha256:
+        own = (
+            RecordedWorld(request.task_file, request.mjb, request.model_sha256) if request.task_file else None
+        )
+        world = self._worlds.get(
+            WorldSpec(request.task, request.control_hz, request.arms or None, kinds, own)
+        )
+        if own is None and request.model_sha256 != world.model_sha256:
             raise Conflict(
                 f"A recording of model {request.model_sha256[:12]} was given, but this replica compiles "
                 f"{request.task} to {world.model_sha256[:12]}; use the versions that recorded it."

@@ -40,6 +40,7 @@ from mart.sim.room.unpaced_room import SimulatedTime, UnpacedRoom
 from mart.sim.room.work_queue import WorkQueue
 from mart.sim.settings import SimSettings
 from mart.sim.world import World
+from mart.sim.world.beginnings import require_sound_beginnings
 from mart.sim.world.divergence import DivergenceArchive
 from mart.sim.world.driven_world import DrivenWorld
 from mart.sim.world.reach import require_reach
@@ -66,6 +67,7 @@ def serve_room(settings: SimSettings) -> None:
         settings.task, settings.control_hz or DEFAULT_CONTROL_HZ, settings.arms, kinds=_arm_kinds(settings)
     )
     require_reach(world)
+    require_sound_beginnings(world)
     if settings.drivers:
         serve_driven(settings, world)
     elif settings.lockstep:

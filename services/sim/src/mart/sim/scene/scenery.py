@@ -62,34 +62,21 @@ def add_room(spec: mujoco.MjSpec, task: Task) -> None:
     add_shadow_material(spec)
     _add_light(spec)
     world, looks = spec.worldbody, {"contype": 0, "conaffinity": 0}
-    half_x, half_y = TABLE_HALF_M
-    # Front to back: what is drawn first spares what it hides, which software rendering feels.
-    world.add_geom(type=_PLANE, size=(half_x, half_y, 0.1), pos=(0, 0, 0.0003), material="table", **looks)
-    world.add_geom(
-        name="table",
-        type=_BOX,
-        size=(half_x, half_y, _TABLE_THICKNESS_M / 2),
-        pos=(0, 0, -_TABLE_THICKNESS_M / 2),
-        material="edge",
-    )
-    for x in (-1, 1):
-        for y in (-1, 1):
-            leg = (x * (half_x - 0.06), y * (half_y - 0.06), (FLOOR_Z_M - _TABLE_THICKNESS_M) / 2)
-            size = (0.022, (-FLOOR_Z_M - _TABLE_THICKNESS_M) / 2, 0)
-            world.add_geom(type=_CYLINDER, size=size, pos=leg, material="metal", **looks)
+    if task.file is None or task.file.scene.furniture:
+        _add_table(world)
     for arm in task.arms:
-        x, y, _ = arm.pose_base_in_world.position
+        x, y, z = arm.pose_base_in_world.position
         world.add_geom(
             type=_CYLINDER,
-            size=(0.10, -FLOOR_Z_M / 2 - 0.012, 0),
-            pos=(x, y, FLOOR_Z_M / 2 - 0.012),
+            size=(0.10, -FLOOR_Z_M / 2 - 0.012 + z / 2, 0),
+            pos=(x, y, FLOOR_Z_M / 2 - 0.012 + z / 2),
             material="metal",
             **looks,
         )
         world.add_geom(
             type=_CYLINDER,
             size=(0.125, 0.012, 0),
-            pos=(x, y, -0.012),
+            pos=(x, y, z - 0.012),
             material="paint",
             rgba=rgba(arm.color),
             **looks,
@@ -105,6 +92,25 @@ def add_room(spec: mujoco.MjSpec, task: Task) -> None:
         material="floor",
         **looks,
     )
+
+
+def _add_table(world: mujoco.MjsBody) -> None:
+    looks = {"contype": 0, "conaffinity": 0}
+    half_x, half_y = TABLE_HALF_M
+    # Front to back: what is drawn first spares what it hides, which software rendering feels.
+    world.add_geom(type=_PLANE, size=(half_x, half_y, 0.1), pos=(0, 0, 0.0003), material="table", **looks)
+    world.add_geom(
+        name="table",
+        type=_BOX,
+        size=(half_x, half_y, _TABLE_THICKNESS_M / 2),
+        pos=(0, 0, -_TABLE_THICKNESS_M / 2),
+        material="edge",
+    )
+    for x in (-1, 1):
+        for y in (-1, 1):
+            leg = (x * (half_x - 0.06), y * (half_y - 0.06), (FLOOR_Z_M - _TABLE_THICKNESS_M) / 2)
+            size = (0.022, (-FLOOR_Z_M - _TABLE_THICKNESS_M) / 2, 0)
+            world.add_geom(type=_CYLINDER, size=size, pos=leg, material="metal", **looks)
 
 
 def _add_light(spec: mujoco.MjSpec) -> None:

@@ -20,4 +20,5 @@ def model_message(world: World) -> Model:
         arm_kinds=world.task.arm_kinds,
         mujoco_version=mujoco.__version__,
         numerics=own_numerics(),
+        task_file=b"" if world.task.file is None else world.task.file.text.encode(),
     )

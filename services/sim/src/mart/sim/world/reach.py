@@ -67,6 +67,11 @@ def require_reach(world: World) -> None:
         )
 
 
+def missed_by_m(world: World, arm: Arm, position_in_world: Array) -> float:
+    """Return how many metres an arm's tool, pointing straight down, stays away from a thing that it should grip."""
+    return _away_m(world, arm, position_in_world, _NEAR_M)
+
+
 def _of_interest(world: World, pandas: Task, arm: Arm) -> Iterator[tuple[str, Array, float]]:
     """Yield what a Panda in this arm's place would reach: where it is, in the world, and how near is near enough."""
     base_from_world = pandas.arm(arm.name).pose_base_in_world.inverse()
@@ -86,7 +91,7 @@ def _of_interest(world: World, pandas: Task, arm: Arm) -> Iterator[tuple[str, Ar
 
 
 def _away_m(world: World, arm: Arm, position_in_world: Array, near_m: float) -> float:
-    """Return how far the tool, pointing straight down, stays away from a place that a Panda's tool gets to."""
+    """Return how far the tool, pointing straight down, stays away from a place."""
     workspace = arm.kind.workspace
     place = Pose(
         arm.pose_base_in_world.inverse().transform_points(position_in_world), Pose.identity().quaternion_wxyz

@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict
 
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import Corrupt, InvalidInput
-from mart.protocol.tasks import Task, get_task
+from mart.protocol.tasks import Task
 from mart.trainer.data.cache import read_cached, sha256_of
 from mart.trainer.data.data_spec import DataSetName, Selection
 from mart.trainer.data.episode import EpisodeArrays
@@ -160,7 +160,7 @@ def join(digest: DataDigest, layout: ObservationLayout, episodes: Iterable[Episo
 def _facts(first: LabelledEpisode) -> tuple[Task, float]:
     if first.task is None or first.control_hz is None:
         raise InvalidInput(f"{first.file_path} does not say its task and control rate; leave it out.")
-    return get_task(first.task, len(first.arms), first.arm_kinds), first.control_hz
+    return first.recorded_task(), first.control_hz
 
 
 def _used(one: LabelledEpisode, sha256: str, episode: EpisodeArrays) -> UsedEpisode:

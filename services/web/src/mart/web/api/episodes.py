@@ -156,7 +156,7 @@ def _episode_json(episode: RecordedEpisode) -> Json:
 def _title(task: str) -> str:
     try:
         return get_task(task).title
-    except NotFound:  # recorded by a newer sim than this service
+    except MartError:  # recorded by a newer sim than this service, or a task file that is not here
         return task.replace("_", " ") or "Unknown task"
 
 

@@ -20,7 +20,7 @@ from mart.protocol.messages import (
     RoomsRequest,
     operator_from_word,
 )
-from mart.protocol.tasks import MAX_ARMS, arm_counts, get_task, task_names
+from mart.protocol.tasks import MAX_ARMS, arm_counts, arm_kinds_of, get_task, task_names
 from mart.protocol.vocabulary import OperatorKind
 from mart.web.api.dependencies import App, JoinedUser, WatchingUser, WritingUser
 from mart.web.api.texts import Name, Word
@@ -72,7 +72,7 @@ async def rooms(app: App, user: WatchingUser) -> Json:
 async def tasks(app: App, _user: JoinedUser) -> Json:
     """Send what a new room may be for, and whether anything here opens rooms."""
     return {
-        "tasks": [_task_json(name) for name in task_names()],
+        "tasks": list(_tasks_json()),
         "arm_kinds": list(_arm_kinds_json()),
         "end_effectors": list(_end_effectors_json()),
         "opens_rooms": app.platform.is_running,
@@ -194,6 +194,15 @@ def _end_effectors_json() -> Iterator[Json]:
         yield {"name": name, "title": held.title, "about": held.about}
 
 
+def _tasks_json() -> Iterator[Json]:
+    """Yield the tasks that can be read: people's own may have mistakes in their files."""
+    for name in task_names():
+        try:
+            yield _task_json(name)
+        except MartError as error:
+            _log.warning("New rooms are not offered %s: %s", name, error)
+
+
 def _task_json(name: str) -> Json:
     task = get_task(name)
     return {
@@ -202,4 +211,5 @@ def _task_json(name: str) -> Json:
         "instruction": task.instruction,
         "arms": len(task.arms),
         "arm_counts": list(arm_counts(name)),
+        "arm_kinds": list(arm_kinds_of(name, None, {})),
     }

@@ -31,7 +31,7 @@ export function kindSelects(kinds, endEffectors, count) {
   const selects = ARMS.map((arm) =>
     element(
       "select",
-      { id: `new-kind-${arm}`, dataset: { arm } },
+      { id: `new-kind-${arm}` },
       ...kinds.map(({ name, title }) => element("option", { value: name }, title)),
     ),
   );
@@ -51,22 +51,43 @@ export function kindSelects(kinds, endEffectors, count) {
     show();
   }
 
-  /** The kinds by arm, of those that are no plain Pandas. @returns {Record<string, string>} */
+  /** What the task's arms are unless others are chosen; none: Pandas. @type {string[]} */
+  let usual = [];
+
+  /** Takes a task's own kinds. @param {string[]} named one for each arm; none: all are Pandas */
+  function suggest(named) {
+    usual = named;
+    for (const [number, select] of selects.entries()) {
+      const [kind = PANDA, end = ""] = (usual[number] ?? PANDA).split("+");
+      select.value = kind;
+      const ending = ends[number];
+      if (ending) ending.value = end ? `+${end}` : USUAL;
+    }
+    show();
+  }
+
+  /** An arm's kind, with what it holds. @param {number} number */
+  const kindOf = (number) => `${selects[number]?.value ?? PANDA}${ends[number]?.value ?? USUAL}`;
+
+  /** The kinds by arm, of those that are not as usual. @returns {Record<string, string>} */
   const chosen = () =>
     Object.fromEntries(
-      selects
-        .map(({ dataset, value }, number) => [dataset.arm, `${value}${ends[number]?.value ?? USUAL}`])
-        .filter(([, kind]) => kind !== PANDA),
+      ARMS.slice(0, Number(count.value))
+        .map((arm, number) => ({ arm, kind: kindOf(number), asUsual: usual[number] ?? PANDA }))
+        .filter(({ kind, asUsual }) => kind !== asUsual)
+        .map(({ arm, kind }) => [arm, kind]),
     );
 
+  const areAllPandas = () => ARMS.every((_arm, number) => kindOf(number) === PANDA);
+
   function show() {
-    const others = Object.keys(chosen()).length;
+    const others = ARMS.filter((_arm, number) => kindOf(number) !== PANDA).length;
     setText(summary, others ? `Kinds of arms: ${others} chosen` : "Kinds of arms: all Pandas");
   }
 
   node.addEventListener("change", show);
   count.addEventListener("change", offer);
-  return { node, chosen };
+  return { node, chosen, suggest, areAllPandas };
 }
 
 /** What arms a room has, where they are not all Pandas. @param {Api.Room} room */

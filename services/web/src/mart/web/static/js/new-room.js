@@ -3,7 +3,7 @@
 import { messageOf, openRoom } from "./api.js";
 import { kindSelects } from "./arm-kinds.js";
 import { COURSE } from "./course.js";
-import { byId, element, setText } from "./dom.js";
+import { byId, element, setShown, setText } from "./dom.js";
 import { plural } from "./formatting.js";
 import { CONTROL_RATES_HZ, MAX_NAME_LENGTH, MAX_PLANNED_EPISODES } from "./facts.js";
 import { finalName, nameFrom } from "./names.js";
@@ -30,22 +30,22 @@ const courseLast = (tasks) =>
 export function newRoom(options) {
   const fields = inputs(options);
   const { task, arms, name, rate, episodes, rules, kinds } = fields;
-  const picture = element("img", { alt: "", width: 384, height: 288 });
+  const picture = sceneOf(kinds);
   const about = element("p", { class: "soft" });
   const button = element("button", { type: "submit", class: "primary" }, "Open room");
   const refusal = element("p", { class: "message", role: "alert" });
-  const form = element("form", { class: "opening" }, picture, labelled(fields, about, refusal, button));
+  const form = element("form", { class: "opening" }, picture.node, labelled(fields, about, refusal, button));
 
   function show() {
     const chosen = options.tasks.find((one) => one.name === task.value);
     if (!chosen) return;
-    picture.src = taskPicture(chosen.name);
     setText(about, chosen.instruction);
-    const counts = chosen.arm_counts.map((count) => element("option", { value: count }, plural(count, "arm")));
-    arms.replaceChildren(...counts);
+    kinds.suggest(chosen.arm_kinds);
+    arms.replaceChildren(...chosen.arm_counts.map((many) => element("option", { value: many }, plural(many, "arm"))));
     arms.value = String(chosen.arms);
-    arms.disabled = counts.length < 2;
+    arms.disabled = chosen.arm_counts.length < 2;
     arms.dispatchEvent(new Event("change"));
+    picture.update(chosen.name);
     rules.value = isCourse(chosen) ? "practice" : "everybody";
     showRules();
   }
@@ -86,6 +86,30 @@ export function newRoom(options) {
   form.addEventListener("submit", open);
   show();
   byId("new-room").append(form);
+}
+
+/**
+ * The picture of a task's scene. It shows Pandas, so it is not there for other arms, nor for a task without one.
+ * @param {ReturnType<typeof kindSelects>} kinds
+ */
+function sceneOf(kinds) {
+  const node = element("img", { alt: "", width: 384, height: 288 });
+  let isThere = true;
+  const show = () => setShown(node, isThere && kinds.areAllPandas());
+  node.addEventListener("error", () => {
+    isThere = false; // a task of somebody's own
+    show();
+  });
+
+  /** @param {string} task */
+  function update(task) {
+    isThere = true;
+    node.src = taskPicture(task);
+    show();
+  }
+
+  kinds.node.addEventListener("change", show);
+  return { node, update };
 }
 
 /**

@@ -72,21 +72,24 @@ export function roomCard(attempt, onClosed) {
 }
 
 /**
- * What somebody sees in a room now; where nobody looks, the task's scene.
+ * What somebody sees in a room now; where nobody looks, the task's scene, if the room has its arms.
  * @returns {Part<[Api.Room]>}
  */
 function scenePicture() {
   const node = element("img", { class: "scene", alt: "", width: 384, height: 288 });
-  let shown = { room: "", task: "", still: 0 };
+  let shown = { room: "", task: "", still: 0, pandas: true };
   node.addEventListener("error", () => {
-    if (shown.still) node.src = taskPicture(shown.task); // nobody looks any more
-    else node.remove(); // a newer sim's task
+    if (shown.still && shown.pandas) node.src = taskPicture(shown.task); // nobody looks any more
+    else setShown(node, false); // a task of somebody's own, or a newer sim's
   });
 
   /** @param {Api.Room} room */
-  function update({ room, task, title, still }) {
+  function update({ room, task, title, still, arm_kinds: kinds }) {
     if (shown.room === room && shown.task === task && shown.still === still) return;
-    shown = { room, task, still };
+    const pandas = kinds.length === 0; // as on the pictures of tasks
+    shown = { room, task, still, pandas };
+    setShown(node, Boolean(still) || pandas);
+    if (!still && !pandas) return;
     node.src = still ? `/api/rooms/${room}/still?number=${still}` : taskPicture(task);
     node.alt = still ? `${title} in ${room}, now` : "";
   }
