@@ -11,6 +11,7 @@ from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import (
     ArmMeasured,
+    CameraReport,
     DriverHello,
     DriverReply,
     EpisodeRequest,
@@ -75,6 +76,10 @@ class RoomServer:
                 bus.subscribe(keys.arm_measured(name, arm).key, self._on_measured)
                 for arm in room.drivers.arms
             ),
+            *(
+                bus.subscribe(keys.camera_report(name, camera).key, self._on_camera)
+                for camera in room.cameras.names
+            ),
         ]
 
     def show(self, world: World) -> None:
@@ -112,6 +117,21 @@ class RoomServer:
             self._garbled["measured arm"] += 1
         else:
             self._submit(lambda: self._room.drivers.hear(measured, now_s))
+
+    def _on_camera(self, sample: Sample) -> None:
+        now_s = self._now_s()
+        try:
+            report = decode_received(CameraReport, sample.payload, _MAX_REPORT_BYTES)
+            require_room(report, sample.key)
+        except InvalidInput:
+            self._garbled["camera report"] += 1
+        else:
+            self._leave(lambda: self._hear_camera(report, now_s))
+
+    def _hear_camera(self, report: CameraReport, now_s: float) -> None:
+        self._room.cameras.hear(report, now_s)
+        for event in self._room.cameras.news(now_s):
+            self._room.tell(event)
 
     def _on_recording_report(self, sample: Sample) -> None:
         try:
