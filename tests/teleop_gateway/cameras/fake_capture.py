@@ -1,0 +1,50 @@
+"""A camera of memory: shows what a test puts before it, hangs and fails when told to."""
+
+from __future__ import annotations
+
+import queue
+import threading
+
+import numpy as np
+
+from mart.render import Image
+from mart.teleop_gateway.cameras.capture import CameraFailure
+
+
+def plain(bgr: tuple[int, int, int], rows: int = 90, columns: int = 160, *, noise: int = 0) -> Image:
+    """A picture of one colour; `noise` seeds what a sensor adds."""
+    picture = np.full((rows, columns, 3), bgr, np.uint8)
+    if noise:
+        picture ^= np.random.default_rng(noise).integers(0, 4, picture.shape, dtype=np.uint8)
+    return picture
+
+
+class FakeCapture:
+    """Gives the pictures and failures of `script`, and waits for more."""
+
+    def __init__(self, *script: Image | str) -> None:
+        self.script: queue.Queue[Image | str] = queue.Queue()
+        for one in script:
+            self.script.put(one)
+        self.refusals: queue.Queue[str] = queue.Queue()
+        self.opened, self.closed = 0, 0
+        self.ended = threading.Event()
+
+    def open(self) -> None:
+        self.opened += 1
+        if not self.refusals.empty():
+            raise CameraFailure(self.refusals.get())
+
+    def read(self) -> Image:
+        while not self.ended.is_set():
+            try:
+                given = self.script.get(timeout=0.02)
+            except queue.Empty:
+                continue
+            if isinstance(given, str):
+                raise CameraFailure(given)
+            return given
+        raise CameraFailure("The test is over")
+
+    def close(self) -> None:
+        self.closed += 1
