@@ -177,9 +177,9 @@ class CatalogueHandlers:
 
     def _draw(self, path: str) -> bytes:
         file = self._file(path)
-        for arm in file.episode.arms:
+        for camera in _recorded_cameras(file):
             try:
-                return pictures.last_picture(pictures.frames_of(file, arm))
+                return pictures.last_picture(pictures.frames_of(file, camera))
             except NotFound:
                 continue
         return self._drawings.still(file)
@@ -194,12 +194,12 @@ def _each_tick_once(file: EpisodeFile) -> Iterator[State]:
 
 
 def _views(file: EpisodeFile) -> list[RecordedView]:
-    """Return when the video of each arm begins that is in the file, since the first state was there."""
+    """Return when the video of each camera begins that is in the file, since the first state was there."""
     first = next(file.states(), None)
     if first is None:
         return []
     start_ns = first.stamps.stepped_ns
-    cameras = {video_topic(arm): arm for arm in file.episode.arms}
+    cameras = {video_topic(camera): camera for camera in _recorded_cameras(file)}
     first_ns: dict[str, int] = {}
     for message in file.messages(*cameras):
         first_ns.setdefault(cameras[message.topic], message.sent_ns)
@@ -208,6 +208,11 @@ def _views(file: EpisodeFile) -> list[RecordedView]:
         for camera in cameras.values()
         if camera in first_ns
     ]
+
+
+def _recorded_cameras(file: EpisodeFile) -> tuple[str, ...]:
+    """Return whose pictures may be in the file: each arm's, drawn or captured, and those of other real cameras."""
+    return tuple(dict.fromkeys([*file.episode.arms, *(file.episode.captured_cameras or ())]))
 
 
 def _viewpoints(file: EpisodeFile) -> tuple[str, ...]:

@@ -1,0 +1,22 @@
+// Which real cameras a seat can show. They take the place of what is drawn.
+
+/**
+ * The cameras of a seat, its own first, then those of every seat: as the gateway has them.
+ * @param {Api.Room | null} room
+ * @param {string} arm
+ */
+export function camerasOf(room, arm) {
+  const cameras = room?.cameras ?? [];
+  const own = cameras.filter((one) => one.arm === arm).map(({ camera }) => camera);
+  return [...own.sort(), ...cameras.filter((one) => !one.arm).map(({ camera }) => camera)];
+}
+
+/**
+ * The camera after the one that is shown.
+ * @param {string[]} cameras
+ * @param {string} shown
+ */
+export const nextCamera = (cameras, shown) => cameras[(cameras.indexOf(shown) + 1) % cameras.length] ?? "";
+
+/** What people call the camera with this id: "arm0-wrist" → "arm0.wrist". @param {string} camera */
+export const cameraName = (camera) => camera.replace("-", ".");
