@@ -84,8 +84,15 @@ export class SeatPicture {
   /** Takes what the gateway tells: of a video also where the tools are in it. @param {StatusChannel.Tick} status */
   onStatus(status) {
     this.#camera = status.camera ?? "";
+    if (this.#camera) this.#leaveToCamera();
     this.drawn.onTick(status.tick);
     if (!this.drawn.isShown) this.#labels.place(toldPlaces(status));
+  }
+
+  /** What would be drawn is not what is there. */
+  #leaveToCamera() {
+    this.drawn.rest();
+    this.drawn.end("This seat shows a real camera.");
   }
 
   /** Whether nothing newer is displayed while the world goes on. @param {StatusChannel.Tick | null} status */
