@@ -152,7 +152,7 @@ def test_a_seat_shows_its_camera_another_where_asked_and_says_when_it_goes_dark(
                 assert len(blue) > 5
                 blue_stream.on.clear()
                 told = await browser.wait_told(lambda one: one.get("no_picture", "") != "")
-                assert told["no_picture"].startswith("Camera arm0.wrist:")
+                assert told["no_picture"].startswith("The camera wrist of arm0:")
                 async with asyncio.timeout(40):
                     while sum(middle(await browser.next_frame())) > 0.5 * sum(BLUE):
                         pass  # dark, with words in it

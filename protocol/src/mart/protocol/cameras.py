@@ -31,6 +31,14 @@ def camera_title(camera: str) -> str:
     return camera.replace("-", ".")
 
 
+def camera_in_words(camera: str) -> str:
+    """Return the camera with this id as a sentence names it: "the camera wrist of arm0"."""
+    head, _, part = camera.partition("-")
+    if not arm_of_camera(camera):
+        return f"the camera {head}"
+    return f"the camera {part} of {head}" if part else f"the camera of {head}"
+
+
 def arm_of_camera(camera: str) -> str:
     """Return the arm whose seat the camera with this id is for; empty where it is for every seat."""
     head = camera.partition("-")[0]

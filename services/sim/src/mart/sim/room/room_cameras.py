@@ -8,13 +8,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from mart.protocol.cameras import camera_title
+from mart.protocol.cameras import camera_in_words
 from mart.protocol.messages import CameraReport, Event, RoomCamera
 from mart.sim.room import room_messages
 
 SILENT_AFTER_S = 1.5  # a camera's process says how it does four times a second
 _LONGEST_S = 1e9
-_ABSENT = "No `mart camera` captures it."
+_AT_ONCE_S = 1e-3
+_ABSENT = "Nothing captures it."
 
 
 class RoomCameras:
@@ -31,15 +32,21 @@ class RoomCameras:
         if report.camera in self._told:
             self._heard[report.camera] = report, now_s
 
+    def gone(self, camera: str, now_s: float) -> None:
+        """Take that the process of a camera has ended: what it said last is old."""
+        if camera in self._told:
+            self._heard[camera] = CameraReport(), now_s - SILENT_AFTER_S - _AT_ONCE_S
+
     def news(self, now_s: float) -> list[Event]:
         """Return what to tell people: which cameras have gone dark or are back since this was asked last."""
         told: list[Event] = []
         for one in self.messages(now_s):
-            title = camera_title(one.camera)
+            name = camera_in_words(one.camera)
+            sentence = f"{name[0].upper()}{name[1:]}"
             if one.dark and not self._told[one.camera]:
-                told.append(room_messages.notice("warning", f"Camera {title} gives no picture. {one.dark}"))
+                told.append(room_messages.notice("warning", f"{sentence} gives no picture. {one.dark}"))
             elif self._told[one.camera] and not one.dark:
-                told.append(room_messages.notice("info", f"Camera {title} gives pictures again."))
+                told.append(room_messages.notice("info", f"{sentence} gives pictures again."))
             self._told[one.camera] = one.dark
         return told
 

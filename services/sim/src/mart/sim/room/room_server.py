@@ -68,6 +68,7 @@ class RoomServer:
             SaveFollower(bus, name, self._on_saved, garbled, room.unsaved),
             bus.subscribe(keys.recording(name).key, self._on_recording_report),
             bus.watch(keys.alive_of(ServiceKind.RECORDER), self._on_recorder_alive),
+            bus.watch(keys.alive_of(ServiceKind.CAMERA), self._on_camera_alive),
             bus.serve(keys.seat(name), self._on_seat_request),
             bus.serve(keys.episode(name), self._on_episode_request),
             bus.serve(keys.model(name), self._on_model_request),
@@ -131,6 +132,16 @@ class RoomServer:
     def _hear_camera(self, report: CameraReport, now_s: float) -> None:
         self._room.cameras.hear(report, now_s)
         for event in self._room.cameras.news(now_s):
+            self._room.tell(event)
+
+    def _on_camera_alive(self, key: str, alive: bool) -> None:
+        camera = keys.last_of(key).removeprefix(f"{self._name}-")
+        if not alive:
+            self._leave(lambda: self._lose_camera(camera))
+
+    def _lose_camera(self, camera: str) -> None:
+        self._room.cameras.gone(camera, self._now_s())
+        for event in self._room.cameras.news(self._now_s()):
             self._room.tell(event)
 
     def _on_recording_report(self, sample: Sample) -> None:

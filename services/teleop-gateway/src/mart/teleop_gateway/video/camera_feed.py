@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from mart.protocol import clock, keys
-from mart.protocol.cameras import camera_title, cameras_of_seat
+from mart.protocol.cameras import camera_in_words, camera_title, cameras_of_seat
 from mart.protocol.messages import CameraFrame, RoomStatus, State
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import Closable
@@ -87,7 +87,8 @@ class CameraFeed:
         if not self.shown or now_s - self._captured_s <= OLD_AFTER_S:
             return ""
         why = self._dark.get(self.shown) or "No picture of it comes here."
-        return f"Camera {camera_title(self.shown)}: {why[0].lower()}{why[1:]}"
+        name = camera_in_words(self.shown)
+        return f"{name[0].upper()}{name[1:]}: {why[0].lower()}{why[1:]}"
 
     async def run(self) -> None:
         """Say on an old picture that it is old, until cancelled."""

@@ -100,7 +100,7 @@ def cameras(seen: Iterable[Json]) -> Iterator[HealthFinding]:
     """Yield what is known of each real camera; `seen`: as for `rooms`."""
     for room in seen:
         for one in room["cameras"]:
-            mend = "Look at its cable, its light and its lens; its room goes on, and it is tried again by itself."
+            mend = "Look at its cable, its light and its lens, and whether `mart camera` runs; it comes back by itself."
             yield HealthFinding(
                 "rooms",
                 f"camera {camera_title(one['camera'])} in {room['room']}",

@@ -1,5 +1,7 @@
 // Which real cameras a seat can show. They take the place of what is drawn.
 
+import { isArm } from "../arms.js";
+
 /**
  * The cameras of a seat, its own first, then those of every seat: as the gateway has them.
  * @param {Api.Room | null} room
@@ -18,5 +20,9 @@ export function camerasOf(room, arm) {
  */
 export const nextCamera = (cameras, shown) => cameras[(cameras.indexOf(shown) + 1) % cameras.length] ?? "";
 
-/** What people call the camera with this id: "arm0-wrist" → "arm0.wrist". @param {string} camera */
-export const cameraName = (camera) => camera.replace("-", ".");
+/** What people call the camera with this id at its seat: "arm0-wrist" → "Camera wrist". @param {string} camera */
+export function cameraText(camera) {
+  const [head, part] = camera.split("-");
+  if (part) return `Camera ${part}`;
+  return isArm(camera) ? "Camera of the arm" : `Camera ${head}`;
+}

@@ -9,7 +9,7 @@ import { pictureChoice } from "../scene/picture-choice.js";
 import { toldPlaces, ToolLabels } from "../scene/tool-labels.js";
 import { DisplayedTicks } from "./displayed-ticks.js";
 import { showPicture } from "./picture.js";
-import { cameraName, camerasOf, nextCamera } from "./seat-cameras.js";
+import { camerasOf, cameraText, nextCamera } from "./seat-cameras.js";
 import { SecondView } from "./second-view.js";
 
 /** @import { State } from "../link/seat-link.js" */
@@ -136,8 +136,8 @@ export class SeatPicture {
   tell(room, wordsOf) {
     const { seats, episode } = room;
     this.#second.update(room, this.drawn.isShown);
-    const isFilmed = camerasOf(room, this.#own.arm).length > 1;
-    setText(byId("camera"), isFilmed ? `Camera ${cameraName(this.#camera)}: next` : "Second view");
+    const cameras = camerasOf(room, this.#own.arm);
+    setText(byId("camera"), cameras.length > 1 ? cameraText(nextCamera(cameras, this.#camera)) : "Second view");
     const driven = seats.filter(({ operator }) => operator !== "hold");
     const arms = driven.map((seat) => ({ arm: seat.arm, name: holderName(seat), words: wordsOf(seat.arm) }));
     const isNamed = episode.phase === "practice" || episode.phase === "countdown";
