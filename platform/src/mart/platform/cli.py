@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import sys
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -95,7 +94,6 @@ def run(
     list(map(get_task(task).arm, [*drivers, *filter(None, map(arm_of_camera, cameras))]))  # or NotFound
     require_practice_alone(practice=practice, course_required=course_required, episodes=episodes or 0)
     settings = Settings()
-    given_hz = control_hz if isinstance(control_hz, float) else None
     options = PlatformOptions(
         settings.data_dir,
         settings.router,
@@ -104,15 +102,14 @@ def run(
         public_host,
         room,
         task,
-        given_hz,
+        control_hz if isinstance(control_hz, float) else None,
         episodes=episodes,
         practice=practice,
         course_required=course_required,
         arm_kinds=arm_kinds,
         drivers=drivers,
+        cameras=keep_sources(settings.data_dir / "run", room, cameras),
     )
-    if cameras:
-        options = replace(options, cameras=keep_sources(options.run_dir, room, cameras))
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)
     if turn:

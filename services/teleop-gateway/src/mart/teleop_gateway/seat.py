@@ -59,8 +59,7 @@ class Seat:
         `secret` is what seat tokens are signed with.
         """
         self._bus, self._address = bus, address
-        self._latency = MotionToPhoton(address.arm)
-        self._events = SeatEvents(bus, address)
+        self._latency, self._events = MotionToPhoton(address.arm), SeatEvents(bus, address)
         self._ice = IceWatch(settings)
         self._peers = Peers(bus, self._ice.usable)
         self._input = SeatInput(

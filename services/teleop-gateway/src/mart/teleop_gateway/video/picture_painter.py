@@ -121,7 +121,7 @@ class CameraPainter:
         tick_code.write(unpainted.tick, picture_rgb[self._quality.view_height_px :])
 
     def close(self) -> None:
-        """Hold nothing."""
+        """Give back nothing: it holds nothing."""
 
 
 def _write_notice(notice: str, view: Image) -> None:
