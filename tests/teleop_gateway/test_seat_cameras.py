@@ -26,7 +26,7 @@ from mart.teleop_gateway.cameras.camera_source import load_source
 from mart.teleop_gateway.cameras.capture import OpenCvCapture
 from tests.support.message_collector import MessageCollector
 from tests.teleop_gateway.browser import connected
-from tests.teleop_gateway.cameras.fake_capture import plain
+from tests.teleop_gateway.cameras.fake_capture import plain, write_video
 from tests.teleop_gateway.room import OnSeat, SeatUnderTest
 
 GREEN, BLUE = (60, 180, 30), (30, 60, 190)  # RGB
@@ -40,14 +40,9 @@ def noisy(rgb: tuple[int, int, int], seed: int) -> Image:
 
 
 @pytest.fixture
-def green_file(tmp_path: Path) -> Path:
+def green_file(tmp_path: Path) -> str:
     """A second of video, which plays again and again."""
-    path = tmp_path / "table.avi"
-    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 25.0, (320, 240))
-    for seed in range(1, 26):
-        writer.write(noisy(GREEN, seed))
-    writer.release()
-    return path
+    return write_video(tmp_path / "table.avi", GREEN)
 
 
 class BlueStream:
@@ -119,13 +114,13 @@ def middle(frame: VideoFrame) -> list[int]:
 
 @pytest.mark.timeout(120)
 def test_a_seat_shows_its_camera_another_where_asked_and_says_when_it_goes_dark(
-    on_seat: OnSeat, router: str, green_file: Path, blue_stream: BlueStream, capfd: pytest.CaptureFixture[str]
+    on_seat: OnSeat, router: str, green_file: str, blue_stream: BlueStream, capfd: pytest.CaptureFixture[str]
 ) -> None:
     async def body(seat: SeatUnderTest) -> None:
         room = seat.room.name
         seat.room.film("arm0", "arm0-wrist")
         with (
-            captured(router, room, "arm0", str(green_file)),
+            captured(router, room, "arm0", green_file),
             captured(router, room, "arm0-wrist", blue_stream.url),
             MessageCollector(seat.bus.bus, keys.video(room, "arm0").key, CompressedVideo) as green,
             MessageCollector(seat.bus.bus, keys.video(room, "arm0-wrist").key, CompressedVideo) as blue,

@@ -6,14 +6,13 @@ import contextlib
 from collections.abc import Iterator
 from pathlib import Path
 
-import cv2
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mart.platform.run.running import Platform
 from tests.browser.pages.visits import has_joined, origin, visit
 from tests.support.processes import running_service
-from tests.teleop_gateway.cameras.fake_capture import plain
+from tests.teleop_gateway.cameras.fake_capture import write_video
 
 ROOM = "filmed"
 GREEN, BLUE = (60, 180, 30), (30, 60, 190)  # RGB
@@ -26,26 +25,19 @@ _MIDDLE = """() => {
 }"""
 
 
-def film(path: Path, rgb: tuple[int, int, int]) -> None:
-    """A second of video of one colour, with a sensor's noise."""
-    red, green, blue = rgb
-    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 25.0, (320, 240))
-    for seed in range(1, 26):
-        writer.write(plain((blue, green, red), 240, 320, noise=seed))
-    writer.release()
-
-
 @contextlib.contextmanager
 def filmed_room(platform: Platform, folder: Path) -> Iterator[contextlib.ExitStack]:
     """A room whose arm0 has two cameras; what is returned ends the second one."""
     router, data_dir = platform.options.router, platform.options.data_dir
-    film(folder / "green.avi", GREEN)
-    film(folder / "blue.avi", BLUE)
+    sources = {
+        "arm0": write_video(folder / "green.avi", GREEN),
+        "arm0.wrist": write_video(folder / "blue.avi", BLUE),
+    }
     named = ["--room", ROOM, "--camera", "arm0", "--camera", "arm0.wrist"]
     with contextlib.ExitStack() as stack, contextlib.ExitStack() as wrist:
         stack.enter_context(running_service(["sim", *named, "--practice"], router, data_dir, "sim", ROOM))
-        for cameras, camera, file in ((stack, "arm0", "green"), (wrist, "arm0.wrist", "blue")):
-            command = ["camera", "--room", ROOM, "--camera", f"{camera}={folder / file}.avi"]
+        for cameras, camera in ((stack, "arm0"), (wrist, "arm0.wrist")):
+            command = ["camera", "--room", ROOM, "--camera", f"{camera}={sources[camera]}"]
             id_ = f"{ROOM}-{camera.replace('.', '-')}"
             cameras.enter_context(running_service(command, router, data_dir, "camera", id_))
         yield wrist

@@ -1,10 +1,12 @@
-"""A camera of memory: shows what a test puts before it, hangs and fails when told to."""
+"""Cameras for tests: one of memory, which shows what is put before it and fails when told to, and video files."""
 
 from __future__ import annotations
 
 import queue
 import threading
+from pathlib import Path
 
+import cv2
 import numpy as np
 
 from mart.render import Image
@@ -17,6 +19,16 @@ def plain(bgr: tuple[int, int, int], rows: int = 90, columns: int = 160, *, nois
     if noise:
         picture ^= np.random.default_rng(noise).integers(0, 4, picture.shape, dtype=np.uint8)
     return picture
+
+
+def write_video(path: Path, rgb: tuple[int, int, int]) -> str:
+    """Write a second of video of one colour with a sensor's noise; returns the path, which a camera takes."""
+    red, green, blue = rgb
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 25.0, (320, 240))
+    for seed in range(1, 26):
+        writer.write(plain((blue, green, red), 240, 320, noise=seed))
+    writer.release()
+    return str(path)
 
 
 class FakeCapture:
