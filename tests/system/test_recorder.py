@@ -241,7 +241,7 @@ def test_an_episode_of_two_scripts_is_recorded_and_verified_bit_for_bit(
     episode = EpisodeFile.open(path).episode
     assert episode.captured_cameras == ("table",)
     captured = [*pictures_of(path, "table")]
-    assert len(captured) > 20 * 0.5 * row["ticks"] / 20
+    assert len(captured) > 0.5 * row["ticks"]
     times_ns = [at_ns for at_ns, _ in captured]
     assert times_ns == sorted(set(times_ns))
     assert episode.started_ns < times_ns[-1] < episode.ended_ns + 1_000_000_000

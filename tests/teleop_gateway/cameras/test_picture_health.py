@@ -57,13 +57,12 @@ def test_a_read_that_does_not_return_is_told() -> None:
 
 def test_the_very_same_picture_is_frozen_and_one_with_noise_is_not() -> None:
     still, noisy = opened(), opened()
-    for step in range(1, 70):
-        now_s = 0.1 * step
+    for now_s in (0.1 * step for step in range(1, 70)):
         is_new = still.see(GREEN, now_s)
         assert is_new == (now_s - 0.1 <= FROZEN_AFTER_S)
-        assert noisy.see(plain((30, 180, 60), noise=step), now_s)
-    assert "frozen" in why(still, now_s)
-    assert not why(noisy, now_s)
+        assert noisy.see(plain((30, 180, 60), noise=round(10 * now_s)), now_s)
+    assert "frozen" in why(still, 6.9)
+    assert not why(noisy, 6.9)
 
 
 def test_where_it_is_asked_for_nothing_is_frozen() -> None:
