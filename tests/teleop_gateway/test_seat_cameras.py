@@ -25,7 +25,7 @@ from mart.teleop_gateway.cameras.camera_settings import CameraSettings
 from mart.teleop_gateway.cameras.camera_source import load_source
 from mart.teleop_gateway.cameras.capture import OpenCvCapture
 from tests.support.message_collector import MessageCollector
-from tests.teleop_gateway.browser import connected
+from tests.teleop_gateway.browser import connected, in_background
 from tests.teleop_gateway.cameras.fake_capture import plain, write_video
 from tests.teleop_gateway.room import OnSeat, SeatUnderTest
 
@@ -145,7 +145,11 @@ def test_a_seat_shows_its_camera_another_where_asked_and_says_when_it_goes_dark(
                 # Both are kept, whichever is shown.
                 assert len(green) > 5
                 assert len(blue) > 5
-                blue_stream.on.clear()
+                await browser.drive(1, 0.3)
+                async with in_background(browser.drive(1, clutch=True)):
+                    await browser.wait_told(lambda one: one.get("engaged") is True)
+                    blue_stream.on.clear()
+                    await browser.wait_told(lambda one: one.get("let_go") == "picture")  # nobody drives blind
                 told = await browser.wait_told(lambda one: one.get("no_picture", "") != "")
                 assert told["no_picture"].startswith("The camera wrist of arm0:")
                 async with asyncio.timeout(40):

@@ -13,12 +13,13 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.cameras import camera_title
+from mart.protocol.errors import Conflict
 from mart.protocol.messages import CameraFrame, CameraReport, State
 from mart.protocol.vocabulary import ServiceKind
 from mart.render import Image
 from mart.runtime.bus import Bus
 from mart.runtime.decoding_subscriber import DecodingSubscriber
-from mart.runtime.service import announced, connected
+from mart.runtime.service import Service, announced, connected
 from mart.runtime.watchdog import end_process, start_vital_thread
 from mart.teleop_gateway.cameras.camera_loop import CameraLoop
 from mart.teleop_gateway.cameras.camera_pictures import CameraPictures
@@ -36,14 +37,27 @@ _ENDS_WITHIN_S = 5.0
 
 
 def serve_camera(settings: CameraSettings) -> None:
-    """Capture until the process is asked to stop. Raises InvalidInput for a source that cannot be one."""
+    """Capture until the process is asked to stop.
+
+    Raises InvalidInput for a source that cannot be one, Conflict where another process captures this camera.
+    """
     source = load_source(settings.source.get_secret_value())
     with (
         connected(settings, ServiceKind.CAMERA, settings.id) as service,
-        announced(service),
+        contextlib.ExitStack() as opened,
     ):
+        _require_alone(service)
+        opened.enter_context(announced(service))
         _log.info("%s captures %s", camera_title(settings.camera), source.title)
         run_camera(service.bus, settings, OpenCvCapture(source), service.stop)
+
+
+def _require_alone(service: Service) -> None:
+    """Raise Conflict where another process captures this camera: pictures of both would take turns."""
+    if service.bus.alive(keys.alive(service.kind, service.id)):
+        raise Conflict(
+            f"The camera {service.id} is captured by another process already; stop that one first."
+        )
 
 
 def run_camera(
