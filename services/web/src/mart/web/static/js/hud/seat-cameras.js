@@ -2,6 +2,8 @@
 
 import { isArm } from "../arms.js";
 
+/** @import { DrawnPicture } from "../scene/drawn-picture.js" */
+
 /**
  * The cameras of a seat, its own first, then those of every seat: as the gateway has them.
  * @param {Api.Room | null} room
@@ -19,6 +21,12 @@ export function camerasOf(room, arm) {
  * @param {string} shown
  */
 export const nextCamera = (cameras, shown) => cameras[(cameras.indexOf(shown) + 1) % cameras.length] ?? "";
+
+/** What a page would draw is not what is there. @param {DrawnPicture} drawn */
+export function leaveToCamera(drawn) {
+  drawn.rest();
+  drawn.end("This seat shows a real camera.");
+}
 
 /** What people call the camera with this id at its seat: "arm0-wrist" → "Camera wrist". @param {string} camera */
 export function cameraText(camera) {

@@ -9,7 +9,7 @@ import { pictureChoice } from "../scene/picture-choice.js";
 import { toldPlaces, ToolLabels } from "../scene/tool-labels.js";
 import { DisplayedTicks } from "./displayed-ticks.js";
 import { showPicture } from "./picture.js";
-import { camerasOf, cameraText, nextCamera } from "./seat-cameras.js";
+import { camerasOf, cameraText, leaveToCamera, nextCamera } from "./seat-cameras.js";
 import { SecondView } from "./second-view.js";
 
 /** @import { State } from "../link/seat-link.js" */
@@ -84,15 +84,9 @@ export class SeatPicture {
   /** Takes what the gateway tells: of a video also where the tools are in it. @param {StatusChannel.Tick} status */
   onStatus(status) {
     this.#camera = status.camera ?? "";
-    if (this.#camera) this.#leaveToCamera();
+    if (this.#camera) leaveToCamera(this.drawn);
     this.drawn.onTick(status.tick);
     if (!this.drawn.isShown) this.#labels.place(toldPlaces(status));
-  }
-
-  /** What would be drawn is not what is there. */
-  #leaveToCamera() {
-    this.drawn.rest();
-    this.drawn.end("This seat shows a real camera.");
   }
 
   /** Whether nothing newer is displayed while the world goes on. @param {StatusChannel.Tick | null} status */
