@@ -50,12 +50,19 @@ def test_an_episode_is_listed_and_shown(root: Path) -> None:
 def test_what_real_cameras_captured_is_among_the_views(tmp_path: Path) -> None:
     file, episode, facts = write_part(tmp_path, synthetic.states(30))
     assert episode.started is not None
-    episode.started.captured_cameras.extend(["arm0", "arm0-wrist", "table"])
+    episode.started.captured_cameras.extend(["arm0", "arm0-wrist", "arm1-wrist", "table"])
     video = synthetic.video(6, is_key=True)
     file.add(video_entry("arm0-wrist", video, codec.encode(video), synthetic.wall_ns(4)))
+    astray = synthetic.video(6, is_key=True)
+    astray.timestamp.seconds += 120  # by the clock of its machine
+    file.add(video_entry("arm1-wrist", astray, codec.encode(astray), synthetic.wall_ns(4)))
     finalize(file, episode, facts, tmp_path, by_toy_replica, repaired=False)
     views = {view.camera: view.start_s for view in show(CatalogueHandlers(tmp_path)).views}
-    assert views == {"arm0": 0.0, "arm0-wrist": pytest.approx(0.198)}  # none of the table's came
+    assert views == {
+        "arm0": 0.0,
+        "arm0-wrist": pytest.approx(0.198),
+        "arm1-wrist": pytest.approx(0.2),
+    }  # none of the table's came
 
 
 def test_no_folder_is_no_episodes(tmp_path: Path) -> None:

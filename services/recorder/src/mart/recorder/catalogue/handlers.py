@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 from mart.episodes import datasets, labels
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.labels import Label, LabelKind
-from mart.episodes.reader import EpisodeFile
+from mart.episodes.reader import EpisodeFile, RecordedMessage
 from mart.protocol import clock, codec
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RecordedView, State
@@ -27,6 +27,7 @@ from mart.recorder.catalogue.timeline import timeline
 PIECE_BYTES = 1024 * 1024
 _FRESH_S = 1.0
 _MAX_PICTURES = 64  # of some 20 kB
+_CLOCKS_DIFFER_NS = 1_000_000_000
 
 
 class CatalogueHandlers:
@@ -202,12 +203,18 @@ def _views(file: EpisodeFile) -> list[RecordedView]:
     cameras = {video_topic(camera): camera for camera in _recorded_cameras(file)}
     first_ns: dict[str, int] = {}
     for message in file.messages(*cameras):
-        first_ns.setdefault(cameras[message.topic], message.sent_ns)
+        first_ns.setdefault(cameras[message.topic], _shown_ns(message))
     return [
         RecordedView(camera=camera, start_s=(first_ns[camera] - start_ns) / 1e9)
         for camera in cameras.values()
         if camera in first_ns
     ]
+
+
+def _shown_ns(message: RecordedMessage) -> int:
+    """Return when a picture was made; where its machine's clock is another, when it came."""
+    is_near = abs(message.arrived_ns - message.sent_ns) < _CLOCKS_DIFFER_NS
+    return message.sent_ns if is_near else message.arrived_ns
 
 
 def _recorded_cameras(file: EpisodeFile) -> tuple[str, ...]:
