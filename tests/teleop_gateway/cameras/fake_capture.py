@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 
 from mart.render import Image
-from mart.teleop_gateway.cameras.capture import CameraFailure
+from mart.teleop_gateway.cameras.capture import CameraFailure, keep_opencv_silent
 
 
 def plain(bgr: tuple[int, int, int], rows: int = 90, columns: int = 160, *, noise: int = 0) -> Image:
@@ -23,6 +23,7 @@ def plain(bgr: tuple[int, int, int], rows: int = 90, columns: int = 160, *, nois
 
 def write_video(path: Path, rgb: tuple[int, int, int]) -> str:
     """Write a second of video of one colour with a sensor's noise; returns the path, which a camera takes."""
+    keep_opencv_silent()
     red, green, blue = rgb
     writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 25.0, (320, 240))
     for seed in range(1, 26):

@@ -25,6 +25,15 @@ _DEVICE = {
 _STREAM_OPTIONS = "rtsp_transport;tcp|fflags;nobuffer|flags;low_delay"
 
 
+def keep_opencv_silent() -> None:
+    """Let OpenCV and FFmpeg log nothing: they log whole addresses, passwords included.
+
+    FFmpeg's level is read once, when OpenCV first uses it: call this before anything in the process does.
+    """
+    os.environ["OPENCV_FFMPEG_LOGLEVEL"] = "-8"
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
+
+
 class CameraFailure(Exception):
     """Tell why a camera gives no pictures, in a sentence without its address."""
 
@@ -46,10 +55,8 @@ class OpenCvCapture:
     """Capture one source. A file plays at its own rate and begins anew at its end."""
 
     def __init__(self, source: CameraSource) -> None:
-        # OpenCV and FFmpeg log whole addresses, passwords included.
-        os.environ["OPENCV_FFMPEG_LOGLEVEL"] = "-8"
+        keep_opencv_silent()
         os.environ.setdefault("OPENCV_FFMPEG_CAPTURE_OPTIONS", _STREAM_OPTIONS)
-        cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
         self._source = source
         self._capture: Any = None
         self._period_s = 0.0  # between two pictures of a file
