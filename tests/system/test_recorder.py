@@ -8,7 +8,10 @@ from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 
+import av
 import pytest
+from av.video.codeccontext import VideoCodecContext
+from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import clock, codec, keys, recording
@@ -27,8 +30,10 @@ from mart.runtime.bus import Bus, Sample
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from tests.recorder import synthetic
 from tests.support.processes import Running, running_router, running_service, started
+from tests.teleop_gateway.cameras.fake_capture import write_video
 
 _PATIENCE_S = 60.0
+_BLUE = (30, 60, 190)  # RGB
 _ROOM = synthetic.ROOM
 _ALIVE = keys.alive(ServiceKind.RECORDER, "recorder-1")
 
@@ -115,6 +120,15 @@ class ToyRoom:
         self._model.close()
 
 
+def pictures_of(path: Path, camera: str) -> Iterator[tuple[int, list[int]]]:
+    """When each picture of a camera was captured, Unix time in nanoseconds, and the colour at its middle, RGB."""
+    decoder = VideoCodecContext.create("h264", "r")
+    for message in EpisodeFile.open(path).messages(recording.video_topic(camera)):
+        video = codec.decode(CompressedVideo, message.payload)
+        (picture,) = decoder.decode(av.Packet(video.data))
+        yield video.timestamp.ToNanoseconds(), picture.to_ndarray(format="rgb24")[240, 320].tolist()
+
+
 def recorded_ticks(path: Path) -> list[int]:
     return [message.sequence for message in EpisodeFile.open(path).messages(recording.STATE)]
 
@@ -192,8 +206,11 @@ def _begin_episode(bus: Bus) -> None:
 def test_an_episode_of_two_scripts_is_recorded_and_verified_bit_for_bit(
     endpoint: str, bus: Bus, tmp_path: Path
 ) -> None:
+    """And what a real camera of the room captured is in its file, as captured."""
+    video = write_video(tmp_path / "blue.avi", _BLUE)
     services = {
-        ("sim", "--room", _ROOM, "--control-hz", "20"): ("sim", _ROOM),
+        ("sim", "--room", _ROOM, "--control-hz", "20", "--camera", "table"): ("sim", _ROOM),
+        ("camera", "--room", _ROOM, "--camera", f"table={video}"): ("camera", f"{_ROOM}-table"),
         ("replica",): ("replica", "replica-1"),
         ("experts",): ("experts", "experts"),
         ("recorder",): ("recorder", "recorder-1"),
@@ -222,6 +239,13 @@ def test_an_episode_of_two_scripts_is_recorded_and_verified_bit_for_bit(
     assert (said["path"], said["verdict"]) == (str(path), "verified")
     assert said["detail"] == f"{row['ticks']} ticks re-simulated bit for bit."
     episode = EpisodeFile.open(path).episode
+    assert episode.captured_cameras == ("table",)
+    captured = [*pictures_of(path, "table")]
+    assert len(captured) > 0.5 * row["ticks"]
+    times_ns = [at_ns for at_ns, _ in captured]
+    assert times_ns == sorted(set(times_ns))
+    assert episode.started_ns < times_ns[-1] < episode.ended_ns + 1_000_000_000
+    assert all(colour == pytest.approx(_BLUE, abs=25) for _, colour in captured[:: len(captured) // 5])
     assert replayed["stretches"] == [
         {"first_tick": episode.first_tick, "last_tick": episode.last_tick, "different": []}
     ]

@@ -20,6 +20,7 @@ from mart.protocol.messages import (
     Model,
     Offer,
     Operator,
+    RoomCamera,
     RoomStatus,
     State,
     TickStamps,
@@ -66,6 +67,11 @@ class Room:
         del self._status.seats[:]
         self._status.seats.extend(others)
         self._status.seats.append(SeatMessage(arm=arm, operator=Operator.Name(operator), epoch=epoch))
+        self._statuses.put(codec.encode(self._status))
+
+    def film(self, *cameras: str) -> None:
+        """Cameras take the place of what is drawn."""
+        self._status.cameras.extend(RoomCamera(camera=camera) for camera in cameras)
         self._statuses.put(codec.encode(self._status))
 
     def reset(self, seed: int) -> None:

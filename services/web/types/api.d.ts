@@ -154,6 +154,8 @@ declare namespace Api {
     barrier: Messages.BarrierPhase;
     waiting_for: Waiting[];
     seats: Seat[];
+    /** Real ones; `arm` is empty where every seat may show it, `dark` where it gives pictures. */
+    cameras: { camera: string; arm: string; dark: string }[];
     /** By arm. */
     to_do: Record<string, string>;
     episode: RoomEpisode;

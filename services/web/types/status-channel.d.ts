@@ -36,6 +36,8 @@ declare namespace StatusChannel {
     phone: { age_ms: number; tracking: boolean; started: boolean } | null;
     rejected: Record<string, number>;
     no_picture: string;
+    /** The real camera that the seat shows; absent where its picture is drawn. */
+    camera?: string;
     /** Thousandths of the picture's width and height, from its upper left corner. */
     tools: Record<string, [right: number, down: number]>;
     fps: number;
@@ -92,6 +94,7 @@ declare namespace StatusChannel {
     | { type: "seen"; tick: number; t_us: number }
     | { type: "drawing"; on: boolean; p50_ms: number; p95_ms: number; per_s: number }
     | { type: "input"; input: Input }
+    | { type: "camera"; camera: string }
     | { type: "token"; token: string }
     | { type: "cue"; cue: Messages.Cue; t_us: number };
 }

@@ -76,6 +76,17 @@ def test_real_arms_are_named_with_their_drivers() -> None:
     assert [one["driver"] for one in as_json(status)["driven_arms"]] == ["OurArm", ""]
 
 
+def test_cameras_are_named_with_how_they_do() -> None:
+    status = m.RoomStatus(room="room-1")
+    status.cameras.add(camera="arm0-wrist", frames_per_s=29.0, width_px=1280, height_px=720)
+    status.cameras.add(camera="table", dark="Its picture is frozen.")
+    assert in_words(status).splitlines()[1:] == [
+        "  camera arm0.wrist: 29 pictures a second, 1280 x 720",
+        "  camera table: Its picture is frozen.",
+    ]
+    assert [one["dark"] for one in as_json(status)["cameras"]] == ["", "Its picture is frozen."]
+
+
 def test_the_score_of_the_course_is_shown_station_by_station() -> None:
     status = m.RoomStatus(room="room-2", task="practice_course", practice=True)
     status.seats.append(m.Seat(arm="arm0", operator=m.OPERATOR_HUMAN, name="Ana"))

@@ -7,13 +7,16 @@ import pytest
 
 from mart.episodes import labels
 from mart.episodes.labelled_episode import LabelledEpisode
+from mart.episodes.mcap_entries import video_entry
+from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest
 from mart.recorder.catalogue import handlers
 from mart.recorder.catalogue.dataset_editing import take_in
 from mart.recorder.catalogue.handlers import CatalogueHandlers
+from mart.recorder.record.finalize import finalize
 from tests.recorder import synthetic
-from tests.recorder.files import write_episode
+from tests.recorder.files import by_toy_replica, write_episode, write_part
 
 PATH = f"2026-09-21/room-1-0001-{synthetic.TASK}.mcap"
 
@@ -42,6 +45,24 @@ def test_an_episode_is_listed_and_shown(root: Path) -> None:
     assert [(view.camera, view.start_s) for view in details.views] == [("arm0", 0.0)]
     assert details.cadence["missing_ticks"] == "0"
     assert details.verification
+
+
+def test_what_real_cameras_captured_is_among_the_views(tmp_path: Path) -> None:
+    file, episode, facts = write_part(tmp_path, synthetic.states(30))
+    assert episode.started is not None
+    episode.started.captured_cameras.extend(["arm0", "arm0-wrist", "arm1-wrist", "table"])
+    video = synthetic.video(6, is_key=True)
+    file.add(video_entry("arm0-wrist", video, codec.encode(video), synthetic.wall_ns(4)))
+    astray = synthetic.video(6, is_key=True)
+    astray.timestamp.seconds += 120  # by the clock of its machine
+    file.add(video_entry("arm1-wrist", astray, codec.encode(astray), synthetic.wall_ns(4)))
+    finalize(file, episode, facts, tmp_path, by_toy_replica, repaired=False)
+    views = {view.camera: view.start_s for view in show(CatalogueHandlers(tmp_path)).views}
+    assert views == {
+        "arm0": 0.0,
+        "arm0-wrist": pytest.approx(0.198),
+        "arm1-wrist": pytest.approx(0.2),
+    }  # none of the table's came
 
 
 def test_no_folder_is_no_episodes(tmp_path: Path) -> None:

@@ -64,6 +64,17 @@ def test_it_says_which_arms_were_measured() -> None:
     assert EpisodeRecord.from_strings(record.to_strings()) == record
 
 
+def test_it_says_whose_pictures_are_real_ones() -> None:
+    episode = folded(synthetic.states(3))
+    assert episode.record(facts()).captured_cameras is None
+    begun = synthetic.started()
+    begun.episode_started.captured_cameras.extend(["arm0", "arm0-wrist", "table"])
+    episode.add_event(begun)
+    record = episode.record(facts())
+    assert record.captured_cameras == ("arm0", "arm0-wrist", "table")
+    assert EpisodeRecord.from_strings(record.to_strings()) == record
+
+
 @given(st.sets(st.integers(1, 19)))
 def test_missing_ticks_are_counted_and_make_it_incomplete(gone: set[int]) -> None:
     episode = folded(synthetic.without(synthetic.states(20), *gone))

@@ -16,13 +16,18 @@ from mart.protocol import clock
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import Model, State, TickStamps
 from mart.sim.world.world import World
-from mart.teleop_gateway.video import live_view, tick_code
+from mart.teleop_gateway.video import picture_painter, tick_code
 from mart.teleop_gateway.video.encoder import RECORDED, Codec, Stream
 from mart.teleop_gateway.video.live_view import LiveView, SeatPicture
+from mart.teleop_gateway.video.picture_painter import MakePainter, world_painter
 from mart.teleop_gateway.video.render_queue import RenderQueue, RenderQueueClosed
 from mart.teleop_gateway.video.seat_renderer import load_room_model
 from mart.teleop_gateway.video.stream_encoders import KEYFRAME_EVERY_S
 from mart.teleop_gateway.video.thumbnail import Thumbnail
+
+
+def painter(model: Model) -> MakePainter:
+    return world_painter(load_room_model(model), "arm0")
 
 
 class Watched:
@@ -32,7 +37,7 @@ class Watched:
         """A rate so low that no picture is late, however busy the machine."""
         self.pictures: queue.Queue[SeatPicture] = queue.Queue()
         self.stills: queue.Queue[Thumbnail] = queue.Queue()
-        self.view = LiveView(load_room_model(model), "arm0", frames_per_s, self._keep)
+        self.view = LiveView(painter(model), "arm0", frames_per_s, self._keep)
         self.view.start()
 
     def _keep(self, made: SeatPicture | Thumbnail) -> None:
@@ -213,7 +218,7 @@ def test_where_drawing_fails_the_process_ends(model_message: Model, monkeypatch:
     def fail(*_: object) -> None:
         raise OSError("the graphics card is gone")
 
-    view = LiveView(load_room_model(model_message), "arm0", 0.5, lambda _: None, end=said.put)
+    view = LiveView(painter(model_message), "arm0", 0.5, lambda _: None, end=said.put)
     monkeypatch.setattr(view, "_draw_until_closed", fail)
     view.start()
     assert "view-arm0 failed (OSError)" in said.get(timeout=30.0)
@@ -221,8 +226,8 @@ def test_where_drawing_fails_the_process_ends(model_message: Model, monkeypatch:
 
 
 def test_a_machine_that_cannot_draw_says_why(model_message: Model, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(live_view, "SeatRenderer", _cannot_draw)
-    view = LiveView(load_room_model(model_message), "arm0", 20.0, lambda _: None, end=pytest.fail)
+    monkeypatch.setattr(picture_painter, "SeatRenderer", _cannot_draw)
+    view = LiveView(painter(model_message), "arm0", 20.0, lambda _: None, end=pytest.fail)
     view.start()
     view.stop()
     assert view.failure == "Nothing can be drawn on this machine."

@@ -60,6 +60,7 @@ class Room:
         )
         monkeypatch.setattr(view_manager, "load_plain_model", lambda message: message.sha256)
         monkeypatch.setattr(view_manager, "drawn_model", lambda model, quality: model)
+        monkeypatch.setattr(view_manager, "world_painter", lambda model, *_: model)
         monkeypatch.setattr(view_manager, "camera_azimuth_rad", lambda model, arm: 0.0)
         monkeypatch.setattr(view_manager, "LiveView", self._make)
         self.used = asyncio.Event()

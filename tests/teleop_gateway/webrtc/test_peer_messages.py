@@ -68,6 +68,7 @@ def test_no_message_is_more_than_a_seat_can_take(said: list[dict[str, Any]], now
         pages=nobody,
         seat_input=seat_input,
         views=nobody,
+        cameras=nobody,
         latency=MotionToPhoton("arm0"),
         events=nobody,
         broadcaster=nobody,

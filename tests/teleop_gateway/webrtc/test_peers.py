@@ -98,7 +98,7 @@ def test_a_view_rests_where_pages_draw_and_nobody_watches(
     async def body() -> None:
         peers, _ = await seated()
         views = mock.MagicMock()
-        broadcaster = StatusBroadcaster(peers, cast("Any", None), views, cast("Any", None))
+        broadcaster = StatusBroadcaster(peers, cast("Any", None), views, views, cast("Any", None))
         browser, _, viewer = cast("list[StubPeer]", list(peers))
         browser.draws, viewer.codec = draws, Codec.H264 if watches else None
         broadcaster.status = RoomStatus(episode={"phase": phase})
@@ -194,7 +194,7 @@ def test_who_is_told_how_things_stand_is_also_looked_after() -> None:
     async def body() -> None:
         peers = Counting()
         anything = cast("Any", None)
-        broadcaster = StatusBroadcaster(cast("Any", peers), cast("Any", Undriven()), anything, anything)
+        broadcaster = StatusBroadcaster(cast("Any", peers), cast("Any", Undriven()), *[anything] * 3)
         broadcaster.status = RoomStatus(room="room-1")
         telling = asyncio.create_task(broadcaster.run())
         await asyncio.wait_for(peers.looked.wait(), 20.0)

@@ -8,7 +8,16 @@ import pytest
 
 from mart.protocol.messages import Event
 from mart.web.api.app_state import AppState
-from mart.web.lobby.health_findings import RelayCheck, delays, machine, pictures, relays, rooms, services
+from mart.web.lobby.health_findings import (
+    RelayCheck,
+    cameras,
+    delays,
+    machine,
+    pictures,
+    relays,
+    rooms,
+    services,
+)
 from mart.web.lobby.room_json import Json
 from tests.web.conftest import Enter
 from tests.web.room import Room
@@ -97,6 +106,17 @@ def test_a_seat_that_cannot_be_drawn_is_a_finding() -> None:
     (finding,) = pictures([("room-1", missing)])
     assert (finding.name, finding.found) == ("arm0 in room-1, picture", missing.reason)
     assert "mart doctor" in finding.mend
+
+
+def test_a_dark_camera_is_a_finding_with_its_mend() -> None:
+    told = [
+        {"camera": "arm0-wrist", "arm": "arm0", "dark": "Its picture is black."},
+        {"camera": "table", "arm": "", "dark": ""},
+    ]
+    dark, well = cameras([a_room(cameras=told)])
+    assert (dark.name, dark.found) == ("camera arm0.wrist in room-1", "Its picture is black.")
+    assert "lens" in dark.mend
+    assert well.mend == ""
 
 
 def test_a_stopped_room_says_who_stopped_it() -> None:

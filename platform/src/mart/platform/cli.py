@@ -13,6 +13,7 @@ import click
 from mart.platform.run.plan import DEFAULT_TASK
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
 from mart.runtime.arm_option import arm_kinds_option
+from mart.runtime.camera_option import cameras_option
 from mart.runtime.cli import cli, json_option, print_result
 from mart.runtime.rate_option import room_rate_option
 from mart.runtime.room_file import real_room_option
@@ -59,6 +60,7 @@ _CONTROL_HZ_OPTION = click.option(
 @click.option(
     "--driver", "drivers", multiple=True, metavar="ARM", help="A real arm, driven by `mart driver`."
 )
+@cameras_option
 @json_option
 def run(
     *,
@@ -74,23 +76,25 @@ def run(
     public_host: str,
     turn: bool,
     drivers: tuple[str, ...],
+    cameras: Mapping[str, str],
     as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
+    from mart.platform.run.camera_sources import keep_sources
     from mart.platform.run.plan import PlatformOptions, processes, training_processes
     from mart.platform.run.room_manager import opening_rooms
     from mart.platform.run.running import running_platform
     from mart.platform.run.turn_server import relay_beside, with_relay
+    from mart.protocol.cameras import arm_of_camera
     from mart.protocol.practice import require_practice_alone
     from mart.protocol.tasks import arm_kinds_of, get_task
     from mart.runtime.service import stop_requested
     from mart.runtime.settings import Settings
 
     arm_kinds_of(task, None, arm_kinds)
-    list(map(get_task(task).arm, drivers))  # raises NotFound for what the task does not have
+    list(map(get_task(task).arm, [*drivers, *filter(None, map(arm_of_camera, cameras))]))  # or NotFound
     require_practice_alone(practice=practice, course_required=course_required, episodes=episodes or 0)
     settings = Settings()
-    given_hz = control_hz if isinstance(control_hz, float) else None
     options = PlatformOptions(
         settings.data_dir,
         settings.router,
@@ -99,12 +103,13 @@ def run(
         public_host,
         room,
         task,
-        given_hz,
+        control_hz if isinstance(control_hz, float) else None,
         episodes=episodes,
         practice=practice,
         course_required=course_required,
         arm_kinds=arm_kinds,
         drivers=drivers,
+        cameras=keep_sources(settings.data_dir / "run", room, cameras),
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)

@@ -95,6 +95,16 @@ def still(room: str, camera: str) -> Topic:
     return Topic(_key(room, "view", camera, "still"), Priority.LOW)
 
 
+def camera_frame(room: str, camera: str) -> Topic:
+    """Return where a camera's pictures go to the seats that show it; carries CameraFrames."""
+    return Topic(_key(room, "view", camera, "frame"), Priority.LOW)
+
+
+def camera_report(room: str, camera: str) -> Topic:
+    """Return where a camera says how it does; carries CameraReports."""
+    return Topic(_key(room, "view", camera, "report"), Priority.NORMAL)
+
+
 DETAILED = b"detailed"
 
 

@@ -19,6 +19,7 @@ from mart.protocol.enum_words import (
 from mart.protocol.errors import MartError, from_wire
 from mart.protocol.pose import Pose
 from mart.protocol.vocabulary import Verdict
+from mart.v1.camera_pb2 import CameraFrame, CameraReport
 from mart.v1.catalogue_pb2 import (
     CatalogueReply,
     CatalogueRequest,
@@ -89,6 +90,7 @@ from mart.v1.room_pb2 import (
     Outcome,
     Plan,
     RecordingReport,
+    RoomCamera,
     RoomReply,
     RoomsRequest,
     RoomStatus,
@@ -163,6 +165,8 @@ __all__ = [
     "ArmState",
     "ArmTarget",
     "BarrierPhase",
+    "CameraFrame",
+    "CameraReport",
     "CatalogueReply",
     "CatalogueRequest",
     "Command",
@@ -207,6 +211,7 @@ __all__ = [
     "Rollout",
     "RolloutReply",
     "RolloutRequest",
+    "RoomCamera",
     "RoomReply",
     "RoomStatus",
     "RoomsRequest",

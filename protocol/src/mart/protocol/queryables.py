@@ -17,6 +17,8 @@ from mart.protocol.messages import (
     Answer,
     ArmMeasured,
     ArmTarget,
+    CameraFrame,
+    CameraReport,
     CatalogueReply,
     CatalogueRequest,
     Command,
@@ -89,6 +91,8 @@ BROADCASTS = (
     Broadcast(keys.voice, VoicePacket),
     Broadcast(keys.arm_target, ArmTarget),
     Broadcast(keys.arm_measured, ArmMeasured),
+    Broadcast(keys.camera_frame, CameraFrame),
+    Broadcast(keys.camera_report, CameraReport),
     Broadcast(keys.video, None),
     Broadcast(keys.still, None),
 )

@@ -41,6 +41,8 @@ _SPOKEN = frozenset(
         "VoicePacket",
         "ArmTarget",
         "ArmMeasured",
+        "CameraFrame",
+        "CameraReport",
         "DriverHello",
     }
 )

@@ -79,6 +79,7 @@ class EpisodeRecord(Record):
     arm_kinds: Names = ()  # one for each arm; none: all are Pandas
     world: str | None = None  # "drivers" where arms in it are real
     measured_arms: Names | None = None  # by drivers; the others are simulated
+    captured_cameras: Names | None = None  # whose pictures are real ones; others were drawn
     seed: Seed | None = None
     mode: str | None = None  # live (paced) or lockstep (as fast as the machine allowed; no video)
     skill: str | None = None  # of the scripts that drove

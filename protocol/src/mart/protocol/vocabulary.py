@@ -24,6 +24,7 @@ class ServiceKind(StrEnum):
     POLICIES = "policies"
     OPERATE = "operate"  # one policy in one seat, by hand
     DRIVER = "driver"  # of an arm that is not simulated
+    CAMERA = "camera"  # a real one of a room
     PHONE = "phone"  # an emulated one
     WEB = "web"
     TURN = "turn"  # coturn, which says nothing on the bus

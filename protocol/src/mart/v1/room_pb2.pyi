@@ -182,8 +182,24 @@ class EmergencyStop(_message.Message):
     fault: str
     def __init__(self, arm: _Optional[str] = ..., name: _Optional[str] = ..., wall_ns: _Optional[int] = ..., by_host: _Optional[bool] = ..., also_name: _Optional[str] = ..., fault: _Optional[str] = ...) -> None: ...
 
+class RoomCamera(_message.Message):
+    __slots__ = ("camera", "dark", "dark_s", "width_px", "height_px", "frames_per_s")
+    CAMERA_FIELD_NUMBER: _ClassVar[int]
+    DARK_FIELD_NUMBER: _ClassVar[int]
+    DARK_S_FIELD_NUMBER: _ClassVar[int]
+    WIDTH_PX_FIELD_NUMBER: _ClassVar[int]
+    HEIGHT_PX_FIELD_NUMBER: _ClassVar[int]
+    FRAMES_PER_S_FIELD_NUMBER: _ClassVar[int]
+    camera: str
+    dark: str
+    dark_s: float
+    width_px: int
+    height_px: int
+    frames_per_s: float
+    def __init__(self, camera: _Optional[str] = ..., dark: _Optional[str] = ..., dark_s: _Optional[float] = ..., width_px: _Optional[int] = ..., height_px: _Optional[int] = ..., frames_per_s: _Optional[float] = ...) -> None: ...
+
 class RoomStatus(_message.Message):
-    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded", "practice", "course_required", "arm_kinds", "driven_arms", "to_do")
+    __slots__ = ("room", "task", "control_hz", "tick", "real_time_factor", "barrier", "waiting_for", "seats", "episode", "progress", "episodes_saved", "episodes_good", "wall_ns", "boot", "rejected_commands", "plan", "stop", "last_ended", "unrecorded", "practice", "course_required", "arm_kinds", "driven_arms", "cameras", "to_do")
     class ToDoEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -214,6 +230,7 @@ class RoomStatus(_message.Message):
     COURSE_REQUIRED_FIELD_NUMBER: _ClassVar[int]
     ARM_KINDS_FIELD_NUMBER: _ClassVar[int]
     DRIVEN_ARMS_FIELD_NUMBER: _ClassVar[int]
+    CAMERAS_FIELD_NUMBER: _ClassVar[int]
     TO_DO_FIELD_NUMBER: _ClassVar[int]
     room: str
     task: str
@@ -238,8 +255,9 @@ class RoomStatus(_message.Message):
     course_required: bool
     arm_kinds: _containers.RepeatedScalarFieldContainer[str]
     driven_arms: _containers.RepeatedCompositeFieldContainer[DrivenArm]
+    cameras: _containers.RepeatedCompositeFieldContainer[RoomCamera]
     to_do: _containers.ScalarMap[str, str]
-    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ..., practice: _Optional[bool] = ..., course_required: _Optional[bool] = ..., arm_kinds: _Optional[_Iterable[str]] = ..., driven_arms: _Optional[_Iterable[_Union[DrivenArm, _Mapping]]] = ..., to_do: _Optional[_Mapping[str, str]] = ...) -> None: ...
+    def __init__(self, room: _Optional[str] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., tick: _Optional[int] = ..., real_time_factor: _Optional[float] = ..., barrier: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., episode: _Optional[_Union[Episode, _Mapping]] = ..., progress: _Optional[_Union[_state_pb2.Progress, _Mapping]] = ..., episodes_saved: _Optional[int] = ..., episodes_good: _Optional[int] = ..., wall_ns: _Optional[int] = ..., boot: _Optional[int] = ..., rejected_commands: _Optional[int] = ..., plan: _Optional[_Union[Plan, _Mapping]] = ..., stop: _Optional[_Union[EmergencyStop, _Mapping]] = ..., last_ended: _Optional[_Union[Event.EpisodeEnded, _Mapping]] = ..., unrecorded: _Optional[str] = ..., practice: _Optional[bool] = ..., course_required: _Optional[bool] = ..., arm_kinds: _Optional[_Iterable[str]] = ..., driven_arms: _Optional[_Iterable[_Union[DrivenArm, _Mapping]]] = ..., cameras: _Optional[_Iterable[_Union[RoomCamera, _Mapping]]] = ..., to_do: _Optional[_Mapping[str, str]] = ...) -> None: ...
 
 class SeatRequest(_message.Message):
     __slots__ = ("claim", "release", "assign", "hand_back", "free")
@@ -442,7 +460,7 @@ class Event(_message.Message):
         waiting_for: _containers.RepeatedCompositeFieldContainer[Waiting]
         def __init__(self, phase: _Optional[_Union[BarrierPhase, str]] = ..., waiting_for: _Optional[_Iterable[_Union[Waiting, _Mapping]]] = ...) -> None: ...
     class EpisodeStarted(_message.Message):
-        __slots__ = ("number", "seed", "seats", "task", "control_hz", "model_sha256", "lockstep", "skill", "time_limit_s", "measured_arms")
+        __slots__ = ("number", "seed", "seats", "task", "control_hz", "model_sha256", "lockstep", "skill", "time_limit_s", "measured_arms", "captured_cameras")
         NUMBER_FIELD_NUMBER: _ClassVar[int]
         SEED_FIELD_NUMBER: _ClassVar[int]
         SEATS_FIELD_NUMBER: _ClassVar[int]
@@ -453,6 +471,7 @@ class Event(_message.Message):
         SKILL_FIELD_NUMBER: _ClassVar[int]
         TIME_LIMIT_S_FIELD_NUMBER: _ClassVar[int]
         MEASURED_ARMS_FIELD_NUMBER: _ClassVar[int]
+        CAPTURED_CAMERAS_FIELD_NUMBER: _ClassVar[int]
         number: int
         seed: int
         seats: _containers.RepeatedCompositeFieldContainer[Seat]
@@ -463,7 +482,8 @@ class Event(_message.Message):
         skill: str
         time_limit_s: float
         measured_arms: _containers.RepeatedScalarFieldContainer[str]
-        def __init__(self, number: _Optional[int] = ..., seed: _Optional[int] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., model_sha256: _Optional[str] = ..., lockstep: _Optional[bool] = ..., skill: _Optional[str] = ..., time_limit_s: _Optional[float] = ..., measured_arms: _Optional[_Iterable[str]] = ...) -> None: ...
+        captured_cameras: _containers.RepeatedScalarFieldContainer[str]
+        def __init__(self, number: _Optional[int] = ..., seed: _Optional[int] = ..., seats: _Optional[_Iterable[_Union[Seat, _Mapping]]] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., model_sha256: _Optional[str] = ..., lockstep: _Optional[bool] = ..., skill: _Optional[str] = ..., time_limit_s: _Optional[float] = ..., measured_arms: _Optional[_Iterable[str]] = ..., captured_cameras: _Optional[_Iterable[str]] = ...) -> None: ...
     class EpisodeEnded(_message.Message):
         __slots__ = ("number", "outcome", "ticks", "reason", "last_tick", "ended_by", "ended_by_name", "ended_by_arm", "subtasks_done", "subtasks")
         NUMBER_FIELD_NUMBER: _ClassVar[int]

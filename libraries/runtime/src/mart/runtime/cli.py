@@ -35,7 +35,7 @@ _PURPOSES = {
     "Policies": ("train", "eval", "report", "jobs", "operate"),
     "Services, which `mart run` starts": (
         *("router", "sim", "replica", "experts", "gateway", "phone", "recorder", "catalogue", "web"),
-        *("trainer", "policies", "driver", "alive"),
+        *("trainer", "policies", "driver", "camera", "alive"),
     ),
 }
 _HELP_WIDTH = 64

@@ -5,7 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from mart.protocol.arms import PANDA
-from mart.protocol.messages import DrivenArm, Plan, RoomStatus, Seat, barrier_word, operator_word, phase_word
+from mart.protocol.cameras import camera_title
+from mart.protocol.messages import (
+    DrivenArm,
+    Plan,
+    RoomCamera,
+    RoomStatus,
+    Seat,
+    barrier_word,
+    operator_word,
+    phase_word,
+)
 from mart.protocol.practice import has_passed, stations_of
 
 
@@ -32,6 +42,10 @@ def as_json(status: RoomStatus) -> dict[str, Any]:
         "driven_arms": [
             {"arm": one.arm, "driver": one.driver, "age_s": round(one.age_s, 3), "fault": one.fault}
             for one in status.driven_arms
+        ],
+        "cameras": [
+            {"camera": one.camera, "dark": one.dark, "frames_per_s": one.frames_per_s}
+            for one in status.cameras
         ],
         "course": [_course_json(status, seat) for seat in status.seats if stations_of(status, seat.arm)],
     }
@@ -62,7 +76,9 @@ def in_words(status: RoomStatus) -> str:
     if waiting:
         line = f"{line}  waiting for {waiting}"
     scores = [_course_in_words(status, seat) for seat in status.seats if stations_of(status, seat.arm)]
-    return "\n".join([line, *map(_driven_in_words, status.driven_arms), *scores])
+    return "\n".join(
+        [line, *map(_driven_in_words, status.driven_arms), *map(_camera_in_words, status.cameras), *scores]
+    )
 
 
 def _course_json(status: RoomStatus, seat: Seat) -> dict[str, Any]:
@@ -97,6 +113,14 @@ def _driven_in_words(arm: DrivenArm) -> str:
     """Return how a real arm stands, in a line."""
     how = arm.fault or f"measured {arm.age_s:.2f} s ago"
     return f"  {arm.arm} is real, {arm.driver or 'without a driver'}: {how}"
+
+
+def _camera_in_words(camera: RoomCamera) -> str:
+    """Return how a real camera does, in a line."""
+    how = (
+        camera.dark or f"{camera.frames_per_s:.0f} pictures a second, {camera.width_px} x {camera.height_px}"
+    )
+    return f"  camera {camera_title(camera.camera)}: {how}"
 
 
 def _plan_in_words(plan: Plan) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mart.protocol.arms import arms_folder
+from mart.protocol.cameras import camera_title
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.tasks import tasks_folder
 from mart.protocol.vocabulary import ServiceKind
@@ -64,6 +65,8 @@ class PlatformOptions:
     environment: Mapping[str, str] = field(default_factory=dict)
     name: str = ""
     drivers: tuple[str, ...] = ()  # arms of the first room that `mart driver` processes drive
+    # Real cameras of the first room by their ids, and the file that holds what each is captured from; None: elsewhere.
+    cameras: Mapping[str, Path | None] = field(default_factory=dict)
 
     @property
     def url(self) -> str:
@@ -96,6 +99,7 @@ def processes(options: PlatformOptions) -> tuple[Process, ...]:
         _REPLICA,
         Process(("experts",), ServiceKind.EXPERTS, "experts"),
         Process(("gateway", "--name", "gateway-1"), ServiceKind.GATEWAY, "gateway-1"),
+        *_cameras(options),
         _RECORDER,
         _CATALOGUE,
         Process(tuple(web), ServiceKind.WEB, "web"),
@@ -140,8 +144,24 @@ def _sim(options: PlatformOptions, room: str, *more: str) -> Process:
     command += arm_arguments(options.arm_kinds)
     for arm in options.drivers:
         command += ["--driver", arm]
+    for camera in options.cameras:
+        command += ["--camera", camera_title(camera)]
     command += ["--practice"] * options.practice + ["--course-required"] * options.course_required
     return Process((*command, *more), ServiceKind.SIM, room)
+
+
+def _cameras(options: PlatformOptions) -> tuple[Process, ...]:
+    """A process for each camera that is captured here: one that hangs or dies takes no other with it."""
+    return tuple(
+        Process(
+            ("camera", "--room", options.room, "--camera", f"{camera_title(camera)}=@{source}"),
+            ServiceKind.CAMERA,
+            f"{options.room}-{camera}",
+            awaited=False,
+        )
+        for camera, source in options.cameras.items()
+        if source is not None
+    )
 
 
 def room(options: PlatformOptions, wanted: RoomsRequest.Open) -> Process:
@@ -156,7 +176,9 @@ def room(options: PlatformOptions, wanted: RoomsRequest.Open) -> Process:
         arm_kinds=dict(wanted.arm_kinds),
     )
     arms = ("--arms", str(wanted.arms)) if wanted.arms else ()
-    return _sim(replace(chosen, seed=None, skill=None, time_limit_s=None, drivers=()), wanted.room, *arms)
+    return _sim(
+        replace(chosen, seed=None, skill=None, time_limit_s=None, drivers=(), cameras={}), wanted.room, *arms
+    )
 
 
 def environment(options: PlatformOptions) -> dict[str, str]:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import click
 
+from mart.protocol.errors import InvalidInput
 from mart.protocol.tasks import SHARED_VIEWPOINT
 from mart.runtime.arm_option import arm_kinds_option
+from mart.runtime.camera_option import cameras_option
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import progress
 from mart.runtime.rate_option import room_rate_option
@@ -34,6 +37,7 @@ def _given(**options: Any) -> dict[str, Any]:
     metavar="ARM",
     help="A real arm, driven by `mart driver`; may be repeated.",
 )
+@cameras_option
 @click.option("--pace", type=float, help="Real-time factor that the world may reach at most.  [default: 1]")
 @click.option("--seed", type=int, help="The room's seed; without it, one is drawn at first start and kept.")
 @click.option("--time-limit-s", type=float, help="Of an episode, simulated.  [default: the task's horizon]")
@@ -46,11 +50,15 @@ def _given(**options: Any) -> dict[str, Any]:
 )
 @click.option("--lockstep", is_flag=True, default=None, help="Scripts drive every arm, as fast as possible.")
 @click.option("--skill", help="Of the scripts that drive here, kept in the files: expert, average or novice.")
-def sim(**options: Any) -> None:
+def sim(*, cameras: Mapping[str, str], **options: Any) -> None:
     """Run a room: one shared world that advances when every operator has given a new command."""
     from mart.sim.room.serving import serve_room
 
-    serve_room(SimSettings(**_given(**options)))
+    if any(cameras.values()):
+        raise InvalidInput(
+            "A camera's source was given to a room, which captures nothing: give it to `mart camera`."
+        )
+    serve_room(SimSettings(**_given(cameras=tuple(cameras), **options)))
 
 
 @click.command()

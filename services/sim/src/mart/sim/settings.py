@@ -37,6 +37,9 @@ class SimSettings(_WorldSettings):
     drivers: tuple[str, ...] = Field(
         (), description="Arms that `mart driver` processes drive; others are simulated."
     )
+    cameras: tuple[str, ...] = Field(
+        (), description="Ids of real cameras, which `mart camera` processes capture: arm0, arm0-wrist, table."
+    )
     pace: float = Field(1.0, gt=0.0, le=1.0, description="Real-time factor that the world may reach at most.")
     seed: int | None = Field(None, ge=0, description="The room's seed; default: drawn once and kept.")
     time_limit_s: float | None = Field(

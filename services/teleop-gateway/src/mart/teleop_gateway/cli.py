@@ -1,8 +1,35 @@
-"""Offer `mart gateway`, `mart phone` and `mart ar-phone`. Heavy modules are imported when a command runs."""
+"""Offer `mart gateway`, `mart camera`, `mart phone`, `mart ar-phone`. Heavy modules are imported when one runs."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import click
+
+from mart.protocol.errors import InvalidInput
+from mart.runtime.camera_option import cameras_option
+
+
+@click.command()
+@click.option("--room", help="Id of the room.  [default: room-1]")
+@cameras_option
+@click.option(
+    "--frozen-after-s",
+    type=click.FloatRange(0, 3600),
+    help="After so long without a changed pixel the picture counts as frozen; 0: never.  [default: 5]",
+)
+def camera(*, cameras: dict[str, str], **options: Any) -> None:
+    """Capture one camera of a room, beside its hardware: for seats that show it, and for the files."""
+    from mart.teleop_gateway.cameras.camera_service import serve_camera
+    from mart.teleop_gateway.cameras.camera_settings import CameraSettings
+
+    if len(cameras) != 1:
+        raise InvalidInput(
+            f"{len(cameras)} cameras were given; give one with its source, such as --camera arm0=/dev/video0."
+        )
+    ((name, source),) = cameras.items()
+    given = {option: value for option, value in options.items() if value is not None}
+    serve_camera(CameraSettings(camera=name, source=source, **given))
 
 
 @click.command()

@@ -13,6 +13,7 @@ from mart.runtime.decoding_subscriber import DecodingSubscriber
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.seat_events import SeatEvents
 from mart.teleop_gateway.served_seats import SeatAddress
+from mart.teleop_gateway.video.camera_feed import CameraFeed
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
 from mart.teleop_gateway.video.page_drawing import PageDrawing
 from mart.teleop_gateway.video.view_manager import ViewManager
@@ -28,6 +29,7 @@ class RoomFeed:
         *,
         seat_input: SeatInput,
         views: ViewManager,
+        cameras: CameraFeed,
         pages: PageDrawing,
         latency: MotionToPhoton,
         events: SeatEvents,
@@ -35,6 +37,7 @@ class RoomFeed:
     ) -> None:
         self._seat = seat
         self._input, self._views, self._latency = seat_input, views, latency
+        self._cameras = cameras
         self._pages = pages
         self._events, self._broadcaster = events, broadcaster
         self._loop = asyncio.get_running_loop()
@@ -53,6 +56,7 @@ class RoomFeed:
 
     def _on_status(self, status: RoomStatus) -> None:
         self._broadcaster.status = status
+        self._cameras.on_status(status)
         self._input.on_status(status)
         self._broadcaster.rest_where_unneeded()
         self._broadcaster.tell_changes()
@@ -62,6 +66,7 @@ class RoomFeed:
         received_ns = clock.wall_ns()
         for arm in state.arms:
             if arm.arm == self._seat.arm:
+                self._cameras.on_state(state)
                 tool_in_base = pose_from_message(arm.tool_in_base)
                 self._views.offer(state, received_ns)
                 self._pages.offer(state, received_ns)
@@ -73,7 +78,10 @@ class RoomFeed:
         self._broadcaster.state = state
         self._events.tick = state.tick
         self._input.on_state(arm, tool_in_base, state.tick, state.sim_time_s, was_reset)
-        self._views.on_boot(state.boot)
+        if (
+            self._broadcaster.status.room
+        ):  # it says whether there are cameras, in whose place nothing is drawn
+            self._views.on_boot(state.boot)
         control_hz = self._broadcaster.status.control_hz
         if control_hz:
             self._latency.on_state(state, control_hz)

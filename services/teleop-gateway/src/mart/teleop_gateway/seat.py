@@ -4,6 +4,7 @@ Peers and rooms speak, pictures come out:
 - `room_feed` hands on what the room says, `webrtc.peer_messages` what peers say;
 - `input.seat_input` follows the holder and turns frames into commands;
 - `video.view_manager` draws and encodes, `video.picture_relay` hands pictures on;
+- `video.camera_feed` shows real cameras in the place of what is drawn;
 - `video.page_drawing` serves pages that draw by themselves;
 - `voice.room_voice` carries what people say;
 - `webrtc.offer_handler` lets peers in, `webrtc.status_broadcaster` tells them how things stand.
@@ -26,6 +27,7 @@ from mart.teleop_gateway.room_feed import RoomFeed
 from mart.teleop_gateway.seat_events import SeatEvents
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.settings import GatewaySettings
+from mart.teleop_gateway.video.camera_feed import CameraFeed
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton, report_latency
 from mart.teleop_gateway.video.page_drawing import PageDrawing, PoseMessage
 from mart.teleop_gateway.video.picture_relay import PictureRelay
@@ -57,8 +59,7 @@ class Seat:
         `secret` is what seat tokens are signed with.
         """
         self._bus, self._address = bus, address
-        self._latency = MotionToPhoton(address.arm)
-        self._events = SeatEvents(bus, address)
+        self._latency, self._events = MotionToPhoton(address.arm), SeatEvents(bus, address)
         self._ice = IceWatch(settings)
         self._peers = Peers(bus, self._ice.usable)
         self._input = SeatInput(
@@ -78,6 +79,7 @@ class Seat:
             self._input.on_drawn,
             holder_draws=lambda: self._peers.holder_draws,
             left_out=lambda: self._broadcaster.recorded_view.is_left_out,
+            is_filmed=lambda: self._cameras.is_filmed,
         )
         self._pages = PageDrawing(loop, self._send_poses)
         self._views = ViewManager(
@@ -88,14 +90,18 @@ class Seat:
             quality=QUALITIES[settings.quality],
             pages=self._pages,
         )
+        self._cameras = CameraFeed(bus, address, self._views.show, self._views.film)
         self._voice = RoomVoice(bus, address, self._peers)
-        self._broadcaster = StatusBroadcaster(self._peers, self._input, self._views, self._latency)
+        self._broadcaster = StatusBroadcaster(
+            self._peers, self._input, self._views, self._cameras, self._latency
+        )
         self._peers.attach(
             PeerMessages(
                 peers=self._peers,
                 pages=self._pages,
                 seat_input=self._input,
                 views=self._views,
+                cameras=self._cameras,
                 latency=self._latency,
                 events=self._events,
                 broadcaster=self._broadcaster,
@@ -119,6 +125,7 @@ class Seat:
                     await asyncio.gather(
                         self._broadcaster.run(),
                         self._voice.run(),
+                        self._cameras.run(),
                         report_latency(self._latency, self._events.latency),
                         self._ice.run(),
                         self._report_no_picture(),
@@ -155,6 +162,7 @@ class Seat:
             self._address,
             seat_input=self._input,
             views=self._views,
+            cameras=self._cameras,
             pages=self._pages,
             latency=self._latency,
             events=self._events,
@@ -168,6 +176,7 @@ class Seat:
             *self._offers.serve(self._bus),
             *self._feed.subscribe(self._bus),
             *self._voice.open(),
+            self._cameras,
             self._input,
             self._events,
             self._video,

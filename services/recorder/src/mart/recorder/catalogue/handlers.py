@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 from mart.episodes import datasets, labels
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.labels import Label, LabelKind
-from mart.episodes.reader import EpisodeFile
+from mart.episodes.reader import EpisodeFile, RecordedMessage
 from mart.protocol import clock, codec
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RecordedView, State
@@ -27,6 +27,7 @@ from mart.recorder.catalogue.timeline import timeline
 PIECE_BYTES = 1024 * 1024
 _FRESH_S = 1.0
 _MAX_PICTURES = 64  # of some 20 kB
+_CLOCKS_DIFFER_NS = 1_000_000_000
 
 
 class CatalogueHandlers:
@@ -177,9 +178,9 @@ class CatalogueHandlers:
 
     def _draw(self, path: str) -> bytes:
         file = self._file(path)
-        for arm in file.episode.arms:
+        for camera in _recorded_cameras(file):
             try:
-                return pictures.last_picture(pictures.frames_of(file, arm))
+                return pictures.last_picture(pictures.frames_of(file, camera))
             except NotFound:
                 continue
         return self._drawings.still(file)
@@ -194,20 +195,31 @@ def _each_tick_once(file: EpisodeFile) -> Iterator[State]:
 
 
 def _views(file: EpisodeFile) -> list[RecordedView]:
-    """Return when the video of each arm begins that is in the file, since the first state was there."""
+    """Return when the video of each camera begins that is in the file, since the first state was there."""
     first = next(file.states(), None)
     if first is None:
         return []
     start_ns = first.stamps.stepped_ns
-    cameras = {video_topic(arm): arm for arm in file.episode.arms}
+    cameras = {video_topic(camera): camera for camera in _recorded_cameras(file)}
     first_ns: dict[str, int] = {}
     for message in file.messages(*cameras):
-        first_ns.setdefault(cameras[message.topic], message.sent_ns)
+        first_ns.setdefault(cameras[message.topic], _shown_ns(message))
     return [
         RecordedView(camera=camera, start_s=(first_ns[camera] - start_ns) / 1e9)
         for camera in cameras.values()
         if camera in first_ns
     ]
+
+
+def _shown_ns(message: RecordedMessage) -> int:
+    """Return when a picture was made; where its machine's clock is another, when it came."""
+    is_near = abs(message.arrived_ns - message.sent_ns) < _CLOCKS_DIFFER_NS
+    return message.sent_ns if is_near else message.arrived_ns
+
+
+def _recorded_cameras(file: EpisodeFile) -> tuple[str, ...]:
+    """Return whose pictures may be in the file: each arm's, drawn or captured, and those of other real cameras."""
+    return tuple(dict.fromkeys([*file.episode.arms, *(file.episode.captured_cameras or ())]))
 
 
 def _viewpoints(file: EpisodeFile) -> tuple[str, ...]:

@@ -189,6 +189,7 @@ class EpisodeAccumulator:
             arm_kinds=facts.arm_kinds,
             world=WORLD_OF_DRIVERS if measured else None,
             measured_arms=measured or None,
+            captured_cameras=tuple(started.captured_cameras) or None if started else None,
             seed=self.seed,
             mode=started and ("lockstep" if started.lockstep else "live"),
             skill=(started and started.skill) or None,

@@ -55,6 +55,7 @@ class Terms:
     skill: str = ""
     time_limit_s: float | None = None
     practice: bool = False
+    cameras: tuple[str, ...] = ()  # the ids of real ones
 
 
 @dataclass(frozen=True)

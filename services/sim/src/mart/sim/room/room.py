@@ -40,6 +40,7 @@ from mart.sim.room.host_words import hear_host
 from mart.sim.room.recording_rules import RecordingRules
 from mart.sim.room.recording_watch import RecordingWatch
 from mart.sim.room.repeats import Repeats
+from mart.sim.room.room_cameras import RoomCameras
 from mart.sim.room.room_publisher import RoomPublisher
 from mart.sim.room.saved_room import SavedRoom, SavedStop
 from mart.sim.room.seats import SeatHolder, SeatTable
@@ -50,8 +51,8 @@ from mart.sim.world import Diverged, World
 class Room:
     """Run one room; used by one thread at a time, which says what time it is (`now_s`, monotonic seconds).
 
-    What it has to say goes to `publisher`, what must survive a crash to `keep`, which may raise OSError. `explain` says
-    in words what became of a world whose physics left its bounds. `before`: the room that goes on in this one.
+    What it says goes to `publisher`, what must survive a crash to `keep`, which may raise OSError. `explain`: what
+    became of a world that left its bounds. `before`: the room that goes on in this one.
     """
 
     def __init__(
@@ -79,14 +80,13 @@ class Room:
         self._barrier = Barrier(world.arms, world.control_period_s / pace, now_s)
         for seat in self._seats:
             self._barrier.seat(seat.arm, seat.operator, seat.epoch, now_s, restored=True)
-        self._terms = terms
-        self._time_limit_s = terms.time_limit_s or world.task.time_limit_s
+        self._terms, self._time_limit_s = terms, terms.time_limit_s or world.task.time_limit_s
         horizon_ticks = round(self._time_limit_s / world.control_period_s)
         self._episode = EpisodeStateMachine(record.seed, horizon_ticks, record.episodes)
         self._ticker = Ticker(name, world, self._boot_ns, now_s, before.tick)
         self._intake = CommandIntake(self._barrier, self._ticker, self._seats, self.tell, world.control_hz)
         self._last_ended = before.last_ended if before.HasField("last_ended") else None
-        self.recording_watch = RecordingWatch(self._boot_ns)
+        self.recording_watch, self.cameras = RecordingWatch(self._boot_ns), RoomCameras(terms.cameras, now_s)
         self._told: tuple[object, ...] = (BARRIER_PHASE_RUNNING,)  # barrier phase and arms waited for
         self._decision = Decision(BARRIER_PHASE_RUNNING, (), (), None, now_s)
         self._repeats = Repeats(publisher, now_s)
@@ -114,9 +114,8 @@ class Room:
 
     def hear(self, payload: bytes, arm: str, at_s: float, at_wall_ns: int) -> None:
         """Take a command that came on the key of `arm`, or count why it cannot be used."""
-        received = self._intake.take(payload, arm, at_s, at_wall_ns)
-        if received is not None and received.emergency_stop:
-            self._stop.heard(received.arm)
+        if (taken := self._intake.take(payload, arm, at_s, at_wall_ns)) and taken.emergency_stop:
+            self._stop.heard(taken.arm)
 
     def answer_seat(self, request: SeatRequest, now_s: float) -> RoomReply:
         """Do what a seat request asks; the reply holds the status, and the seat or an error."""
@@ -200,6 +199,7 @@ class Room:
             practice=self._terms.practice,
             arm_kinds=self._world.task.arm_kinds,
             driven_arms=self.drivers.messages(now_s),
+            cameras=self.cameras.messages(now_s),
             **room_messages.counts(self._record),
         )
 

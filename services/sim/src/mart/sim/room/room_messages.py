@@ -209,6 +209,7 @@ def episode_started(
         lockstep=terms.lockstep,
         skill=terms.skill,
         time_limit_s=time_limit_s,
+        captured_cameras=terms.cameras,
     )
     return Event(episode_started=started)
 

@@ -11,6 +11,7 @@ from mart.protocol import clock, codec, keys
 from mart.protocol.errors import InvalidInput, MartError
 from mart.protocol.messages import (
     ArmMeasured,
+    CameraReport,
     DriverHello,
     DriverReply,
     EpisodeRequest,
@@ -67,6 +68,7 @@ class RoomServer:
             SaveFollower(bus, name, self._on_saved, garbled, room.unsaved),
             bus.subscribe(keys.recording(name).key, self._on_recording_report),
             bus.watch(keys.alive_of(ServiceKind.RECORDER), self._on_recorder_alive),
+            bus.watch(keys.alive_of(ServiceKind.CAMERA), self._on_camera_alive),
             bus.serve(keys.seat(name), self._on_seat_request),
             bus.serve(keys.episode(name), self._on_episode_request),
             bus.serve(keys.model(name), self._on_model_request),
@@ -74,6 +76,10 @@ class RoomServer:
             *(
                 bus.subscribe(keys.arm_measured(name, arm).key, self._on_measured)
                 for arm in room.drivers.arms
+            ),
+            *(
+                bus.subscribe(keys.camera_report(name, camera).key, self._on_camera)
+                for camera in room.cameras.names
             ),
         ]
 
@@ -112,6 +118,31 @@ class RoomServer:
             self._garbled["measured arm"] += 1
         else:
             self._submit(lambda: self._room.drivers.hear(measured, now_s))
+
+    def _on_camera(self, sample: Sample) -> None:
+        now_s = self._now_s()
+        try:
+            report = decode_received(CameraReport, sample.payload, _MAX_REPORT_BYTES)
+            require_room(report, sample.key)
+        except InvalidInput:
+            self._garbled["camera report"] += 1
+        else:
+            self._leave(lambda: self._hear_camera(report, now_s))
+
+    def _hear_camera(self, report: CameraReport, now_s: float) -> None:
+        self._room.cameras.hear(report, now_s)
+        for event in self._room.cameras.news(now_s):
+            self._room.tell(event)
+
+    def _on_camera_alive(self, key: str, alive: bool) -> None:
+        camera = keys.last_of(key).removeprefix(f"{self._name}-")
+        if not alive:
+            self._leave(lambda: self._lose_camera(camera))
+
+    def _lose_camera(self, camera: str) -> None:
+        self._room.cameras.gone(camera, self._now_s())
+        for event in self._room.cameras.news(self._now_s()):
+            self._room.tell(event)
 
     def _on_recording_report(self, sample: Sample) -> None:
         try:

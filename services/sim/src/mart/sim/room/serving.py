@@ -10,6 +10,7 @@ from collections.abc import Callable
 from functools import partial
 
 from mart.protocol import clock, keys
+from mart.protocol.cameras import arm_of_camera
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import Event, RoomStatus
@@ -54,7 +55,8 @@ def serve_room(settings: SimSettings) -> None:
     """Build the world of `settings` and serve its room.
 
     Raises what building a world raises, NotFound for an unknown skill, and InvalidInput for a practice room that is to
-    count or to run by itself, or for arms that do not reach what the task asks of them.
+    count or to run by itself, or for arms that do not reach what the task asks of them;
+    NotFound for a camera of an arm that the task does not have.
     """
     require_practice_alone(
         practice=settings.practice,
@@ -68,12 +70,19 @@ def serve_room(settings: SimSettings) -> None:
     )
     require_reach(world)
     require_sound_beginnings(world)
+    _require_arms_of(settings.cameras, world)
     if settings.drivers:
         serve_driven(settings, world)
     elif settings.lockstep:
         serve_unpaced(settings, world, skill or get_skill(DEFAULT_SKILL))
     else:
         serve_world(settings, world)
+
+
+def _require_arms_of(cameras: tuple[str, ...], world: World) -> None:
+    """Raise NotFound for a camera of a seat that the task does not have."""
+    for arm in filter(None, map(arm_of_camera, cameras)):
+        world.task.arm(arm)
 
 
 def serve_driven(settings: SimSettings, world: World) -> None:
@@ -199,7 +208,12 @@ def _hear_pictures(
 
 
 def _maker(settings: SimSettings, publisher: RoomPublisher, drivers: DrivenArms | None) -> MakeRoom:
-    terms = Terms(skill=settings.skill or "", time_limit_s=settings.time_limit_s, practice=settings.practice)
+    terms = Terms(
+        skill=settings.skill or "",
+        time_limit_s=settings.time_limit_s,
+        practice=settings.practice,
+        cameras=settings.cameras,
+    )
     archive = _archive(settings)
 
     def make(

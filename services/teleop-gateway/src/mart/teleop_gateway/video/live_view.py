@@ -1,4 +1,4 @@
-"""Draw and encode one seat's picture once for everyone who watches, on a thread of its own.
+"""Paint and encode one seat's picture once for everyone who watches, on a thread of its own.
 
 Newest wins before the encoder: a slow renderer leaves states out. After it nothing may be left out, since every
 picture builds on the one before; see `track`. Pictures that take too long are drawn smaller; see `adaptive_resolution`.
@@ -15,21 +15,19 @@ from fractions import Fraction
 from statistics import median
 
 import cv2
-import mujoco
 
 from mart.protocol import clock
-from mart.protocol.errors import InvalidInput, MartError
+from mart.protocol.errors import Corrupt, InvalidInput, MartError
 from mart.protocol.messages import State
-from mart.protocol.tasks import Ghost
 from mart.render import Image
 from mart.runtime.rate_limit import RateLimit
 from mart.runtime.watchdog import end_process, start_vital_thread
 from mart.teleop_gateway.video.adaptive_resolution import AdaptiveResolution, at_full_size
 from mart.teleop_gateway.video.encoder import RECORDED, EncodedPicture, Stream
 from mart.teleop_gateway.video.motion_to_photon import PictureStamps
+from mart.teleop_gateway.video.picture_painter import MakePainter, PicturePainter, UnpaintedPicture
 from mart.teleop_gateway.video.quality import FAST, Quality
-from mart.teleop_gateway.video.render_queue import RenderQueue, RenderQueueClosed, UndrawnState
-from mart.teleop_gateway.video.seat_renderer import SeatRenderer
+from mart.teleop_gateway.video.render_queue import RenderQueue, RenderQueueClosed
 from mart.teleop_gateway.video.stream_encoders import StreamEncoders
 from mart.teleop_gateway.video.thumbnail import EVERY_S, Thumbnail, ThumbnailMaker
 
@@ -51,29 +49,25 @@ class SeatPicture:
 
 
 Sink = Callable[[SeatPicture | Thumbnail], None]
-GhostIn = Callable[[State], Ghost | None]
 
 
 class _RenderPipeline:
-    """Hold what a picture of one size takes: a renderer, encoders, and the picture itself."""
+    """Hold what a picture of one size takes: a painter, encoders, and the picture itself."""
 
-    def __init__(
-        self, renderer: SeatRenderer, quality: Quality, frames_per_s: float, ghost_in: GhostIn
-    ) -> None:
-        self._renderer, self._full, self._frames_per_s = renderer, quality, frames_per_s
-        self._ghost_in = ghost_in
+    def __init__(self, painter: PicturePainter, quality: Quality, frames_per_s: float) -> None:
+        self._painter, self._full, self._frames_per_s = painter, quality, frames_per_s
         self._prepare(quality)
 
     def resize(self, size: Fraction) -> None:
         """Draw at this share of the full width. The first picture of another size is a keyframe."""
         quality = self._full.sized(size)
         if quality != self._quality:
-            self._renderer.resize(quality)
+            self._painter.resize(quality)
             self._prepare(quality)
 
-    def draw(self, state: State) -> None:
-        """Fill the picture with this state."""
-        self._renderer.draw(state.integration_state, state.tick, self.picture_rgb, self._ghost_in(state))
+    def paint(self, unpainted: UnpaintedPicture) -> None:
+        """Fill the picture."""
+        self._painter.paint(unpainted, self.picture_rgb)
 
     @property
     def view_rgb(self) -> Image:
@@ -81,8 +75,8 @@ class _RenderPipeline:
         return self.picture_rgb[: self._quality.view_height_px]
 
     def close(self) -> None:
-        """Give back what the renderer holds."""
-        self._renderer.close()
+        """Give back what the painter holds."""
+        self._painter.close()
 
     def _prepare(self, quality: Quality) -> None:
         self._quality = quality
@@ -91,24 +85,23 @@ class _RenderPipeline:
 
 
 class LiveView:
-    """Draw `camera` of `model` from `start` to `stop`. The sink is called on its thread: it may only hand over.
+    """Paint the seat of `arm` from `start` to `stop`. The sink is called on its thread: it may only hand over.
 
-    ghost_in: what is shown with a state beside what is there.
+    make_painter: called on the same thread; where it raises a MartError, that is the `failure`.
     """
 
     def __init__(
         self,
-        model: mujoco.MjModel,
-        camera: str,
+        make_painter: MakePainter,
+        arm: str,
         frames_per_s: float,
         sink: Sink,
         quality: Quality = FAST,
         *,
-        ghost_in: GhostIn = lambda _: None,
         end: Callable[[str], None] = end_process,
     ) -> None:
-        self._model, self._camera, self._sink, self._quality = model, camera, sink, quality
-        self._frames_per_s, self._ghost_in = frames_per_s, ghost_in
+        self._make_painter, self._arm, self._sink, self._quality = make_painter, arm, sink, quality
+        self._frames_per_s = frames_per_s
         self._queue = RenderQueue()
         self._streams: Mapping[Stream, float] = {}
         self._log_limit = RateLimit(1)
@@ -121,7 +114,7 @@ class LiveView:
 
     def start(self) -> None:
         """Begin to draw, on a thread of its own. Where that fails, the process ends: nobody may drive blind."""
-        self._thread = start_vital_thread(self._run, f"view-{self._camera}", self._end)
+        self._thread = start_vital_thread(self._run, f"view-{self._arm}", self._end)
 
     def stop(self) -> None:
         """Return when the thread has ended."""
@@ -131,7 +124,11 @@ class LiveView:
 
     def offer(self, state: State, received_ns: int) -> None:
         """Draw this state next, in the place of one that is not drawn yet. `received_ns` is when it came here."""
-        self._queue.offer(state, received_ns)
+        self.show(UnpaintedPicture.of(state, received_ns))
+
+    def show(self, unpainted: UnpaintedPicture) -> None:
+        """Paint this next, in the place of what is not painted yet."""
+        self._queue.offer(unpainted)
 
     def set_streams(self, limits_bps: Mapping[Stream, float]) -> None:
         """Make these streams, with so many bits a second; infinity without a limit. The recorded one is always made."""
@@ -169,22 +166,22 @@ class LiveView:
     def _run(self) -> None:
         cv2.setNumThreads(1)
         try:
-            renderer = SeatRenderer(self._model, self._camera, self._quality)
-            pipeline = _RenderPipeline(renderer, self._quality, self._frames_per_s, self._ghost_in)
+            painter = self._make_painter(self._quality)
+            pipeline = _RenderPipeline(painter, self._quality, self._frames_per_s)
         except MartError as error:
-            _log.error("%s gets no picture: %s", self._camera, error)  # the sentence says it all
+            _log.error("%s gets no picture: %s", self._arm, error)  # the sentence says it all
             self.failure = str(error)
             return
         try:
             self._draw_until_closed(pipeline)
         except RenderQueueClosed:
-            _log.debug("The view of %s ends", self._camera)
+            _log.debug("The view of %s ends", self._arm)
         finally:
             pipeline.close()
 
     def _draw_until_closed(self, pipeline: _RenderPipeline) -> None:
         resolution, thumbnails = AdaptiveResolution(self._frames_per_s), ThumbnailMaker()
-        drawn: UndrawnState | None = None
+        drawn: UnpaintedPicture | None = None
         rendered_ns, size = 0, resolution.size
         while True:
             undrawn = self._queue.wait(_REPEAT_AFTER_S, _KEYFRAME_WITHIN_S)
@@ -196,10 +193,10 @@ class LiveView:
                 size = resolution.size
                 pipeline.resize(size)
                 try:
-                    pipeline.draw(undrawn.state)
-                except InvalidInput as error:
+                    pipeline.paint(undrawn)
+                except (InvalidInput, Corrupt) as error:
                     if self._log_limit.allows(begun_s):
-                        _log.warning("A state was not drawn: %s", error)
+                        _log.warning("A picture was not painted: %s", error)
                     continue
                 drawn, rendered_ns = undrawn, clock.wall_ns()
                 self._times_s.append(clock.monotonic_s())
@@ -209,13 +206,13 @@ class LiveView:
                 now_s = clock.monotonic_s()
                 self._took_s.append(at_full_size(clock.thread_cpu_s() - begun_cpu_s, size))
                 resolution.record(now_s - begun_s, now_s)
-                thumbnail = thumbnails.take(pipeline.view_rgb, undrawn.state.stamps.stepped_ns, now_s)
+                thumbnail = thumbnails.take(pipeline.view_rgb, undrawn.image_ns, now_s)
                 if thumbnail is not None:
                     self._sink(thumbnail)
 
-    def _encode(self, pipeline: _RenderPipeline, drawn: UndrawnState, rendered_ns: int) -> None:
+    def _encode(self, pipeline: _RenderPipeline, drawn: UnpaintedPicture, rendered_ns: int) -> None:
         limits_bps, wanted = self._queue.take_orders()
         now_s = clock.monotonic_s()
         for encoded in pipeline.encoders.encode(pipeline.picture_rgb, now_s, limits_bps, wanted):
             stamps = PictureStamps(drawn.received_ns, rendered_ns, clock.wall_ns())
-            self._sink(SeatPicture(encoded, drawn.state.tick, drawn.state.stamps.stepped_ns, stamps))
+            self._sink(SeatPicture(encoded, drawn.tick, drawn.image_ns, stamps))

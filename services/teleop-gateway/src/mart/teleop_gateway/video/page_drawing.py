@@ -53,6 +53,7 @@ class PageDrawing:
         self._making = asyncio.Lock()
         self._remaking: asyncio.Future[None] | None = None  # kept, or it might be collected
         self._wanted = False
+        self._filmed = False
         self._poses: BodyPoses | None = None
         self._log_limit = RateLimit(1)
 
@@ -76,8 +77,14 @@ class PageDrawing:
         """Write poses from now on, or write none."""
         self._wanted = wanted
 
+    def film(self, filmed: bool) -> None:
+        """Take that the seat shows a camera, which no page can draw; or that it does not."""
+        self._filmed = filmed
+
     async def answer(self, request: SceneRequest) -> SceneReply:
         """Return the scene; raises Unavailable where there is no model yet, InvalidInput where pages cannot draw it."""
+        if self._filmed:
+            raise InvalidInput("This seat shows a real camera, whose picture comes as video.")
         async with self._making:  # it is made once, whoever asks meanwhile
             exported = await self._scene()
         known = exported.sha256 in request.known_sha256

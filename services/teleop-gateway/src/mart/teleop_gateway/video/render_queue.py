@@ -1,38 +1,29 @@
-"""Hand states from the event loop to the view's thread; the newest state wins."""
+"""Hand what is to be painted to the view's thread; the newest wins."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from mart.protocol import clock
-from mart.protocol.messages import State
 from mart.teleop_gateway.video.encoder import Stream
-
-
-@dataclass(frozen=True)
-class UndrawnState:
-    """Hold a state that has not been drawn. `received_ns` is when it came to the gateway."""
-
-    state: State
-    received_ns: int
+from mart.teleop_gateway.video.picture_painter import UnpaintedPicture
 
 
 class RenderQueue:
-    """Hold the newest state and what is wanted of the next picture. Any thread may give; one thread takes."""
+    """Hold the newest picture to paint and what is wanted of the next. Any thread may give; one thread takes."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
-        self._newest: UndrawnState | None = None
+        self._newest: UnpaintedPicture | None = None
         self._keyframes: set[Stream] = set()
         self._limits_bps: Mapping[Stream, float] = {}
         self._closed = False
 
-    def offer(self, state: State, received_ns: int) -> None:
-        """Put a newer state; one that nobody has taken yet is left out."""
+    def offer(self, unpainted: UnpaintedPicture) -> None:
+        """Put a newer one; one that nobody has taken yet is left out."""
         with self._changed:
-            self._newest = UndrawnState(state, received_ns)
+            self._newest = unpainted
             self._changed.notify()
 
     def request_keyframe(self, stream: Stream) -> None:
@@ -52,8 +43,8 @@ class RenderQueue:
             self._closed = True
             self._changed.notify()
 
-    def wait(self, idle_s: float, keyframe_s: float) -> UndrawnState | None:
-        """Wait for a state; None after `idle_s`, or already after `keyframe_s` where a keyframe is wanted.
+    def wait(self, idle_s: float, keyframe_s: float) -> UnpaintedPicture | None:
+        """Wait for a picture to paint; None after `idle_s`, or already after `keyframe_s` where a keyframe is wanted.
 
         Raises Closed when there will be no more.
         """
@@ -79,4 +70,4 @@ class RenderQueue:
 
 
 class RenderQueueClosed(Exception):  # an end, not an error
-    """Tell that there will be no more states."""
+    """Tell that there will be nothing more to paint."""

@@ -13,9 +13,11 @@ from mart.protocol.messages import Model, State
 from mart.protocol.received import decode_received
 from mart.runtime.bus.aio import AsyncBus
 from mart.teleop_gateway.served_seats import SeatAddress
+from mart.teleop_gateway.video.captured_pictures import PICTURES_PER_S
 from mart.teleop_gateway.video.encoder import Stream
 from mart.teleop_gateway.video.live_view import LiveView, Sink
 from mart.teleop_gateway.video.page_drawing import PageDrawing
+from mart.teleop_gateway.video.picture_painter import CameraPainter, UnpaintedPicture, world_painter
 from mart.teleop_gateway.video.quality import Quality
 from mart.teleop_gateway.video.seat_renderer import (
     camera_azimuth_rad,
@@ -53,6 +55,7 @@ class ViewManager:
         self._resting = False
         self._bus, self._seat = bus, seat
         self._sink, self._on_azimuth, self._quality = sink, on_azimuth, quality
+        self._filmed = False
         self._boot = 0
         self._sha256 = ""
         self._limits_bps: Mapping[Stream, float] = {}
@@ -64,14 +67,32 @@ class ViewManager:
     def offer(self, state: State, received_ns: int) -> None:
         """Draw this state next. Call it on any thread."""
         view = self._view
-        if view is not None:
+        if view is not None and not self._filmed:
             view.offer(state, received_ns)
+
+    def show(self, captured: UnpaintedPicture) -> None:
+        """Show this picture of a camera next. Call it on any thread."""
+        view = self._view
+        if view is not None and self._filmed:
+            view.show(captured)
+
+    def film(self, filmed: bool) -> None:
+        """Show pictures of cameras from now on, or draw. Call it on the event loop."""
+        if filmed == self._filmed:
+            return
+        self._filmed, self._sha256 = filmed, ""
+        self._pages.film(filmed)
+        if self._boot:
+            self._begin_fetching()
 
     def on_boot(self, boot: int) -> None:
         """Take that the sim has started anew, perhaps with another model. Call it on the event loop."""
         if boot == self._boot:
             return
         self._boot = boot
+        self._begin_fetching()
+
+    def _begin_fetching(self) -> None:
         if self._fetching is not None:
             self._fetching.cancel()
         self._fetching = self._bus.spawn(self._fetch())
@@ -142,9 +163,14 @@ class ViewManager:
         azimuth_rad = camera_azimuth_rad(model, self._seat.arm)
         task, arm = task_of(message), self._seat.arm
         self._pages.use(model, task)
-        self._projection = ToolProjection.of(model, task, arm) if task is not None else None
-        drawn, ghosts = drawn_model(model, self._quality), ghosts_for(task, arm)
-        view = LiveView(drawn, arm, message.control_hz, self._sink, self._quality, ghost_in=ghosts)
+        # Where a real camera hangs is not known, so nothing can be written into its picture.
+        drawn_task = None if self._filmed else task
+        self._projection = ToolProjection.of(model, drawn_task, arm) if drawn_task is not None else None
+        if self._filmed:
+            view = LiveView(CameraPainter, arm, PICTURES_PER_S, self._sink, self._quality)
+        else:
+            painter = world_painter(drawn_model(model, self._quality), arm, ghosts_for(task, arm))
+            view = LiveView(painter, arm, message.control_hz, self._sink, self._quality)
         view.set_streams(self._limits_bps)
         view.set_resting(self._resting)
         # Where this is cancelled half-way, no model is drawn: the next one that is fetched must be used.

@@ -12,6 +12,7 @@ from mart.teleop_gateway.input.cues import CueFilter, PressVerdict
 from mart.teleop_gateway.input.driving import InputDevice
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.seat_events import SeatEvents
+from mart.teleop_gateway.video.camera_feed import CameraFeed
 from mart.teleop_gateway.video.encoder import Stream
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton, PageDraws
 from mart.teleop_gateway.video.page_drawing import PageDrawing
@@ -38,6 +39,7 @@ class PeerMessages:
         pages: PageDrawing,
         seat_input: SeatInput,
         views: ViewManager,
+        cameras: CameraFeed,
         latency: MotionToPhoton,
         events: SeatEvents,
         broadcaster: StatusBroadcaster,
@@ -47,7 +49,7 @@ class PeerMessages:
         self._peers, self._pages = peers, pages
         self._voice, self._speech = voice, speech
         self._input, self._views, self._latency = seat_input, views, latency
-        self._events, self._broadcaster = events, broadcaster
+        self._cameras, self._events, self._broadcaster = cameras, events, broadcaster
         self._cues = CueFilter()
 
     def on_joined(self, peer: Peer) -> None:
@@ -113,9 +115,10 @@ class PeerMessages:
     def _on_drawing(self, peer: Peer, message: status_channel.DrawingMessage) -> None:
         if peer.role is Role.PHONE:
             return
-        self._peers.set_draws(peer, message.on)
+        is_on = message.on and not self._cameras.is_filmed
+        self._peers.set_draws(peer, is_on)
         if peer.role is Role.BROWSER:
-            self._latency.draws = PageDraws(message.on, message.p50_ms, message.p95_ms, message.per_s)
+            self._latency.draws = PageDraws(is_on, message.p50_ms, message.p95_ms, message.per_s)
 
     def _do_for_holder(self, peer: Peer, device: InputDevice, message: status_channel.PeerMessage) -> None:
         match message:
@@ -126,6 +129,8 @@ class PeerMessages:
             case status_channel.SelectInputMessage(chosen):
                 self._input.select(chosen)
                 self._broadcaster.tell_changes()
+            case status_channel.ChooseCameraMessage(camera) if device is InputDevice.KEYBOARD:
+                self._cameras.choose(camera)
             case status_channel.CueMessage(cue, press_us):
                 verdict = self._cues.judge(press_us, clock.monotonic_s())
                 if verdict is PressVerdict.SAID:

@@ -9,6 +9,7 @@ from mart.protocol import clock
 from mart.protocol.messages import Event, RoomStatus, State
 from mart.teleop_gateway.input.driving import Driving
 from mart.teleop_gateway.input.seat_input import SeatInput
+from mart.teleop_gateway.video.camera_feed import CameraFeed
 from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton
 from mart.teleop_gateway.video.recorded_view import RecordedView
 from mart.teleop_gateway.video.view_manager import ViewManager
@@ -24,8 +25,14 @@ class StatusBroadcaster:
     """Keep the newest state and status of the room, and tell peers of them. Give it both as they come."""
 
     def __init__(
-        self, peers: Peers, seat_input: SeatInput, views: ViewManager, latency: MotionToPhoton
+        self,
+        peers: Peers,
+        seat_input: SeatInput,
+        views: ViewManager,
+        cameras: CameraFeed,
+        latency: MotionToPhoton,
     ) -> None:
+        self._cameras = cameras
         self.state = State()
         self.status = RoomStatus()
         self._peers, self._input, self._views, self._latency = peers, seat_input, views, latency
@@ -76,7 +83,8 @@ class StatusBroadcaster:
                 now_s,
                 latency=latency,
                 frames_per_s=frames_per_s,
-                no_picture=self._views.failure(),
+                no_picture=self._views.failure() or self._cameras.darkness(now_s),
+                camera=self._cameras.shown,
                 tools=self._views.tool_places(self.state),
             )
         )

@@ -80,6 +80,13 @@ class SelectInputMessage:
 
 
 @dataclass(frozen=True)
+class ChooseCameraMessage:
+    """Ask for the camera with this id to be shown at the seat."""
+
+    camera: str
+
+
+@dataclass(frozen=True)
 class CueMessage:
     """Give a word to the partners. `press_us`, the sender's clock, names the press, which is told several times."""
 
@@ -95,7 +102,14 @@ class TokenMessage:
 
 
 PeerMessage = (
-    PingMessage | ClockMessage | SeenMessage | DrawingMessage | SelectInputMessage | CueMessage | TokenMessage
+    PingMessage
+    | ClockMessage
+    | SeenMessage
+    | DrawingMessage
+    | SelectInputMessage
+    | ChooseCameraMessage
+    | CueMessage
+    | TokenMessage
 )
 
 
@@ -124,12 +138,14 @@ def _parsed(message: object) -> PeerMessage:
             parsed = DrawingMessage(on, *(_bounded(value) for value in (p50, p95, per_s)))
         case {"type": "input", "input": name}:
             parsed = SelectInputMessage(InputDevice(name))
+        case {"type": "camera", "camera": str(camera)}:
+            parsed = ChooseCameraMessage(camera)
         case {"type": "cue", "cue": str(word), "t_us": t_us}:
             parsed = CueMessage(cue_from_word(word), _finite(t_us))
         case {"type": "token", "token": str(token)}:
             parsed = TokenMessage(token)
         case _:
-            raise ValueError("it is none of ping, clock, seen, drawing, input, cue and token")
+            raise ValueError("it is none of ping, clock, seen, drawing, input, camera, cue and token")
     return parsed
 
 
@@ -180,6 +196,7 @@ def tick(
     frames_per_s: float,
     latency: LatencySummary | None,
     no_picture: str = "",
+    camera: str = "",
     tools: ToolPlaces = MappingProxyType({}),
 ) -> str:
     """Return what a page shows, at most MAX_CHARACTERS long."""
@@ -210,6 +227,7 @@ def tick(
             "phone": phone and _phone(phone),
             "rejected": dict(driving.rejected()),
             "no_picture": no_picture[:_REASON_CHARACTERS],
+            **({"camera": camera} if camera else {}),
             "tools": dict(tools),
             "fps": round(frames_per_s, 1),
             "latency": latency and _latency(latency),

@@ -13,7 +13,7 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.web.access.certificate import days_left
 from mart.web.access.site_names import is_loopback
 from mart.web.api.dependencies import Address, App, JoinedUser, now_unix_s
-from mart.web.lobby.health_findings import delays, machine, pictures, relays, rooms, services
+from mart.web.lobby.health_findings import cameras, delays, machine, pictures, relays, rooms, services
 from mart.web.lobby.room_json import Json
 
 router = APIRouter(prefix="/api/health")
@@ -37,9 +37,11 @@ async def health(request: Request, app: App, address: Address) -> Json:
 @router.get("/findings")
 async def findings(app: App, _user: JoinedUser) -> Json:
     """Send everything that is known of the platform's health, each problem with its mend."""
+    seen = app.lobby.rooms_json("", clock.monotonic_s())
     known = (
         *services(app.lobby.services.by_kind()),
-        *rooms(app.lobby.rooms_json("", clock.monotonic_s())),
+        *rooms(seen),
+        *cameras(seen),
         *delays(app.lobby.latencies.fresh(clock.monotonic_s()), os.getloadavg()[0] / (os.cpu_count() or 1)),
         *pictures(app.lobby.missing_pictures.fresh(clock.monotonic_s())),
         *machine(shutil.disk_usage(app.data_dir).free, days_left(app.certificate, now_unix_s())),

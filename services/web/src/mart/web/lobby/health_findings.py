@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from mart.protocol.cameras import camera_title
 from mart.protocol.messages import Event
 from mart.protocol.vocabulary import ServiceKind
 from mart.web.lobby.room_json import Json
@@ -93,6 +94,19 @@ def rooms(seen: Iterable[Json]) -> Iterator[HealthFinding]:
         elif room["slow"]:
             mend = _BUSY
         yield HealthFinding("rooms", room["room"], found, mend)
+
+
+def cameras(seen: Iterable[Json]) -> Iterator[HealthFinding]:
+    """Yield what is known of each real camera; `seen`: as for `rooms`."""
+    for room in seen:
+        for one in room["cameras"]:
+            mend = "Look at its cable, its light and its lens, and whether `mart camera` runs; it comes back by itself."
+            yield HealthFinding(
+                "rooms",
+                f"camera {camera_title(one['camera'])} in {room['room']}",
+                one["dark"] or "gives pictures",
+                mend if one["dark"] else "",
+            )
 
 
 def delays(newest: Iterable[tuple[str, Event.Latency]], load: float = 0.0) -> Iterator[HealthFinding]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from mart.protocol.cameras import arm_of_camera
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.holders import is_held_by
 from mart.protocol.messages import (
@@ -86,6 +87,10 @@ def status_json(status: RoomStatus, holder_id: str) -> Json:
         ],
         "seats": [seat_json(seat, holder_id) for seat in status.seats],
         "arm_kinds": list(status.arm_kinds),
+        "cameras": [
+            {"camera": one.camera, "arm": arm_of_camera(one.camera), "dark": one.dark}
+            for one in status.cameras
+        ],
         "to_do": dict(status.to_do),
         "episode": _episode_json(status),
         "episodes_saved": status.episodes_saved,

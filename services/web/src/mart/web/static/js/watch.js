@@ -5,6 +5,7 @@ import { armName, badge, hasPicture, holderName } from "./arms.js";
 import { cueText } from "./cues.js";
 import { byId, element, setShown, setText } from "./dom.js";
 import { seconds } from "./formatting.js";
+import { leaveToCamera } from "./hud/seat-cameras.js";
 import { approachAsPage } from "./link/page-approach.js";
 import { LinkState, SeatLink } from "./link/seat-link.js";
 import { followRooms } from "./live.js";
@@ -72,6 +73,7 @@ async function begin() {
 
 /** @param {StatusChannel.Tick} status */
 function onStatus(status) {
+  if (drawn && status.camera) leaveToCamera(drawn);
   drawn?.onTick(status.tick);
   if (!drawn?.isShown) labels.place(toldPlaces(status));
 }

@@ -35,7 +35,7 @@ export const outcomeText = (outcome) => wordOf(OUTCOMES, outcome) ?? NOT_SAID;
 export const verdictText = (verdict) => wordOf(VERDICTS, verdict) ?? verdict;
 
 /** From where one looks: an arm's side, or the front. @type {(camera: string) => string} */
-export const cameraText = (camera) => (camera === "front" ? "Front" : armName(camera));
+export const cameraText = (camera) => (camera === "front" ? "Front" : armName(camera).replace("-", "."));
 
 /** Whether it is learned from, where that does not speak for itself. @type {(outcome: string) => string} */
 export function fitText(outcome) {

@@ -2,6 +2,7 @@
 
 import { hasPicture } from "../arms.js";
 import { byId, setShown, setText } from "../dom.js";
+import { inPlainWords } from "../plain-words.js";
 
 /** @type {Partial<Record<Messages.Operator, string>>} */
 const NOBODY_LOOKS = {
@@ -16,7 +17,7 @@ const NOBODY_LOOKS = {
  * @param {boolean} seen
  */
 function missingText(seat, failure, seen) {
-  if (failure) return `There is no picture. ${failure}`;
+  if (failure) return `There is no picture. ${inPlainWords(failure)}`;
   return NOBODY_LOOKS[seat.operator] ?? (seen ? "" : "Connecting to the scene…");
 }
 

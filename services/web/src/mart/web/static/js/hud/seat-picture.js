@@ -1,7 +1,7 @@
 // The picture of one's seat, as video or drawn in the page: what of it is seen, and who drives which arm in it.
 
 import { holderName } from "../arms.js";
-import { byId, setShown } from "../dom.js";
+import { byId, setShown, setText } from "../dom.js";
 import { LinkState } from "../link/seat-link.js";
 import { watchTicks } from "../link/tickcode.js";
 import { DrawnPicture } from "../scene/drawn-picture.js";
@@ -9,6 +9,7 @@ import { pictureChoice } from "../scene/picture-choice.js";
 import { toldPlaces, ToolLabels } from "../scene/tool-labels.js";
 import { DisplayedTicks } from "./displayed-ticks.js";
 import { showPicture } from "./picture.js";
+import { camerasOf, cameraText, leaveToCamera, nextCamera } from "./seat-cameras.js";
 import { SecondView } from "./second-view.js";
 
 /** @import { State } from "../link/seat-link.js" */
@@ -27,6 +28,8 @@ export class SeatPicture {
   drawn;
   video = byId("video", HTMLVideoElement);
   #own;
+  #send;
+  #camera = ""; // the real one that is shown
   #labels = new ToolLabels(byId("labels"));
   #second;
   #displayed = new DisplayedTicks();
@@ -35,6 +38,7 @@ export class SeatPicture {
   /** @param {SeatPictureOptions} options */
   constructor({ own, send, onSeen, onChange, commanded }) {
     this.#own = own;
+    this.#send = send;
     this.#second = new SecondView(own);
 
     /** @type {(tick: number, nowMs: number) => void} */
@@ -79,6 +83,8 @@ export class SeatPicture {
 
   /** Takes what the gateway tells: of a video also where the tools are in it. @param {StatusChannel.Tick} status */
   onStatus(status) {
+    this.#camera = status.camera ?? "";
+    if (this.#camera) leaveToCamera(this.drawn);
     this.drawn.onTick(status.tick);
     if (!this.drawn.isShown) this.#labels.place(toldPlaces(status));
   }
@@ -100,8 +106,16 @@ export class SeatPicture {
     setShown(byId("labels"), state === LinkState.LIVE && !status?.no_picture);
   }
 
-  /** Shows another second view, or none; raises an Error where there is none. @param {Api.Room | null} room */
+  /**
+   * Shows another second view, or none; raises an Error where there is none. Of several real cameras, shows the next.
+   * @param {Api.Room | null} room
+   */
   showNextView(room) {
+    const cameras = camerasOf(room, this.#own.arm);
+    if (cameras.length > 1) {
+      this.#send({ type: "camera", camera: nextCamera(cameras, this.#camera) });
+      return;
+    }
     const why = this.#second.next(room, this.drawn.isShown);
     this.drawn.look();
     if (why) throw new Error(why);
@@ -116,6 +130,8 @@ export class SeatPicture {
   tell(room, wordsOf) {
     const { seats, episode } = room;
     this.#second.update(room, this.drawn.isShown);
+    const cameras = camerasOf(room, this.#own.arm);
+    setText(byId("camera"), cameras.length > 1 ? cameraText(nextCamera(cameras, this.#camera)) : "Second view");
     const driven = seats.filter(({ operator }) => operator !== "hold");
     const arms = driven.map((seat) => ({ arm: seat.arm, name: holderName(seat), words: wordsOf(seat.arm) }));
     const isNamed = episode.phase === "practice" || episode.phase === "countdown";

@@ -57,8 +57,8 @@ export class DrawnPicture {
   constructor(options) {
     this.#options = options;
     this.#scene = new SceneCanvas(options.host, () => this.#onLost());
-    if (options.choice === "video") this.#end("This page was asked for video.");
-    else if (options.choice === "auto" && wasSlow()) this.#end("This device draws too slowly.");
+    if (options.choice === "video") this.end("This page was asked for video.");
+    else if (options.choice === "auto" && wasSlow()) this.end("This device draws too slowly.");
     this.#telling = setInterval(() => this.#tell(), REPORT_EVERY_MS);
     this.#sizes = new ResizeObserver(() => this.#resize());
     this.#sizes.observe(options.host);
@@ -216,7 +216,7 @@ export class DrawnPicture {
     this.#lost += 1;
     void this.#immersive?.end();
     this.#leave();
-    if (this.#lost >= MOST_LOST) this.#end("The graphics card was lost several times.");
+    if (this.#lost >= MOST_LOST) this.end("The graphics card was lost several times.");
     else this.why = "The graphics card was lost; video is shown until it is back.";
     this.#options.onChange();
   }
@@ -275,11 +275,11 @@ export class DrawnPicture {
   /** @param {number} ms */
   #endSlow(ms) {
     rememberSlow();
-    this.#end(`This device draws too slowly: ${ms.toFixed(0)} ms a picture.`);
+    this.end(`This device draws too slowly: ${ms.toFixed(0)} ms a picture.`);
   }
 
-  /** @param {string} why */
-  #end(why) {
+  /** Nothing is tried any more. @param {string} why */
+  end(why) {
     this.why = why;
     this.#ended = true;
   }

@@ -1,0 +1,1 @@
+"""Capture real cameras beside their hardware: `mart camera`."""
