@@ -134,3 +134,17 @@ def test_files_of_other_names_and_sizes_are_refused(folder: Path) -> None:
 def test_whatever_is_in_a_file_it_is_a_task_or_a_sentence(at: int, what: str) -> None:
     with contextlib.suppress(InvalidInput):
         assert read_task_file(NAME, TEXT[:at] + what + TEXT[at + len(what) :], "push.toml").name == NAME
+
+
+def test_an_arm_may_have_a_part_without_fingers(folder: Path) -> None:
+    alone = TEXT.replace("y_m = 0.0\n", "y_m = 0.0\nfingers = false\n", 1)
+    (folder / f"{NAME}.toml").write_text(TEXT)
+    with pytest.raises(InvalidInput, match="has no fingers"):
+        get_task(NAME, 1, ("panda+wiping_pad",))
+    (folder / f"{NAME}2.toml").write_text(alone)
+    assert get_task(f"{NAME}2", 1, ("panda+wiping_pad",)).arms[0].kind.has_fingers is False
+    held = alone.replace(
+        'is = "inside", object = "block", region = "corner"', 'is = "held", object = "block", by = "arm0"'
+    )
+    with pytest.raises(InvalidInput, match="arm0 holds something"):
+        read_task_file(f"{NAME}3", held, "held.toml")

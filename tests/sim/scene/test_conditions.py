@@ -34,18 +34,22 @@ regions = [{ name = "spot", center_m = [0.0, 0.1, 0.02], half_m = [0.05, 0.05, 0
 """
 
 
-@pytest.fixture(scope="module")
-def world(tmp_path_factory: pytest.TempPathFactory) -> World:
-    folder: Path = tmp_path_factory.mktemp("tasks")
+def built(folder: Path, head: str, *left_out: str, kinds: tuple[str, ...] = ()) -> World:
     (folder / "conditions.xml").write_text(XML)
     subtasks = "".join(
         f'[[subtasks]]\nname = "{name}"\ntitle = "{name}"\nwhen = {when}\n'
         for name, when in CONDITIONS.items()
+        if name not in left_out
     )
-    (folder / "conditions.toml").write_text(HEAD + subtasks)
+    (folder / "conditions.toml").write_text(head + subtasks)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("MART_TASKS_DIR", str(folder))
-        return World.build("conditions")
+        return World.build("conditions", kinds=kinds)
+
+
+@pytest.fixture(scope="module")
+def world(tmp_path_factory: pytest.TempPathFactory) -> World:
+    return built(tmp_path_factory.mktemp("tasks"), HEAD)
 
 
 def holding(world: World) -> set[str]:
@@ -91,3 +95,12 @@ def test_what_is_in_a_hand_is_held_and_not_released(world: World) -> None:
             world.step([world.action_for("arm0", goal, gripper)])
         assert ("held" in holding(world)) == (gripper == 1.0)
         assert "released" not in holding(world)
+
+
+def test_an_arm_without_fingers_is_beside_things_and_holds_none(tmp_path: Path) -> None:
+    head = HEAD.replace("y_m = 0.0 }]", "y_m = 0.0, fingers = false }]")
+    world = built(tmp_path, head, "held", kinds=("panda+wiping_pad",))
+    put(world, (0.0, 0.0, 0.02))
+    assert holding(world) == RESTING
+    put(world, tuple(world.data.site("arm0/tool").xpos))
+    assert "released" not in holding(world)

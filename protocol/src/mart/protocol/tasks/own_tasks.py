@@ -120,6 +120,7 @@ def task_of_file(file: TaskFile) -> Task:
         trial_ticks=None if file.trial_limit_s is None else round(file.trial_limit_s * _TICKS_PER_S),
         success_hold_ticks=round(file.success.hold_s * _TICKS_PER_S),
         afterwards=file.afterwards,
+        fingerless=file.fingerless,
         file=file,
     )
 

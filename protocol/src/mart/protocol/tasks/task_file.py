@@ -41,13 +41,17 @@ class SceneSource(TaskFilePart):
 
 
 class ArmStand(TaskFilePart):
-    """Stand an arm in the world. kind: what it is unless another is chosen. start_m: of its tool, in its base."""
+    """Stand an arm in the world. kind: what it is unless another is chosen. start_m: of its tool, in its base.
+
+    fingers: its part needs an end effector that grips.
+    """
 
     x_m: float = Field(ge=-3.0, le=3.0)
     y_m: float = Field(ge=-3.0, le=3.0)
     yaw_rad: _Angle = 0.0
     kind: str = Field("panda", min_length=1, max_length=80)
     start_m: _Point = (0.45, 0.0, 0.20)
+    fingers: bool = True
 
 
 class Spawn(TaskFilePart):
@@ -171,6 +175,11 @@ class TaskFile(TaskFilePart):
         """Return the names arm0, arm1 and so on."""
         return tuple(f"arm{index}" for index in range(len(self.arms)))
 
+    @property
+    def fingerless(self) -> tuple[str, ...]:
+        """Return the arms whose part can be done without fingers."""
+        return tuple(name for name, arm in zip(self.arm_names, self.arms, strict=True) if not arm.fingers)
+
     @model_validator(mode="after")
     def _names_meet(self) -> Self:
         objects = [one.name for one in self.objects]
@@ -198,6 +207,10 @@ class TaskFile(TaskFilePart):
             _known(f"{where} names the", "region", regions, [one.name for one in self.regions])
             arms = [one.by for one in conditions if isinstance(one, Held)]
             _known(f"{where} names the", "arm", arms, self.arm_names)
+            for arm in set(arms) & set(self.fingerless):
+                raise ValueError(
+                    f"{where}: {arm} holds something, and its `fingers` are false; leave those out"
+                )
         return self
 
     def _conditions(self) -> Iterable[tuple[str, Conditions]]:

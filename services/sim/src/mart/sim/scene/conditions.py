@@ -17,6 +17,7 @@ from mart.protocol.tasks.conditions import (
     Still,
     Upright,
 )
+from mart.protocol.tasks.task import Arm
 from mart.protocol.tasks.task_file import WORLD, Region
 from mart.sim.scene.data import Array, Data, Flags, length, within
 from mart.sim.scene.scene import all_of
@@ -25,7 +26,7 @@ from mart.sim.scene.things import Thing, Tool
 Judge = Callable[[], Flags]
 
 _NOTHING_HELD_M = 0.004  # so narrow a gap holds nothing
-_OPEN_M = 0.076  # and so wide a one is open
+_OPEN = 0.95  # of the gap between open fingers: they hold nothing either
 
 
 class ConditionJudge:
@@ -38,13 +39,14 @@ class ConditionJudge:
         self,
         data: Data,
         objects: Sequence[str],
-        arms: Sequence[str],
+        arms: Sequence[Arm],
         regions: Sequence[Region],
         body: Callable[[str], str],
     ) -> None:
         self._data, self._in_model = data, body
         self.things: Mapping[str, Thing] = {name: Thing(data, body(name)) for name in objects}
-        self._tools = {arm: Tool(data, arm) for arm in arms}
+        self._tools = {arm.name: Tool(data, arm) for arm in arms if arm.kind.has_fingers}
+        self._tool_positions = [data.site(f"{arm.name}/tool").xpos for arm in arms]
         self._regions = {region.name: region for region in regions}
 
     def judge(self, conditions: Sequence[Condition]) -> Judge:
@@ -73,8 +75,8 @@ class ConditionJudge:
                 return lambda: _holds(tool) & (length(tool.position - thing.position) <= asked.within_m)
             case Released():
                 thing = self.things[asked.object]
-                tools = self._tools.values()
-                return lambda: all_of(length(one.position - thing.position) > asked.beyond_m for one in tools)
+                tools = self._tool_positions
+                return lambda: all_of(length(tool - thing.position) > asked.beyond_m for tool in tools)
         position = self._data.joint(self._in_model(asked.joint)).qpos
         low = -np.inf if asked.at_least is None else asked.at_least
         high = np.inf if asked.at_most is None else asked.at_most
@@ -90,4 +92,4 @@ class ConditionJudge:
 
 def _holds(tool: Tool) -> Flags:
     width: Array = tool.width_m
-    return (width > _NOTHING_HELD_M) & (width < _OPEN_M)
+    return (width > _NOTHING_HELD_M) & (width < _OPEN * tool.open_m)

@@ -61,6 +61,7 @@ class Tool:
         self.position = data.site(f"{arm.name}/tool").xpos  # in the world, shape (..., 3)
         self._finger = data.joint(f"{arm.name}/left_finger").qpos
         self._stroke_m = stroke_m(arm.kind.end_effector)
+        self.open_m = 2 * self._stroke_m  # between open pads
 
     @property
     def width_m(self) -> Array:

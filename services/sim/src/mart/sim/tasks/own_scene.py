@@ -38,7 +38,7 @@ class OwnScene(Scene):
     def attach(self, data: Data) -> None:
         file, self._data = self._file, data
         names = [one.name for one in file.objects]
-        judge = ConditionJudge(data, names, file.arm_names, file.regions, in_model)
+        judge = ConditionJudge(data, names, self.task.arms, file.regions, in_model)
         self.things = judge.things
         self._subtasks = [judge.judge(one.when) for one in file.subtasks]
         self._success = judge.judge(file.success.when) if file.success.when is not None else None

@@ -9,6 +9,18 @@ const PANDA = "panda";
 const USUAL = ""; // what the arm's own robot file names
 
 /**
+ * What an arm is to be.
+ * @param {string} arm
+ * @param {Api.ArmKind[]} kinds
+ */
+const kindSelect = (arm, kinds) =>
+  element(
+    "select",
+    { id: `new-kind-${arm}` },
+    ...kinds.map(({ name, title }) => element("option", { value: name }, title)),
+  );
+
+/**
  * What an arm is to hold at its end, as it is written after its kind.
  * @param {string} arm
  * @param {Api.EndEffector[]} endEffectors
@@ -28,13 +40,7 @@ const endSelect = (arm, endEffectors) =>
  * @param {HTMLSelectElement} count how many arms there are to be
  */
 export function kindSelects(kinds, endEffectors, count) {
-  const selects = ARMS.map((arm) =>
-    element(
-      "select",
-      { id: `new-kind-${arm}` },
-      ...kinds.map(({ name, title }) => element("option", { value: name }, title)),
-    ),
-  );
+  const selects = ARMS.map((arm) => kindSelect(arm, kinds));
   const ends = ARMS.map((arm) => endSelect(arm, endEffectors));
   const arms = selects.map((select, number) =>
     element("div", {}, element("label", {}, armName(ARMS[number] ?? ""), select), ends[number] ?? ""),
