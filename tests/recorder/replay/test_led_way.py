@@ -15,9 +15,9 @@ from mart.protocol.pose import Pose
 from mart.recorder.replay.led_way import (
     APPROACH_M_S,
     APPROACH_RAD_S,
-    ArmStand,
     LedWay,
     RecordedWay,
+    StandingArm,
     require_near,
 )
 from tests.recorder.replay.ways import ARMS, BEGIN_M, DOWN, JOINTS_RAD, PERIOD_S, swung
@@ -63,16 +63,16 @@ def test_it_leads_slowly_to_the_beginning_and_never_faster_than_a_share_of_the_r
 
 def test_an_arm_too_far_from_the_beginning_is_refused_with_what_is_allowed() -> None:
     way = RecordedWay.of(swung(), ["arm0"])
-    far = ArmStand(Pose(BEGIN_M + np.array([0.3, 0.0, 0.0]), DOWN), JOINTS_RAD)
+    far = StandingArm(Pose(BEGIN_M + np.array([0.3, 0.0, 0.0]), DOWN), JOINTS_RAD)
     with pytest.raises(Conflict, match=r"arm0 stands too far .* 0\.30 m .* 0\.25 m and 0\.8 rad are allowed"):
         require_near(way, {"arm0": far})
-    turned = ArmStand(Pose(BEGIN_M, np.array([0.0, 0.6, 0.8, 0.0])), JOINTS_RAD)
+    turned = StandingArm(Pose(BEGIN_M, np.array([0.0, 0.6, 0.8, 0.0])), JOINTS_RAD)
     with pytest.raises(Conflict, match="arm0 stands too far"):
         require_near(way, {"arm0": turned})
-    bent = ArmStand(Pose(BEGIN_M, DOWN), JOINTS_RAD + np.array([0, 0, 1.2, 0, 0, 0, 0]))
+    bent = StandingArm(Pose(BEGIN_M, DOWN), JOINTS_RAD + np.array([0, 0, 1.2, 0, 0, 0, 0]))
     with pytest.raises(Conflict, match=r"its joint 3 is 1\.20 rad from there"):
         require_near(way, {"arm0": bent})
-    require_near(way, {"arm0": ArmStand(Pose(BEGIN_M + np.array([0.0, 0.2, 0.0]), DOWN), JOINTS_RAD)})
+    require_near(way, {"arm0": StandingArm(Pose(BEGIN_M + np.array([0.0, 0.2, 0.0]), DOWN), JOINTS_RAD)})
 
 
 def test_what_jumps_or_does_not_go_on_is_no_way() -> None:

@@ -23,7 +23,7 @@ JUMP_M = 0.2  # between two ticks of a recording: no arm moved so
 
 
 @dataclass(frozen=True)
-class ArmStand:
+class StandingArm:
     """Hold where an arm stands: the measured pose of its tool in its base, and its joint positions, radians."""
 
     tool_in_base: Pose
@@ -36,7 +36,7 @@ class ArmWay:
 
     poses: Sequence[Pose]
     grippers: Array
-    begin: ArmStand
+    begin: StandingArm
     length_m: float = field(init=False)
 
     def __post_init__(self) -> None:
@@ -125,7 +125,7 @@ class LedWay:
         }
 
 
-def require_near(way: RecordedWay, stands: Mapping[str, ArmStand]) -> None:
+def require_near(way: RecordedWay, stands: Mapping[str, StandingArm]) -> None:
     """Raise Conflict where an arm stands too far from where it began: nobody knows whether the way there is free."""
     for arm, led in way.arms.items():
         stand = stands[arm]
@@ -164,7 +164,7 @@ def _way(data: EpisodeData, arm: str) -> ArmWay:
     joints = data.observations.get(joint_observation(arm))
     if joints is None:
         raise InvalidInput(f"The recording does not say where the joints of {arm} were.")
-    return ArmWay(poses, np.append(grippers, grippers[-1]), ArmStand(poses[0], joints[0]))
+    return ArmWay(poses, np.append(grippers, grippers[-1]), StandingArm(poses[0], joints[0]))
 
 
 def joint_observation(arm: str) -> str:

@@ -24,7 +24,7 @@ from mart.protocol.room_task import task_of_room
 from mart.protocol.tasks import Task, get_task
 from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.replay.ends import EndWatch, objection_to_room
-from mart.recorder.replay.led_way import ArmStand, LedWay, RecordedWay, joint_observation, require_near
+from mart.recorder.replay.led_way import LedWay, RecordedWay, StandingArm, joint_observation, require_near
 from mart.recorder.replay.same_arm import require_same_arm, require_same_kind, require_same_task
 from mart.recorder.replay.way_operator import WayOperator
 from mart.render.compiled_model import load_model
@@ -163,7 +163,7 @@ def _require_same_arms(bus: Bus, file: EpisodeFile, room: str, arms: Sequence[st
         require_same_arm(arm, was, is_now, room)
 
 
-def _stands(state: State, arms: Sequence[str]) -> dict[str, ArmStand]:
+def _stands(state: State, arms: Sequence[str]) -> dict[str, StandingArm]:
     poses = {arm.arm: pose_from_message(arm.tool_in_base) for arm in state.arms}
     joints = {one.name: np.array(one.value) for one in state.observations}
-    return {arm: ArmStand(poses[arm], joints[joint_observation(arm)]) for arm in arms}
+    return {arm: StandingArm(poses[arm], joints[joint_observation(arm)]) for arm in arms}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from mart.operators import Operator, SeatView, ToolTarget
 from mart.protocol.errors import Conflict
-from mart.recorder.replay.led_way import ArmStand, LedWay, RecordedWay, joint_observation, require_near
+from mart.recorder.replay.led_way import LedWay, RecordedWay, StandingArm, joint_observation, require_near
 
 LET_GO_TICKS = 3  # before the clutch is pressed: room and driver must each see that it was let go
 STALLS_AFTER_S = 3.0
@@ -51,7 +51,7 @@ class WayOperator(Operator):
     def _from(self, view: SeatView) -> LedWay:
         """Return the way from where the arms stand by now: the first state may be from before they were moved."""
         stands = {
-            arm: ArmStand(pose, view.observations[joint_observation(arm)])
+            arm: StandingArm(pose, view.observations[joint_observation(arm)])
             for arm, pose in view.poses_tool_in_base.items()
         }
         require_near(self._recorded, stands)
