@@ -72,7 +72,7 @@ const picture = new SeatPicture({
   send: (message) => link.send(message),
   onSeen: (tick) => (input.seenTick = tick),
   onChange: () => render(),
-  commanded: () => input.commandedSince(status),
+  commandedSince: (told) => input.commandedSince(told),
 });
 const { drawn } = picture;
 const headset = new Headset({ own, picture: drawn, input, onCommand: onKey, onFailure: fail });
