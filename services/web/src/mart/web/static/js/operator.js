@@ -188,7 +188,7 @@ function render() {
   const forMs = performance.now() - beganMs;
   showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn, link }, picture.video);
   stop.update(room?.stop ?? null);
-  panel.update(status, input.view(status));
+  panel.update(status, input.view(status), link.state === LinkState.LIVE || !status);
   cues.update(room, mine && drives());
   voice.update();
   if (room) showRoom({ ...room, stale: !told });
