@@ -108,6 +108,9 @@ def test_where_the_way_is_long_video_shows_where_the_tool_was_told_to_go(
         at.context.add_init_script(LATE_FRAMES)
         with driving(at) as page:
             told = page.locator("#commanded")
+            expect(page.locator("#rate")).to_contain_text(
+                "real time"
+            )  # the seat is heard, and hears open hands
             page.keyboard.down("Space")
             page.keyboard.down("w")
             expect(told).to_be_visible()
