@@ -76,6 +76,13 @@ def test_tests_that_are_named_exist() -> None:
     assert offences == [], listed(offences)
 
 
+@pytest.mark.parametrize("door", ["README.md", "docs/index.md"])
+def test_every_guide_is_found_from_the_front(door: str) -> None:
+    text = (ROOT / door).read_text()
+    pages = [path for path in (ROOT / "docs").glob("*.md") if path.name != "index.md"]
+    assert [path.name for path in pages if not re.search(rf"\((docs/)?{path.name}[)#]", text)] == []
+
+
 def test_the_readme_or_the_guides_name_every_verb_of_users() -> None:
     named = {verb for _, command in _NAMED if command.startswith("make ") for verb in _verbs(command)}
     assert {"run", "demo", "setup", "test", "check", "bench", "up", "down", "test-compose"} <= named

@@ -27,6 +27,17 @@ def test_a_value_that_is_not_allowed_is_named(monkeypatch: pytest.MonkeyPatch) -
         RateSettings()
 
 
+class ArmSettings(Settings):
+    arm_name: str
+
+
+def test_what_was_not_given_is_asked_for() -> None:
+    with pytest.raises(
+        InvalidInput, match=r"^--arm-name is missing; give it, or set MART_ARM_NAME\. See --help\.$"
+    ):
+        ArmSettings(data_dir="data")
+
+
 @pytest.mark.parametrize(
     "given", ["", "lab", "tcp/lab", "tcp/lab:", "tcp/lab:99999", "tcp/lab:0", "http://lab:7447"]
 )

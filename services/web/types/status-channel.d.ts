@@ -40,8 +40,21 @@ declare namespace StatusChannel {
     camera?: string;
     /** Thousandths of the picture's width and height, from its upper left corner. */
     tools: Record<string, [right: number, down: number]>;
+    /** While the arm follows a hand. */
+    view?: ToolView;
     fps: number;
     latency: Latency | null;
+  }
+
+  /**
+   * One's own tool, seen from a level frame at the camera: x to the picture's right, y up, z towards the person; metres.
+   * `table`: how high the table is; `focal`: picture heights that a metre takes at a metre's distance.
+   */
+  interface ToolView {
+    tool: [x: number, y: number, z: number];
+    table: number;
+    camera: [w: number, x: number, y: number, z: number];
+    focal: number;
   }
 
   interface Pong {

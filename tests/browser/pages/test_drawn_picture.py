@@ -12,10 +12,22 @@ from mart.protocol import keys
 from mart.protocol.codec import decode
 from mart.protocol.messages import Event
 from mart.runtime.bus.base import Sample
-from tests.browser.pages.visits import driving, visit
+from tests.browser.pages.visits import driving, seen_in, visit
 
 WAIT_S = 60.0
 SHOWN = "#drawn:not([hidden])"
+# What is sent as bytes are a hand's frames.
+LATE_FRAMES = """
+  const { send } = RTCDataChannel.prototype;
+  RTCDataChannel.prototype.send = function (data) {
+    if (typeof data === "string") send.call(this, data);
+    else setTimeout(() => this.readyState === "open" && send.call(this, data), 400);
+  };
+"""
+IS_AS_LARGE_AS_THE_PICTURE = """() => {
+  const [told, picture] = ["commanded", "picture"].map((id) => document.getElementById(id).getBoundingClientRect());
+  return ["x", "y", "width", "height"].every((side) => Math.abs(told[side] - picture[side]) < 1);
+}"""
 LOSE = (
     "document.querySelector('#drawn').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()"
 )
@@ -87,3 +99,26 @@ def test_a_device_without_a_graphics_card_shows_video_and_says_why(
         expect(at.page.locator("#breakdown")).to_contain_text("without a graphics card")
         assert said.pictures_from_now(at.page) > 3
         assert at.page.locator("#drawn").count() == 0
+
+
+def test_where_the_way_is_long_video_shows_where_the_tool_was_told_to_go(
+    browser: Browser, platform: Platform
+) -> None:
+    with visit(browser, platform, "small") as at:
+        at.context.add_init_script(LATE_FRAMES)
+        with driving(at) as page:
+            told = page.locator("#commanded")
+            expect(page.locator("#rate")).to_contain_text(
+                "real time"
+            )  # the seat is heard, and hears open hands
+            page.keyboard.down("Space")
+            page.keyboard.down("w")
+            expect(told).to_be_visible()
+            for name in seen_in(
+                page, [("narrow", "dark"), ("sideways", "light"), ("small", "light")], "commanded"
+            ):
+                at.is_fine(name)
+                assert page.evaluate(IS_AS_LARGE_AS_THE_PICTURE), name
+            page.keyboard.up("w")
+            page.keyboard.up("Space")
+            expect(told).to_be_hidden()

@@ -66,8 +66,13 @@ def test_a_dark_network_is_waited_for(platform: Platform, browser: Browser) -> N
     with visit(browser, platform) as visited:
         visited.context.add_init_script(COUNTED)
         with driving(visited) as page:
+            page.keyboard.down("Space")
+            expect(page.locator("#clutch")).to_have_text("Moving")
             with frozen_service(platform, "web"), frozen_seat_process(platform, "arm0"):
                 expect(page.locator("#picture.live")).to_be_hidden()
+                expect(page.locator("#clutch")).to_have_text("No link: the arm holds still.")
+                expect(page.locator("body.engaged")).to_have_count(0)
+                page.keyboard.up("Space")
                 page.wait_for_timeout(2_300)  # a lease of the bus is 4 s
             expect(page.locator("#picture.live")).to_be_visible()
             assert page.evaluate("() => connections") == 1

@@ -5,15 +5,18 @@ from __future__ import annotations
 import base64
 from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import cv2
 import mujoco
 import numpy as np
 import pytest
 
+from mart.protocol.messages import ArmState, State, pose_message
 from mart.protocol.tasks import task_names
 from mart.render import BodyPoses, Image, Renderer, export_scene, viewpoint_id
 from mart.sim.world import World
+from mart.teleop_gateway.video.tool_projection import ToolProjection
 from tests.browser.pages.conftest import Run
 from tests.render.scene_reading import read_poses
 
@@ -169,3 +172,21 @@ def test_what_is_no_scene_is_refused(run: Run, data: bytes) -> None:
         " try { parseScene(bytes); } catch { return 'refused'; } }"
     )
     assert run("scene/scene-file.js", script, encoded(data)) == "refused"
+
+
+def test_over_a_video_the_same_place_shows_where_the_tool_was_told_to_go(run: Run) -> None:
+    world = World.build("two_arm_multi_cube_lifting")
+    world.reset(3)
+    tool = ArmState(arm="arm0", tool_in_base=pose_message(world.tool_pose_in_base("arm0")))
+    seen = ToolProjection.of(world.model, world.task, "arm0").view_of("arm0", State(arms=[tool]))
+    assert seen is not None
+    view = {"tool": seen.tool_m, "table": seen.table_m, "camera": seen.camera_wxyz, "focal": seen.focal}
+
+    def shape(*ahead: float) -> Any:
+        ask = "({ commandedShape }, { view, ahead }) => commandedShape(view, ahead)"
+        return run("scene/commanded-shape.js", ask, {"view": view, "ahead": ahead})
+
+    assert shape(0.02, 0.0, 0.0) is None
+    assert shape(0.0, 0.0, 9.0) is None  # behind whoever looks
+    at = np.array([[point["x"], point["y"]] for point in shape(0.15, 0.05, 0.1)["disc"]]).mean(axis=0)
+    np.testing.assert_allclose(at * (WIDTH_PX, HEIGHT_PX), seen_at(world, (0.15, 0.05, 0.1)), atol=2.5)

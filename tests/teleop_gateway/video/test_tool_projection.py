@@ -61,6 +61,34 @@ def test_a_tool_is_between_the_fingers_that_are_seen() -> None:
         assert (at_px <= last + NEAR_PX).all(), (arm, at_px, first, last)
 
 
+def test_what_a_page_draws_at_its_own_tool_is_where_the_tool_is() -> None:
+    world = World.build("two_arm_multi_cube_lifting")
+    world.reset(1)
+    projection = ToolProjection.of(world.model, world.task, "arm1")
+    view = projection.view_of("arm1", told(world))
+    assert view is not None
+    camera = Pose(np.zeros(3), np.array(view.camera_wxyz))
+    x, y, z = camera.inverse().transform_points(view.tool_m).tolist()
+    right, down = 0.5 - 0.75 * view.focal * x / z, 0.5 + view.focal * y / z
+    assert projection.places(told(world))["arm1"] == pytest.approx((1000 * right, 1000 * down), abs=2)
+    assert camera.rotation_matrix()[1, 0] == pytest.approx(0.0, abs=1e-3)  # the picture's right is level
+    tool = world.task.arm("arm1").pose_base_in_world @ world.tool_pose_in_base("arm1")
+    assert view.tool_m[1] - view.table_m == pytest.approx(tool.position[2], abs=2e-3)
+    assert projection.view_of("arm7", told(world)) is None
+
+
+@pytest.mark.parametrize("turn", [(0.0, 0.0, 0.0), (0.0, np.pi / 2, 0.0), (0.3, 0.2, -2.0)])
+def test_a_camera_may_be_turned_in_every_way(turn: tuple[float, float, float]) -> None:
+    camera = Pose.exp((0.1, 0.2, 1.0, *turn))
+    projection = ToolProjection(camera, 1.0, {"arm0": Pose.identity()})
+    at = camera.transform_points((0.1, 0.2, -1.5))
+    state = State(arms=[ArmState(arm="arm0", tool_in_base=pose_message(Pose(at, np.eye(4)[0])))])
+    view = projection.view_of("arm0", state)
+    assert view is not None
+    seen = Pose(np.zeros(3), np.array(view.camera_wxyz)).inverse().transform_points(view.tool_m)
+    np.testing.assert_allclose(seen, (0.1, 0.2, -1.5), atol=3e-3)
+
+
 @pytest.mark.parametrize(
     ("at_m", "place"),
     [

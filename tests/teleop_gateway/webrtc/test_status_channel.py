@@ -28,6 +28,7 @@ from mart.teleop_gateway.input.frame_validator import FrameRejection
 from mart.teleop_gateway.input.retarget import Retarget
 from mart.teleop_gateway.input.tool_motion import ToolMotion
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
+from mart.teleop_gateway.video.tool_projection import ToolView
 from mart.teleop_gateway.voice.lanes import LANES, Speaker
 from mart.teleop_gateway.webrtc import status_channel
 from mart.teleop_gateway.webrtc.said_cues import SaidCue
@@ -57,7 +58,14 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         episode=Episode(phase=EPISODE_PHASE_RECORDING),
     )
     text = status_channel.tick(
-        state, room, driving(), 10.016, frames_per_s=19.98, latency=LATENCY, tools={"arm1": (500, 250)}
+        state,
+        room,
+        driving(),
+        10.016,
+        frames_per_s=19.98,
+        latency=LATENCY,
+        tools={"arm1": (500, 250)},
+        tool_view=ToolView((0.1, -0.5, -1.0), -0.85, (0.9, 0.4, 0.0, 0.0), 1.2),
     )
     assert json.loads(text) == {
         "type": "tick",
@@ -84,6 +92,7 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
         "rejected": {},
         "no_picture": "",
         "tools": {"arm1": [500, 250]},
+        "view": {"tool": [0.1, -0.5, -1.0], "table": -0.85, "camera": [0.9, 0.4, 0.0, 0.0], "focal": 1.2},
         "fps": 20.0,
         "latency": {
             "p50_ms": 45.0,
@@ -93,17 +102,27 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
     }
 
 
-def test_the_longest_tick_message_fits_one_packet() -> None:
+@pytest.mark.parametrize(
+    ("no_picture", "stopped_by"), [("x" * 1000, "\N{SNOWMAN}" * 64), ("", "")], ids=["stopped", "driving"]
+)
+def test_the_longest_tick_message_fits_one_packet(no_picture: str, stopped_by: str) -> None:
     hand = driving()
     hand._sources[InputDevice.PHONE].validator.rejected.update(dict.fromkeys(FrameRejection, 2**32))
     waiting = [Waiting(arm=f"arm{i}", since_s=29.99) for i in range(MAX_ARMS)]
     state = State(tick=2**32, real_time_factor=0.999, arms=[ArmState(arm="arm0", sequence=100)])
     slow = LatencySummary(9999.94, 9999.94, 300, (1999.94,) * len(STAGES))
     room = RoomStatus(barrier=BARRIER_PHASE_STALLED, waiting_for=waiting)
-    room.stop.name = "\N{SNOWMAN}" * 64
-    tools = {f"arm{index}": (1000, 1000) for index in range(MAX_ARMS)}
+    room.stop.name = stopped_by
     text = status_channel.tick(
-        state, room, hand, 1e4, frames_per_s=119.9, latency=slow, no_picture="x" * 1000, tools=tools
+        state,
+        room,
+        hand,
+        1e4,
+        frames_per_s=119.9,
+        latency=slow,
+        no_picture=no_picture,
+        tools={f"arm{index}": (1000, 1000) for index in range(MAX_ARMS)},
+        tool_view=ToolView((-1.001,) * 3, -1.001, (-0.5001,) * 4, 1.2071),
     )
     assert len(text.encode()) <= status_channel.MAX_CHARACTERS, len(text.encode())
 

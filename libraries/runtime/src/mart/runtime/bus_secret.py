@@ -39,6 +39,7 @@ def admitted_with(
     """
     began_s = clock.monotonic_s()
     refused_since_s: float | None = None
+    is_told = False
     while True:
         refused = False
         for secret in (*known_secrets(endpoint).values(), None):
@@ -55,6 +56,11 @@ def admitted_with(
         if not wait_for_router and refused_since_s is None and now_s - began_s >= _NO_ROUTER_AFTER_S:
             raise Unavailable(
                 f"Could not reach a router at {endpoint}. Set MART_ROUTER or see `mart doctor`."
+            )
+        if not is_told and refused_since_s is None and now_s - began_s >= _NO_ROUTER_AFTER_S:
+            is_told = True
+            _log.warning(
+                "No router answers at %s yet; waiting for it. Start `mart run`, or set MART_ROUTER.", endpoint
             )
         clock.sleep_s(_TRY_EVERY_S)
 

@@ -52,10 +52,14 @@ def running(settings: Settings, kind: ServiceKind, id: str) -> Iterator[Service]
 
 @contextlib.contextmanager
 def connected(settings: Settings, kind: ServiceKind, id: str) -> Iterator[Service]:
-    """A service that has something to set up before it is `announced`: the token says that it answers."""
+    """A service that has something to set up before it is `announced`: the token says that it answers.
+
+    While it waits for its router it holds nothing yet, and ends at once when it is asked to.
+    """
     configure_logging(settings.log_level, kind)
     keep_private(settings.data_dir)
-    with stop_requested() as stop, ZenohBus.connect(settings.router) as bus:
+    bus = ZenohBus.connect(settings.router)
+    with stop_requested() as stop, bus:
         yield Service(kind, id, bus, stop)
 
 
@@ -89,12 +93,12 @@ def run_async(
 ) -> None:
     """An asyncio service (gateway, web): `main` is cancelled when the process is asked to end.
 
-    `main` says itself when the service is `announced`.
+    `main` says itself when the service is `announced`. Until there is a router it is ended as any program is.
     """
 
     async def supervise() -> None:
         loop = asyncio.get_running_loop()
-        with contextlib.closing(await asyncio.to_thread(ZenohBus.connect, settings.router)) as bus:
+        with contextlib.closing(bus):
             task = asyncio.ensure_future(main(AsyncService(kind, id, AsyncBus(bus, loop))))
             for number in stop_signals():
                 loop.add_signal_handler(number, task.cancel)
@@ -103,6 +107,7 @@ def run_async(
 
     configure_logging(settings.log_level, kind)
     keep_private(settings.data_dir)
+    bus = ZenohBus.connect(settings.router)
     asyncio.run(supervise())
 
 

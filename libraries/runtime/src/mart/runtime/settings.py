@@ -63,5 +63,7 @@ class Settings(BaseSettings):
 def _sentence(error: ValidationError) -> str:
     fault = error.errors()[0]
     name = "_".join(map(str, fault["loc"]))
+    if fault["type"] == "missing":
+        return f"--{name.replace('_', '-')} is missing; give it, or set MART_{name.upper()}. See --help."
     allowed = fault["msg"][:1].lower() + fault["msg"][1:]
     return f"{name} = {fault['input']!r} was given: {allowed}; see --help, or unset MART_{name.upper()}."

@@ -26,7 +26,7 @@ from mart.teleop_gateway.video.seat_renderer import (
     load_plain_model,
     task_of,
 )
-from mart.teleop_gateway.video.tool_projection import ToolPlaces, ToolProjection
+from mart.teleop_gateway.video.tool_projection import ToolPlaces, ToolProjection, ToolView
 
 _log = logging.getLogger(__name__)
 
@@ -130,6 +130,10 @@ class ViewManager:
     def tool_places(self, state: State) -> ToolPlaces:
         """Return where in the picture of this state the tools are; nothing where there is no model yet."""
         return self._projection.places(state) if self._projection is not None else {}
+
+    def tool_view(self, state: State) -> ToolView | None:
+        """Return what it takes to draw near the seat's own tool into the picture; None where there is no model yet."""
+        return self._projection.view_of(self._seat.arm, state) if self._projection is not None else None
 
     async def close(self) -> None:
         """Return when no picture will come any more."""

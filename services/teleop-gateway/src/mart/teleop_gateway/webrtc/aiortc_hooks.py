@@ -21,6 +21,7 @@ from mart.teleop_gateway.webrtc.rate_control import ReceiverReport
 PLAYOUT_DELAY_URI = "http://www.webrtc.org/experiments/rtp-hdrext/playout-delay"
 _FREE_ID = 4  # aiortc takes 1 to 3; a browser that offers the extension brings its own number
 _NO_DELAY = bytes(3)  # 12 bits of minimum, 12 bits of maximum, in steps of 10 ms
+_LEAST_WINDOW_BYTES = 16 * 1200  # statuses and poses of a room of 60 Hz in a round trip of 0.3 s are 13 kB
 
 
 def offer_playout_delay() -> None:
@@ -87,6 +88,14 @@ def on_unreadable(sctp: RTCSctpTransport, handler: Callable[[Exception], None]) 
     sctp._handle_data = receive_all  # type: ignore[method-assign]  # noqa: SLF001
 
 
+def keep_window(sctp: RTCSctpTransport) -> None:
+    """Let what is sent all the time be sent at its rate after a loss or an outage, too (docs/decisions/0080).
+
+    SCTP (RFC 9260) would send one packet a round trip then, and the page would hear its seat three times a second.
+    """
+    sctp.__class__ = _WideWindow
+
+
 async def close_connection(connection: RTCPeerConnection) -> None:
     """End a connection, also one whose offer was refused halfway: aiortc then fails, and leaves its sockets open."""
     try:
@@ -119,6 +128,18 @@ def _estimate_bps(packet: rtp.RtcpPsfbPacket, sender: RTCRtpSender) -> int | Non
     except ValueError:
         return None
     return estimate_bps if sender._ssrc in sources else None  # noqa: SLF001
+
+
+class _WideWindow(RTCSctpTransport):
+    """Never closes its congestion window further than to what our messages take."""
+
+    @property
+    def _cwnd(self) -> int:
+        return max(_LEAST_WINDOW_BYTES, int(self.__dict__["_cwnd"]))
+
+    @_cwnd.setter
+    def _cwnd(self, size_bytes: int) -> None:
+        self.__dict__["_cwnd"] = size_bytes
 
 
 class _SentPackets(dict[int, rtp.RtpPacket]):

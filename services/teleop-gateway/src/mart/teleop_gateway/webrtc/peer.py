@@ -28,6 +28,7 @@ from mart.teleop_gateway.video.encoder import Audience, Codec, EncodedPicture, S
 from mart.teleop_gateway.voice.lanes import LanePacket
 from mart.teleop_gateway.webrtc.aiortc_hooks import (
     close_connection,
+    keep_window,
     offer_playout_delay,
     on_keyframe_request,
     on_unreadable,
@@ -191,6 +192,7 @@ class Peer:
         audio.ask_for_voice()
         if self._connection.sctp is not None:
             on_unreadable(self._connection.sctp, self._on_unreadable)
+            keep_window(self._connection.sctp)
         await self._connection.setLocalDescription(await self._connection.createAnswer())
         if video is not None:
             self.codec = Codec(sent_codec(video))

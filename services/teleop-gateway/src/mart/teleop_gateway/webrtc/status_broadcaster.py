@@ -75,6 +75,7 @@ class StatusBroadcaster:
             return
         self._told = self._worth_telling(driving, now_s)
         latency, frames_per_s = self._latency.summary(), self._views.frames_per_s()
+        is_moved = driving.engaged(now_s)
         self._peers.tell(
             status_channel.tick(
                 self.state,
@@ -86,6 +87,7 @@ class StatusBroadcaster:
                 no_picture=self._views.failure() or self._cameras.darkness(now_s),
                 camera=self._cameras.shown,
                 tools=self._views.tool_places(self.state),
+                tool_view=self._views.tool_view(self.state) if is_moved else None,
             )
         )
 

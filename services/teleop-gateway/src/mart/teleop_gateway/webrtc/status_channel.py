@@ -25,7 +25,7 @@ from mart.protocol.messages import (
 from mart.protocol.room_task import has_fingers
 from mart.teleop_gateway.input.driving import Driving, InputDevice, PhoneState
 from mart.teleop_gateway.video.motion_to_photon import STAGES, LatencySummary
-from mart.teleop_gateway.video.tool_projection import ToolPlaces
+from mart.teleop_gateway.video.tool_projection import ToolPlaces, ToolView
 from mart.teleop_gateway.voice.lanes import Speaker
 from mart.teleop_gateway.webrtc.said_cues import SaidCue
 
@@ -198,8 +198,11 @@ def tick(
     no_picture: str = "",
     camera: str = "",
     tools: ToolPlaces = MappingProxyType({}),
+    tool_view: ToolView | None = None,
 ) -> str:
-    """Return what a page shows, at most MAX_CHARACTERS long."""
+    """Return what a page shows, at most MAX_CHARACTERS long: of a picture that is not there, or stands, no view."""
+    if no_picture or room.stop.name:
+        tool_view = None
     sequence = next((arm.sequence for arm in state.arms if arm.arm == driving.arm), 0)
     phone, grips = driving.phone(now_s), has_fingers(room, driving.arm)
     return _text(
@@ -229,6 +232,7 @@ def tick(
             "no_picture": no_picture[:_REASON_CHARACTERS],
             **({"camera": camera} if camera else {}),
             "tools": dict(tools),
+            **({"view": _view(tool_view)} if tool_view else {}),
             "fps": round(frames_per_s, 1),
             "latency": latency and _latency(latency),
         }
@@ -243,6 +247,10 @@ def _practises_only(room: RoomStatus, arm: str) -> bool:
 
 def _phone(phone: PhoneState) -> dict[str, Any]:
     return {"age_ms": round(1e3 * phone.age_s), "tracking": phone.tracking, "started": phone.started}
+
+
+def _view(view: ToolView) -> dict[str, Any]:
+    return {"tool": view.tool_m, "table": view.table_m, "camera": view.camera_wxyz, "focal": view.focal}
 
 
 def _latency(summary: LatencySummary) -> dict[str, Any]:

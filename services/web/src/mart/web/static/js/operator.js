@@ -72,7 +72,7 @@ const picture = new SeatPicture({
   send: (message) => link.send(message),
   onSeen: (tick) => (input.seenTick = tick),
   onChange: () => render(),
-  commanded: () => input.commandedSince(status),
+  commandedSince: (told) => input.commandedSince(told),
 });
 const { drawn } = picture;
 const headset = new Headset({ own, picture: drawn, input, onCommand: onKey, onFailure: fail });
@@ -189,7 +189,7 @@ function render() {
   const forMs = performance.now() - beganMs;
   showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn, link }, picture.video);
   stop.update(room?.stop ?? null);
-  panel.update(status, input.view(status));
+  panel.update(status, input.view(status), link.state === LinkState.LIVE || !status);
   cues.update(room, mine && drives());
   voice.update();
   if (room) showRoom({ ...room, stale: !told });

@@ -13,7 +13,7 @@ import { LinkState } from "../link/seat-link.js";
  * @param {string} pending what has to be pressed once more
  */
 export function showHolder(mine, status, state, pending) {
-  document.body.classList.toggle("engaged", status?.engaged ?? false);
+  document.body.classList.toggle("engaged", state === LinkState.LIVE && (status?.engaged ?? false));
   document.body.classList.toggle("can-drive", mine);
   setShown(byId("hand"), mine && state !== LinkState.REPLACED);
   const leave = mine ? "Leave" : "Lobby";

@@ -47,6 +47,7 @@ const HOW_TO_MOVE = {
   phone: "Hold the phone's lower part to move.",
 };
 
+const NOT_HEARD = "No link: the arm holds still.";
 const PHONE_GONE_MS = 1000; // it speaks 60 times a second
 const COPY = "Copy the address";
 const MARK = "The mark on the table in your colour says whose side it is. Nothing has to go there.";
@@ -76,12 +77,13 @@ export class InputPanel {
    * Shows the newest status, and what keyboard and mouse ask for now.
    * @param {StatusChannel.Tick | null} status
    * @param {HandView} hand
+   * @param {boolean} heard the gateway is, or has never been
    */
-  update(status, hand) {
+  update(status, hand, heard) {
     const phone = status?.phone ?? null;
     const byPhone = status?.input === "phone";
     showInput(phone, byPhone, hand.devices);
-    showHand(hand, byPhone);
+    showHand(hand, byPhone, heard);
     if (phone && this.#countdown && byPhone) this.#closePairing();
   }
 
@@ -166,10 +168,12 @@ function showInput(phone, byPhone, devices) {
  * What the hand does, and what it can be told.
  * @param {HandView} hand
  * @param {boolean} byPhone
+ * @param {boolean} heard
  */
-function showHand({ gripper, hasFingers, engaged, letGo, devices }, byPhone) {
+function showHand({ gripper, hasFingers, engaged, letGo, devices }, byPhone, heard) {
   const here = devices.includes("headset") ? "headset" : HERE;
-  setText(byId("clutch"), engaged ? "Moving" : letGoText(letGo) || HOW_TO_MOVE[byPhone ? "phone" : here]);
+  const known = engaged ? "Moving" : letGoText(letGo) || HOW_TO_MOVE[byPhone ? "phone" : here];
+  setText(byId("clutch"), heard ? known : NOT_HEARD);
   setShown(byId("gripper"), hasFingers && !byPhone);
   setText(byId("gripper"), `${gripper > 0.5 ? "Open" : "Close"} gripper`);
 }

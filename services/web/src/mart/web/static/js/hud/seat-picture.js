@@ -4,6 +4,7 @@ import { holderName } from "../arms.js";
 import { byId, setShown, setText } from "../dom.js";
 import { LinkState } from "../link/seat-link.js";
 import { watchTicks } from "../link/tickcode.js";
+import { CommandedOverlay } from "../scene/commanded-overlay.js";
 import { DrawnPicture } from "../scene/drawn-picture.js";
 import { pictureChoice } from "../scene/picture-choice.js";
 import { toldPlaces, ToolLabels } from "../scene/tool-labels.js";
@@ -20,7 +21,7 @@ import { SecondView } from "./second-view.js";
  * @property {(message: StatusChannel.ToGateway) => void} send
  * @property {(tick: number) => void} onSeen a tick is on the screen
  * @property {() => void} onChange
- * @property {() => readonly [number, number, number] | null} commanded
+ * @property {(status: StatusChannel.Tick | null) => readonly [number, number, number] | null} commandedSince
  */
 
 /** What shows the seat's view. `drawn`: the part of it that draws. */
@@ -31,14 +32,19 @@ export class SeatPicture {
   #send;
   #camera = ""; // the real one that is shown
   #labels = new ToolLabels(byId("labels"));
+  #overlay = new CommandedOverlay(byId("labels"));
+  #commandedSince;
+  /** @type {StatusChannel.Tick | null} */
+  #status = null;
   #second;
   #displayed = new DisplayedTicks();
   #pictured = false; // by the present connection: its picture comes a round trip before its first word
 
   /** @param {SeatPictureOptions} options */
-  constructor({ own, send, onSeen, onChange, commanded }) {
+  constructor({ own, send, onSeen, onChange, commandedSince }) {
     this.#own = own;
     this.#send = send;
+    this.#commandedSince = commandedSince;
     this.#second = new SecondView(own);
 
     /** @type {(tick: number, nowMs: number) => void} */
@@ -57,7 +63,7 @@ export class SeatPicture {
       send,
       onShown,
       onChange,
-      commanded,
+      commanded: () => commandedSince(this.#status),
       onDraw: (view) => {
         this.#labels.place(view.toolPlaces());
         this.#second.onDraw(view);
@@ -85,8 +91,16 @@ export class SeatPicture {
   onStatus(status) {
     this.#camera = status.camera ?? "";
     if (this.#camera) leaveToCamera(this.drawn);
+    this.#status = status;
     this.drawn.onTick(status.tick);
     if (!this.drawn.isShown) this.#labels.place(toldPlaces(status));
+    this.#showCommanded();
+  }
+
+  /** Over a video of the model: a picture that is drawn has it in it, and where a real camera hangs is not known. */
+  #showCommanded() {
+    const status = this.drawn.isShown || this.#camera ? null : this.#status;
+    this.#overlay.show(status?.view ?? null, this.#commandedSince(status));
   }
 
   /** Whether nothing newer is displayed while the world goes on. @param {StatusChannel.Tick | null} status */
@@ -103,6 +117,8 @@ export class SeatPicture {
   update(seat, status, state) {
     const isLive = state === LinkState.LIVE || (state === LinkState.CONNECTING && this.#pictured);
     showPicture(seat, status, isLive, this.drawn.isShown);
+    if (state !== LinkState.LIVE || !status || status.no_picture) this.#status = null;
+    this.#showCommanded();
     setShown(byId("labels"), state === LinkState.LIVE && !status?.no_picture);
   }
 

@@ -1,12 +1,11 @@
 // Where the tool was told to go, ahead of where it is seen: over a long way the arm follows late.
 
 import { Vector3 } from "../../vendor/three.mjs";
+import { DISC_RADII, SHORTEST_M } from "./commanded-shape.js";
 import { placedOn } from "./on-body.js";
 
 /** @import { Camera, Group, Mesh } from "../../vendor/three.mjs" */
 
-const SHORTEST_M = 0.03; // a hand at a usual pace is so far ahead after an eighth of a second
-const DISC_RADII = 7; // of the plumb line
 const DISC_M = 0.004;
 
 /** A line like a tool's plumb line, with a disc on top, where the tool is to be. */
