@@ -181,15 +181,14 @@ const isTold = () => performance.now() - heardMs < NO_NEWS_MS && room !== null &
 function render() {
   const seat = ownSeat();
   const mine = seat?.mine ?? false;
-  const isNew = !localStorage.getItem(RECORDED_KEY);
-  const known = { room, seat, link, pending: confirm.pending, isNew, touch: FINGERS.matches, course };
-  statusBar.update({ ...known, fingerless: status?.gripper === null });
+  const known = { room, seat, link, pending: confirm.pending, touch: FINGERS.matches, course };
+  statusBar.update({ ...known, isNew: !localStorage.getItem(RECORDED_KEY), fingerless: status?.gripper === null });
   const told = isTold();
   const still = picture.standsStill(status);
   const forMs = performance.now() - beganMs;
   showHealth({ told, live: link.state === LinkState.LIVE, still, forMs, status, room, drawn, link }, picture.video);
   stop.update(room?.stop ?? null);
-  panel.update(status, input.view(status), link.state === LinkState.LIVE || !status);
+  panel.update(status, input.view(status), link.state === LinkState.LIVE);
   cues.update(room, mine && drives());
   voice.update();
   if (room) showRoom({ ...room, stale: !told });

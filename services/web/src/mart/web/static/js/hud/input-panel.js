@@ -77,13 +77,13 @@ export class InputPanel {
    * Shows the newest status, and what keyboard and mouse ask for now.
    * @param {StatusChannel.Tick | null} status
    * @param {HandView} hand
-   * @param {boolean} heard the gateway is, or has never been
+   * @param {boolean} live whether the gateway is heard
    */
-  update(status, hand, heard) {
+  update(status, hand, live) {
     const phone = status?.phone ?? null;
     const byPhone = status?.input === "phone";
     showInput(phone, byPhone, hand.devices);
-    showHand(hand, byPhone, heard);
+    showHand(hand, byPhone, live || !status); // before the first word nothing is known to have ended
     if (phone && this.#countdown && byPhone) this.#closePairing();
   }
 
