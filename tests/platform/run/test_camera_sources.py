@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mart.platform.run.camera_sources import keep_sources
+from mart.platform.run.camera_sources import forgetting_sources, keep_sources
 from mart.platform.run.plan import PlatformOptions, processes, room
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import RoomsRequest
@@ -40,6 +40,14 @@ def test_a_file_of_ones_own_is_named_whole_and_must_be_there(tmp_path: Path) -> 
     assert kept is not None
     assert kept.read_text() == str(video)
     assert keep_sources(tmp_path, "room-1", {"table": f"@{video}"}) == {"table": video}
+
+
+def test_nothing_is_kept_once_the_platform_has_stopped(tmp_path: Path) -> None:
+    path = keep_sources(tmp_path, "room-1", {"arm0": URL})["arm0"]
+    assert path is not None
+    with forgetting_sources(tmp_path):
+        assert path.is_file()
+    assert not path.exists()
 
 
 def test_a_room_that_a_page_opens_has_no_cameras(tmp_path: Path) -> None:

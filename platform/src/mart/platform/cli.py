@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mart.platform.run.plan import DEFAULT_TASK
+from mart.platform.run.plan import DEFAULT_TASK, PlatformOptions, Process, processes, training_processes
 from mart.protocol.control_rate import DEFAULT_CONTROL_HZ, MAX_CONTROL_HZ, MIN_CONTROL_HZ
 from mart.runtime.arm_option import arm_kinds_option
 from mart.runtime.camera_option import cameras_option
@@ -80,21 +80,18 @@ def run(
     as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
-    from mart.platform.run.camera_sources import keep_sources
-    from mart.platform.run.plan import PlatformOptions, processes, training_processes
-    from mart.platform.run.room_manager import opening_rooms
-    from mart.platform.run.running import running_platform
+    from mart.platform.run.camera_sources import forgetting_sources, keep_sources
     from mart.platform.run.turn_server import relay_beside, with_relay
     from mart.protocol.cameras import arm_of_camera
     from mart.protocol.practice import require_practice_alone
     from mart.protocol.tasks import arm_kinds_of, get_task
-    from mart.runtime.service import stop_requested
     from mart.runtime.settings import Settings
 
     arm_kinds_of(task, None, arm_kinds)
     list(map(get_task(task).arm, [*drivers, *filter(None, map(arm_of_camera, cameras))]))  # or NotFound
     require_practice_alone(practice=practice, course_required=course_required, episodes=episodes or 0)
     settings = Settings()
+    run_dir = settings.data_dir / "run"
     options = PlatformOptions(
         settings.data_dir,
         settings.router,
@@ -109,13 +106,22 @@ def run(
         course_required=course_required,
         arm_kinds=arm_kinds,
         drivers=drivers,
-        cameras=keep_sources(settings.data_dir / "run", room, cameras),
+        cameras=keep_sources(run_dir, room, cameras),
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)
     if turn:
         relay = relay_beside(options)
         options, plan = with_relay(options, relay), (relay.process, *plan)
+    with forgetting_sources(run_dir):
+        _run_until_stopped(options, plan, as_json=as_json)
+
+
+def _run_until_stopped(options: PlatformOptions, plan: tuple[Process, ...], *, as_json: bool) -> None:
+    from mart.platform.run.room_manager import opening_rooms
+    from mart.platform.run.running import running_platform
+    from mart.runtime.service import stop_requested
+
     click.echo("Starting MART …", err=True)
     with stop_requested() as stop, running_platform(options, plan) as platform, opening_rooms(platform):
         _print_invitation(platform, as_json)

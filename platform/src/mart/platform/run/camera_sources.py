@@ -5,11 +5,15 @@ A command line is seen by everybody on the machine, and stands in the supervisor
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import contextlib
+import shutil
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from mart.protocol.errors import InvalidInput
 from mart.runtime.atomic_file import PRIVATE, write_atomically
+
+_FOLDER = "cameras"  # below the folder of what runs
 
 
 def keep_sources(run_dir: Path, room: str, sources: Mapping[str, str]) -> dict[str, Path | None]:
@@ -17,7 +21,16 @@ def keep_sources(run_dir: Path, room: str, sources: Mapping[str, str]) -> dict[s
 
     Raises InvalidInput for what cannot be a source: neither a device, nor a URL, nor a file that is there.
     """
-    return {camera: _kept(run_dir / "cameras" / f"{room}-{camera}", text) for camera, text in sources.items()}
+    return {camera: _kept(run_dir / _FOLDER / f"{room}-{camera}", text) for camera, text in sources.items()}
+
+
+@contextlib.contextmanager
+def forgetting_sources(run_dir: Path) -> Iterator[None]:
+    """Remove what was kept, once the block is over."""
+    try:
+        yield
+    finally:
+        shutil.rmtree(run_dir / _FOLDER, ignore_errors=True)
 
 
 def _kept(path: Path, text: str) -> Path | None:
