@@ -155,7 +155,9 @@ def test_the_arm_goes_the_recorded_way_again(lab: Lab, path: Path) -> None:
             told.append(ended(running))
     assert (told[-1]["code"], told[-1]["why_ended"]) == (0, ""), told
     assert told[-1]["arms"] == [REAL]
-    assert told[-1]["led_s"] == told[-1]["of_s"] >= 2.0 * (recorded_s[-1] - recorded_s[0]) - 0.01
+    # The way to the beginning is reckoned anew once the seat is taken: until then an arm sags by a hair.
+    assert told[-1]["led_s"] == pytest.approx(told[-1]["of_s"], abs=0.1)
+    assert told[-1]["of_s"] >= 2.0 * (recorded_s[-1] - recorded_s[0]) - 0.01
     rows = lab.hardware.history(begun_s)
     assert rows[:, 1].max() - rows[:, 1].min() > 0.1  # it swung about its base
 
