@@ -117,7 +117,10 @@ def assert_led(page: Page, tools: Tools, world: World, sides: Sequence[str], arm
         moved_m = led_once(page, tools, sides)[list(arms)] @ level_axes(world).T
         if np.abs(moved_m - HAND_M).max() < NEAR_M:
             break
-    np.testing.assert_allclose(moved_m, np.tile(HAND_M, (len(arms), 1)), atol=NEAR_M)
+    told = page.evaluate(
+        "['#clutch', '#grade', '#notice'].map(at => document.querySelector(at)?.textContent)"
+    )
+    np.testing.assert_allclose(moved_m, np.tile(HAND_M, (len(arms), 1)), atol=NEAR_M, err_msg=str(told))
 
 
 def test_the_arm_goes_where_the_controller_goes(browser: Browser, platform: Platform) -> None:
