@@ -107,10 +107,10 @@ class Browser:
             await asyncio.sleep(1 / 60)
 
     async def wait_told(
-        self, holds: Callable[[dict[str, Any]], bool], timeout_s: float = 30.0
+        self, holds: Callable[[dict[str, Any]], bool], timeout_s: float = 30.0, *, since: int | None = None
     ) -> dict[str, Any]:
-        """The next status message for which `holds`."""
-        seen = len(self.told)
+        """The next status message for which `holds`; since: the first after so many."""
+        seen = len(self.told) if since is None else since
         async with asyncio.timeout(timeout_s):
             while True:
                 for message in self.told[seen:]:
