@@ -26,6 +26,7 @@ SMALL = {"width": 320, "height": 240}  # this is drawn without a graphics card, 
 HAND_M = np.array((-0.08, 0.08, -0.06))  # right, up, towards the person: along the table's edge, and up
 SLOW_PICTURE = "GPU stall due to ReadPixels"  # of a screenshot
 HOLD_ARM1 = "import('/static/js/api.js').then(({ takeSeat }) => takeSeat('room-1', 'arm1', 'hold'))"
+RESET = "import('/static/js/api.js').then(({ actOnEpisode }) => actOnEpisode('room-1', 'reset', 'arm0'))"
 STEPS = 8
 BEGAN_M = np.array((0.2, 1.1, -0.4))  # in a room at whose origin the person does not stand
 NEAR_M = 0.015
@@ -93,10 +94,11 @@ def push_stick(page: Page, side: str, right: float, down: float) -> None:
 
 
 def led_once(page: Page, tools: Tools, sides: Sequence[str]) -> NDArray[np.float64]:
-    """How far the tools went while the hands did."""
+    """How far the tools went while the hands did, from where arms begin: others may have left them at a limit."""
     for side in sides:
         press(page, side, "squeeze", 0)
         put(page, side, BEGAN_M)
+    page.evaluate(RESET)
     page.wait_for_timeout(400)
     for side in sides:
         press(page, side, "squeeze", 1)
