@@ -142,6 +142,18 @@ def test_a_task_that_this_service_does_not_know_is_shown_under_its_name() -> Non
     assert (room["title"], room["instruction"], room["time_limit_s"]) == ("three_arm_juggling", "", None)
 
 
+@pytest.mark.parametrize(
+    ("kind", "said"), [("panda", "sponge"), ("panda+wiping_pad", "Green wipes"), ("theirs", "sponge")]
+)
+def test_what_is_to_be_done_is_said_for_the_arms_of_the_room(kind: str, said: str) -> None:
+    lobby, told = alive_lobby(), status(task="three_arm_lift_wiping")
+    told.seats.add(arm="arm2", operator=OPERATOR_SCRIPT)
+    told.arm_kinds.extend(["panda", "ur5e", kind])
+    lobby.see_status(told, 0.0)
+    (room,) = lobby.rooms_json("", 0.0)
+    assert said in room["instruction"]
+
+
 def test_an_unknown_arm_is_not_found() -> None:
     with pytest.raises(NotFound):
         lobby_with("room-1").rooms.seat("room-1", "arm2", 0.0)

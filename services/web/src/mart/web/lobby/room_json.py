@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 from mart.protocol.cameras import arm_of_camera
@@ -18,7 +19,7 @@ from mart.protocol.messages import (
     outcome_word,
     phase_word,
 )
-from mart.protocol.tasks import Subtask, get_task
+from mart.protocol.tasks import Subtask, Task, get_task
 
 Json = dict[str, Any]
 
@@ -121,12 +122,22 @@ def _stop_json(status: RoomStatus) -> Json | None:
     }
 
 
+def _task_of(status: RoomStatus) -> Task | None:
+    """Return the task as this room's arms do it; as Pandas do it where a kind is not known here, else None.
+
+    A newer sim than this service has kinds and tasks of its own, as have people's files on another machine.
+    """
+    for kinds in (status.arm_kinds, ()):
+        with contextlib.suppress(NotFound, InvalidInput):
+            return get_task(status.task, len(status.seats), kinds)
+    return None
+
+
 def _task_json(status: RoomStatus) -> Json:
     known: dict[str, Subtask] = {}
     arms = [seat.arm for seat in status.seats]
-    try:
-        task = get_task(status.task, len(status.seats))
-    except (NotFound, InvalidInput):  # a newer sim than this service: show the task under its own name
+    task = _task_of(status)
+    if task is None:
         title, instruction, time_limit_s = status.task, "", None
     else:
         title, instruction = task.title, task.instruction

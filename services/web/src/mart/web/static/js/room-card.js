@@ -79,7 +79,8 @@ function scenePicture() {
   const node = element("img", { class: "scene", alt: "", width: 384, height: 288 });
   let shown = { room: "", task: "", still: 0, pandas: true };
   node.addEventListener("error", () => {
-    if (shown.still && shown.pandas) node.src = taskPicture(shown.task); // nobody looks any more
+    const usual = taskPicture(shown.task);
+    if (shown.pandas && node.src !== usual) node.src = usual; // nobody looks any more
     else setShown(node, false); // a task of somebody's own, or a newer sim's
   });
 
