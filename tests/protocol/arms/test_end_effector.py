@@ -89,7 +89,7 @@ def test_an_unknown_one_lists_the_known_ones(name: str) -> None:
     [
         (PAD, "below_tool_m = 0.015", "below_tool_m = 0.001", r"wiping.below_tool_m: .* 0.01"),
         (PAD, "mass_kg = 0.35", "mass_kg = -1", r"mass_kg: .* greater than 0"),
-        (PAD, "[wiping]", "[wipes]", "wipes: Extra inputs"),
+        (PAD, "[wiping]", "[wipes]", "wipes: there is no such key"),
         (GRIPPER, "opening_m = 0.085", "opening_m = 85", r"fingers.opening_m: .* 0.3"),
         (GRIPPER, "force_n = 40\n", "", "fingers.force_n: Field required"),
         (GRIPPER, "tool_z_m = 0.150", "tool_z_m = nan", "tool_z_m: .*"),

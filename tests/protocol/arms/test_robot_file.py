@@ -66,7 +66,7 @@ def test_an_unknown_name_lists_the_known_ones(name: str) -> None:
         ("torque_nm = 28", "torque_nm = -28", r"links\[4\].torque_nm: .* greater than 0"),
         ("mass_kg = 8.058\n", "", r"links\[2\].mass_kg: Field required"),
         ("reach_m = 0.90", "reach = 0.90", "workspace.reach: "),
-        ("[mount]", "[mounts]", "mounts: Extra inputs"),
+        ("[mount]", "[mounts]", "mounts: there is no such key"),
         ("quaternion_wxyz = [0, 0, 0, 1]", "quaternion_wxyz = [0, 0, 0, 0]", "length 0 is no turn"),
         ('form = "capsule"', 'form = "pipe"', r"shapes.*pipe"),
         ('title = "Universal Robots UR5e"', 'title = "Universal Robots UR5e', "is not TOML"),
@@ -90,7 +90,7 @@ def test_too_few_joints_and_impossible_names(folder: Path) -> None:
     with pytest.raises(InvalidInput, match="4 links were given; 5 to 7 can be controlled"):
         load_robot_file(folder / "short.toml")
     (folder / "My Arm.toml").write_text(UR5E)
-    with pytest.raises(InvalidInput, match="cannot be a robot file's name"):
+    with pytest.raises(InvalidInput, match="cannot be the name of a file that is a robot file"):
         load_robot_file(folder / "My Arm.toml")
     with pytest.raises(NotFound, match="There is no robot file"):
         load_robot_file(folder / "nothing.toml")

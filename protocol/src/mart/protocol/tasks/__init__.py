@@ -15,7 +15,6 @@ from types import ModuleType
 from mart.protocol.arms import ArmKind, Limits, Workspace, arm_kind
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.tasks.own_tasks import (
-    SUFFIX,
     give_task_file,
     load_task_file,
     own_task_file,
@@ -36,6 +35,7 @@ from mart.protocol.tasks.task import (
     proprioception,
 )
 from mart.protocol.tasks.task_file import TaskFile
+from mart.protocol.toml_files import SUFFIX
 
 __all__ = [
     "MAX_ARMS",

@@ -8,22 +8,22 @@ alone, so they cannot read anybody's files.
 from __future__ import annotations
 
 import os
-import re
-import tomllib
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
-from pydantic import ValidationError
-
-from mart.protocol.errors import InvalidInput, NotFound
+from mart.protocol.errors import InvalidInput
 from mart.protocol.tasks.task import Arm, Observation, Subtask, Task, proprioception
-from mart.protocol.tasks.task_file import NAME_PATTERN, TaskFile
+from mart.protocol.tasks.task_file import TaskFile
+from mart.protocol.toml_files import SUFFIX, FileSort, is_name
 
-SUFFIX = ".toml"
 _GIVEN = "MART_TASK_FILES"
-_MAX_FILE_BYTES = 64 * 1024
-_NAME = re.compile(NAME_PATTERN)
+_TASK_FILE = FileSort(
+    "task file",
+    "`mart tasks` names the tasks that there are",
+    "how-to-bring-your-own-scene",
+    most_bytes=64 * 1024,
+    taken=("name", "text", "folder"),
+)
 _TICKS_PER_S = 20.0  # in which a task's times are said
 
 
@@ -34,7 +34,7 @@ def tasks_folder() -> Path:
 
 def own_task_paths() -> dict[str, Path]:
     """Return the task files by the names of their tasks; those given come before those of the folder."""
-    folder = [path for path in sorted(tasks_folder().glob(f"*{SUFFIX}")) if _NAME.fullmatch(path.stem)]
+    folder = [path for path in sorted(tasks_folder().glob(f"*{SUFFIX}")) if is_name(path.stem)]
     return {path.stem: path for path in (*folder, *_given())}
 
 
@@ -55,7 +55,7 @@ def give_task_file(path: Path) -> str:
 
 def own_task_file(name: str) -> TaskFile | None:
     """Return the file of the task called `name`, None where there is none. Raises InvalidInput as it is read."""
-    if not _NAME.fullmatch(name):
+    if not is_name(name):
         return None
     given = [path for path in _given() if path.stem == name]
     found = next((path for path in (*given, tasks_folder() / f"{name}{SUFFIX}") if path.is_file()), None)
@@ -64,40 +64,14 @@ def own_task_file(name: str) -> TaskFile | None:
 
 def load_task_file(path: Path) -> TaskFile:
     """Read a task file. Raises NotFound where there is none, InvalidInput with what is wrong in it and where."""
-    if not path.is_file():
-        raise NotFound(f"There is no task file {path}; `mart tasks` names the tasks that there are.")
-    if not _NAME.fullmatch(path.stem) or path.suffix != SUFFIX:
-        raise InvalidInput(
-            f"{path.name} cannot be a task file's name: use small letters, digits and underscores, then {SUFFIX}."
-        )
-    if path.stat().st_size > _MAX_FILE_BYTES:
-        raise InvalidInput(
-            f"{path} is larger than {_MAX_FILE_BYTES // 1024} KiB; a task file holds text alone."
-        )
-    try:
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise InvalidInput(f"{path} is not text (UTF-8).") from error
-    return read_task_file(path.stem, text, str(path)).model_copy(update={"folder": path.parent.resolve()})
+    file = read_task_file(path.stem, _TASK_FILE.read(path), str(path))
+    return file.model_copy(update={"folder": path.parent.resolve()})
 
 
 def read_task_file(name: str, text: str, source: str) -> TaskFile:
     """Read what a task file says. source: what to call it. Raises InvalidInput with what is wrong and where."""
-    if len(text) > _MAX_FILE_BYTES:
-        raise InvalidInput(
-            f"{source} is larger than {_MAX_FILE_BYTES // 1024} KiB; a task file holds text alone."
-        )
-    try:
-        said: dict[str, Any] = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InvalidInput(f"{source} is not TOML: {error}.") from error
-    for taken in ("name", "text", "folder"):
-        if taken in said:
-            raise InvalidInput(f"{source} says {taken}; a task is called as its file is: leave the line out.")
-    try:
-        return TaskFile.model_validate({**said, "name": name, "text": text})
-    except ValidationError as error:
-        raise InvalidInput(f"{source} cannot be used: {_sentence(error)}") from error
+    said = _TASK_FILE.table(text, source)
+    return _TASK_FILE.checked(TaskFile, {**said, "name": name, "text": text}, source)
 
 
 def task_of_file(file: TaskFile) -> Task:
@@ -139,15 +113,3 @@ def _given() -> list[Path]:
 @lru_cache(maxsize=64)
 def _load(path: Path, _modified_ns: int) -> TaskFile:
     return load_task_file(path)
-
-
-def _sentence(error: ValidationError) -> str:
-    """Say the first mistake: where, and what is wrong."""
-    found = error.errors()
-    # A key that is written wrongly is missing as well: which one it is says more.
-    first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])
-    where = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in first["loc"])
-    message = first["msg"].removeprefix("Value error, ").rstrip(".")
-    if first["type"] == "extra_forbidden":
-        message = "there is no such key; leave it out, or look for its name in how-to-bring-your-own-scene"
-    return f"{where.lstrip('.')}: {message}." if where else f"{message}."

@@ -23,8 +23,8 @@ from mart.protocol.tasks.conditions import (
     objects_of,
 )
 from mart.protocol.tasks.task import MAX_ARMS, SHARED_VIEWPOINT
+from mart.protocol.toml_files import NAME_PATTERN
 
-NAME_PATTERN = r"[a-z][a-z0-9_]{0,62}"
 _Word = Annotated[str, Field(pattern=rf"^{NAME_PATTERN}$")]
 _Line = Annotated[str, Field(min_length=1, max_length=200)]
 _Point = tuple[Meters, Meters, Meters]
