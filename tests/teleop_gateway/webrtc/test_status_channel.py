@@ -103,9 +103,16 @@ def test_a_tick_message_tells_everything_a_page_shows() -> None:
 
 
 @pytest.mark.parametrize(
-    ("no_picture", "stopped_by"), [("x" * 1000, "\N{SNOWMAN}" * 64), ("", "")], ids=["stopped", "driving"]
+    ("no_picture", "stopped_by", "camera"),
+    [
+        ("x" * 1000, "\N{SNOWMAN}" * 64, ""),
+        ("", "", ""),
+        ("x" * 1000, "\N{SNOWMAN}" * 64, f"arm0-{'x' * 24}"),
+        ("", "", "x" * 24),
+    ],
+    ids=["stopped", "driving", "camera, stopped", "camera"],
 )
-def test_the_longest_tick_message_fits_one_packet(no_picture: str, stopped_by: str) -> None:
+def test_the_longest_tick_message_fits_one_packet(no_picture: str, stopped_by: str, camera: str) -> None:
     hand = driving()
     hand._sources[InputDevice.PHONE].validator.rejected.update(dict.fromkeys(FrameRejection, 2**32))
     waiting = [Waiting(arm=f"arm{i}", since_s=29.99) for i in range(MAX_ARMS)]
@@ -121,6 +128,7 @@ def test_the_longest_tick_message_fits_one_packet(no_picture: str, stopped_by: s
         frames_per_s=119.9,
         latency=slow,
         no_picture=no_picture,
+        camera=camera,
         tools={f"arm{index}": (1000, 1000) for index in range(MAX_ARMS)},
         tool_view=ToolView((-1.001,) * 3, -1.001, (-0.5001,) * 4, 1.2071),
     )

@@ -200,9 +200,14 @@ def tick(
     tools: ToolPlaces = MappingProxyType({}),
     tool_view: ToolView | None = None,
 ) -> str:
-    """Return what a page shows, at most MAX_CHARACTERS long: of a picture that is not there, or stands, no view."""
-    if no_picture or room.stop.name:
+    """Return what a page shows, at most MAX_CHARACTERS long: of a picture that is not there, or stands, no view.
+
+    Of a real camera, which hangs nobody knows where, neither view nor tools.
+    """
+    if no_picture or room.stop.name or camera:
         tool_view = None
+    if camera:
+        tools = {}
     sequence = next((arm.sequence for arm in state.arms if arm.arm == driving.arm), 0)
     phone, grips = driving.phone(now_s), has_fingers(room, driving.arm)
     return _text(
