@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 from mart.protocol.holders import holder_tag, is_held_by
 from mart.protocol.messages import Seat
+from tests.protocol.message_examples import printable_text
 
-_IDS = st.text(min_size=1, max_size=128).filter(str.isprintable)
+_IDS = printable_text(min_size=1, max_size=128)
 
 
 def seat(holder_id: str, epoch: int = 2, salt: str = "17c0", arm: str = "arm0") -> Seat:
