@@ -143,3 +143,36 @@ def test_a_file_whose_name_is_no_text_cannot_be_labelled(tmp_path: Path) -> None
     path = Path(os.fsdecode(bytes(tmp_path) + b"/caf\xe9.mcap"))
     with pytest.raises(InvalidInput, match="rename the file"):
         labels.say(path, LabelKind.NOTE, "x", 1)
+
+
+def test_an_act_is_undone_by_its_stamp_and_done_again() -> None:
+    said = [
+        Label("a", LabelKind.CUT, "0-12", 5),
+        Label("a", LabelKind.OUTCOME, "failure", 6),
+        Label("a", LabelKind.SKIP, "30-40", 7),
+        Label("a", LabelKind.SKIP, "50-60", 7),
+        Label("b", LabelKind.SKIP, "50-60", 7),
+    ]
+    known = labels.fold(said)["a"]
+    assert str(known.edits) == "cut 0-12 skip 30-40 skip 50-60"
+    undone = [*said, Label("a", LabelKind.UNDO, "7", 8), Label("a", LabelKind.UNDO, "6", 9)]
+    assert str(labels.fold(undone)["a"].edits) == "cut 0-12"
+    assert labels.fold(undone)["a"].outcome is None
+    assert str(labels.fold(undone)["b"].edits) == "skip 50-60"
+    again = labels.fold([*undone, Label("a", LabelKind.UNDO, "9", 10)])["a"]
+    assert (again.outcome, str(again.edits)) == ("failure", "cut 0-12")
+
+
+def test_a_copy_in_the_place_of_a_file_is_edited_as_it_was() -> None:
+    said = labels.fold(
+        [Label("a", LabelKind.CUT, "0-12", 5), Label("a", LabelKind.SUBTASK, "grasp=never", 6)]
+    )["a"]
+    carried = labels.fold(labels.carried(said, "a", "b", 7))
+    assert carried["b"].edits == said.edits
+    assert carried["a"].dropped
+
+
+@pytest.mark.parametrize("value", ["", "x", "8", "9", "-1", "1" * 20])
+def test_what_was_not_said_before_cannot_be_undone(value: str) -> None:
+    with pytest.raises(InvalidInput, match="the stamp of what was said before"):
+        Label("a", LabelKind.UNDO, value, 8)

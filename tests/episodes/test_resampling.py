@@ -43,6 +43,7 @@ def followed(goals: Sequence[Pose], lag: float = 0.0) -> EpisodeData:
     ticks = len(actions)
     return EpisodeData(
         arms=("arm0",),
+        ticks=np.arange(ticks + 1),
         observations={"tick": np.arange(ticks + 1.0)[:, None]},
         actions=np.array(actions)[:, None],
         sources=np.full((ticks, 1), OPERATOR_HUMAN, np.int8),

@@ -152,7 +152,7 @@ _SCALARS = {
 
 
 def printable_text(*, min_size: int = 0, max_size: int) -> st.SearchStrategy[str]:
-    """Text for which `str.isprintable` holds: drawn from its letters, because whole texts thrown away slow the search."""
+    """Text for which `str.isprintable` holds: drawn of such letters, since texts thrown away slow the search."""
     letters = st.characters(exclude_categories=["C", "Z"], include_characters=" ")
     return st.text(letters, min_size=min_size, max_size=max_size)
 

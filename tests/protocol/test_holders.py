@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from hypothesis import given
-from hypothesis import strategies as st
 
 from mart.protocol.holders import holder_tag, is_held_by
 from mart.protocol.messages import Seat

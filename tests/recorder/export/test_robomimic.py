@@ -23,7 +23,7 @@ from mart.protocol.vocabulary import Verdict
 from mart.recorder.catalogue.episode_catalogue import list_paths
 from mart.recorder.cli import export
 from mart.recorder.export.robomimic import key_of, write_robomimic
-from mart.recorder.export.selection import choose, read_data
+from mart.recorder.export.selection import ExportSelection, choose, read_segments
 from mart.sim.world import World
 from mart.trainer.data.episode import from_states as as_the_trainer
 from mart.trainer.data.layout import ObservationLayout
@@ -106,6 +106,19 @@ def assert_holds(demo: h5py.Group, states: list[State]) -> None:
     assert demo["source"][:].tolist() == [[arm.source for arm in state.arms] for state in after]
     assert demo["engaged"][:].tolist() == [[arm.engaged for arm in state.arms] for state in after]
     assert demo["rewards"][:].tolist() == [float(state.progress.success) for state in after]
+
+
+def test_a_fumbled_stretch_is_absent_and_the_rest_are_demonstrations(source: Source, folder: Path) -> None:
+    first = min(folder.rglob("*.mcap"))
+    say(first, LabelKind.CUT, "20-50", at_ns=1)
+    write(folder, folder / "cut.hdf5")
+    with h5py.File(folder / "cut.hdf5") as file:
+        data = file["data"]
+        assert sorted(data) == ["demo_0", "demo_1", "demo_2"]
+        assert_holds(data["demo_0"], source.episodes[0][:21])
+        assert_holds(data["demo_1"], source.episodes[0][50:])
+        assert data["demo_1/ticks"][0] == 50
+        assert sorted(file["mask/success"].asstr()) == ["demo_0", "demo_1", "demo_2"]
 
 
 def test_observation_and_action_stand_side_by_side_as_in_training(source: Source) -> None:
@@ -210,13 +223,18 @@ def test_a_file_that_cannot_be_read_is_named_and_in_nobodys_way(
             write(path, folder / "none.hdf5")
 
 
+def read_one(path: Path) -> None:
+    episodes = list_episodes(path)
+    read_segments(ExportSelection(TASK, episodes[0].control_hz or 20.0, tuple(episodes)), episodes[0])
+
+
 def test_an_episode_whose_model_has_a_spoilt_bit_is_not_exported(tmp_path: Path) -> None:
     path = write_episode(tmp_path).path
     data = bytearray(path.read_bytes())
     data[data.index(synthetic.MJB)] ^= 1
     path.write_bytes(data)
     with pytest.raises(Corrupt, match="checksum"):
-        read_data(list_episodes(path)[0], TASK)
+        read_one(path)
 
 
 @pytest.mark.parametrize(
@@ -238,7 +256,7 @@ def test_what_cannot_be_learned_from_is_one_sentence(
     states[3] = changed(states[3], change)
     path = recorded.write(tmp_path, source.world, states)
     with pytest.raises(InvalidInput) as raised:
-        read_data(list_episodes(path)[0], TASK)
+        read_one(path)
     assert str(path) in str(raised.value)
     assert "\n" not in str(raised.value)
 

@@ -34,6 +34,7 @@ def swung(
     actions[:, :, 6] = np.where(np.arange(ticks) >= ticks // 2, 1.0, -1.0)[:, None]
     return EpisodeData(
         arms=ARMS,
+        ticks=np.arange(ticks + 1),
         observations={f"{arm}/joint_positions": np.tile(joints_rad, (ticks + 1, 1)) for arm in ARMS},
         actions=actions,
         sources=np.zeros((ticks, len(ARMS)), np.int8),

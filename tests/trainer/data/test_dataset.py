@@ -28,7 +28,8 @@ def test_the_action_of_a_row_leads_from_its_state_to_the_next(episodes: Recorded
             world.step(dataset.actions[row + t].astype(np.float64))
             seen = {name: value[None] for name, value in world.observations().items()}
             following = dataset.layout.vector(seen)[0]
-            np.testing.assert_allclose(dataset.observations[row + t + 1], following, atol=1e-5)
+            # Actions are float32 here; contacts make of their 6e-8 up to 2e-5, on one processor more than on another.
+            np.testing.assert_allclose(dataset.observations[row + t + 1], following, atol=2e-4)
         row += len(states)
 
 
@@ -52,6 +53,26 @@ def test_the_cache_says_the_same_and_mends_itself(
     entries[0].write_bytes(b"torn")
     mended = load_dataset([episodes.root], Selection(), tmp_path)
     np.testing.assert_array_equal(mended.actions, dataset.actions)
+
+
+def test_what_people_cut_out_is_not_learned_from(
+    episodes: Recorded, dataset: Dataset, tmp_path: Path
+) -> None:
+    root, cache = tmp_path / "episodes", tmp_path / "cache"
+    shutil.copytree(episodes.root, root)
+    first = min(root.rglob("*.mcap"))
+    labels.say(first, labels.LabelKind.CUT, "10-14", 1)
+    cut, from_cache = (load_dataset([root], Selection(), cache) for _ in range(2))
+    for one in (cut, from_cache):
+        assert (one.digest.ticks, one.digest.episodes[0].edits) == (dataset.digest.ticks - 4, "cut 10-14")
+        assert one.ends[0] == 10
+        np.testing.assert_array_equal(one.actions[11], dataset.actions[14])
+        np.testing.assert_array_equal(one.observations[11], dataset.observations[14])
+    assert cut.digest.sha256 != dataset.digest.sha256
+    labels.say(first, labels.LabelKind.UNDO, "1", 2)
+    whole = load_dataset([root], Selection(), cache)
+    np.testing.assert_array_equal(whole.actions, dataset.actions)
+    assert whole.digest.sha256 == dataset.digest.sha256
 
 
 def test_first_and_last_are_by_time(episodes: Recorded) -> None:

@@ -23,6 +23,7 @@ class EpisodeData:
     """Hold T transitions of one episode: row t of `actions` leads from row t of `observations` to row t + 1.
 
     arms: names, in the order of the axis `arms`.
+    ticks: int64[T + 1], which tick of the recorded episode each state is, 0 the one after the reset.
     observations: by name, each float64[T + 1, *shape]; quaternions are wxyz.
     actions: float64[T, arms, 7], as applied, in [-1, 1]: a step of the tool (6 numbers), then the gripper.
     sources: int8[T, arms], who drove the arm in that tick (mart.v1.Operator).
@@ -37,6 +38,7 @@ class EpisodeData:
     """
 
     arms: tuple[str, ...]
+    ticks: NDArray[np.int64]
     observations: Mapping[str, NDArray[np.float64]]
     actions: NDArray[np.float64]
     sources: NDArray[np.int8]
@@ -80,6 +82,7 @@ def arrays_from_states(
     poses = _poses(arms_of)
     return EpisodeData(
         arms=names,
+        ticks=np.arange(len(states)),
         observations=_observations(states, wanted),
         actions=_actions(moved),
         sources=np.array([[arm.source for arm in row] for row in moved], dtype=np.int8),

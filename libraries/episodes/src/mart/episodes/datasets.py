@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from mart.episodes.edits import EpisodeEdits
 from mart.episodes.labels import EpisodeLabels, Label, LabelKind
 from mart.protocol.errors import NotFound
 
@@ -22,16 +23,22 @@ class NamedDataSet:
     """Name episodes that people have put together.
 
     episodes: paths below the folder of the labels, rising. created_ns: when the first joined (Unix time).
+    edits: of those that are edited, by path.
     """
 
     name: str
     episodes: tuple[str, ...]
     created_ns: int
+    edits: Mapping[str, EpisodeEdits] = field(default_factory=dict)
 
     @property
     def sha256(self) -> str:
-        """Digest of the paths, a line each: files never change, so what has the same digest holds the same."""
-        return hashlib.sha256("".join(f"{path}\n" for path in self.episodes).encode()).hexdigest()
+        """Digest of the paths, a line each, with the edits of those that have any behind a tab.
+
+        Files never change, so what has the same digest holds the same.
+        """
+        lines = (f"{path}\t{self.edits[path]}" if path in self.edits else path for path in self.episodes)
+        return hashlib.sha256("".join(f"{line}\n" for line in lines).encode()).hexdigest()
 
 
 def named(said: Mapping[str, EpisodeLabels]) -> dict[str, NamedDataSet]:
@@ -41,7 +48,12 @@ def named(said: Mapping[str, EpisodeLabels]) -> dict[str, NamedDataSet]:
         for name, at_ns in label.datasets.items():
             joined.setdefault(name, {})[path] = at_ns
     return {
-        name: NamedDataSet(name, tuple(sorted(paths)), min(paths.values()))
+        name: NamedDataSet(
+            name,
+            tuple(sorted(paths)),
+            min(paths.values()),
+            {path: said[path].edits for path in paths if said[path].edits},
+        )
         for name, paths in sorted(joined.items())
     }
 

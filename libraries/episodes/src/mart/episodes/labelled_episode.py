@@ -8,10 +8,14 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from mart.episodes.arrays import EpisodeData
+from mart.episodes.editing import edited
+from mart.episodes.edits import EpisodeEdits
+from mart.episodes.idle import idle_ranges
 from mart.episodes.labels import EpisodeLabels
 from mart.episodes.reader import EpisodeFile
 from mart.episodes.scan import ForeignFile
-from mart.protocol.errors import Corrupt, MartError, NotFound
+from mart.protocol.errors import Corrupt, InvalidInput, MartError, NotFound
 from mart.protocol.recording import OperatorsRecord, Shift, VerificationRecord
 from mart.protocol.tasks import Task, get_task, is_in_catalogue
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
@@ -29,7 +33,7 @@ class LabelledEpisode(BaseModel):
     ended_by: task, time, operator, absence or room; None where nobody wrote it down. subtasks_done: in the last state.
     missing_commands: how many commands the states name and the file lacks; None where nobody counted.
     error: why the file cannot be used; what else it says is not known then. foreign: because it is none of MART's.
-    dropped: nobody shall learn from it.
+    dropped: nobody shall learn from it. edits: what of it is left out, split or told otherwise.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -75,6 +79,7 @@ class LabelledEpisode(BaseModel):
     note: str | None = None
     dropped: bool = False
     datasets: tuple[str, ...] = ()  # that it is part of
+    edits: EpisodeEdits = EpisodeEdits()
 
     @property
     def verified(self) -> bool:
@@ -92,6 +97,25 @@ class LabelledEpisode(BaseModel):
         if self.error is not None:
             raise Corrupt(self.error)
         return EpisodeFile.open(self.file_path)
+
+    def segments(
+        self, task: Task | None = None, control_hz: float | None = None, skip_idle_s: float | None = None
+    ) -> list[EpisodeData]:
+        """Read the episode into arrays as people have edited it: a segment for each motion that is left, in order.
+
+        task, control_hz: as for `EpisodeFile.arrays`. skip_idle_s: leave out, too, every stretch of at least so many
+        seconds in which no arm moves; None leaves out what people did alone.
+        Raises what `EpisodeFile.arrays` raises, and InvalidInput, naming it, where nothing is left of it.
+        """
+        file = self.open()
+        whole = file.arrays(task)
+        skips = () if skip_idle_s is None else idle_ranges(whole, skip_idle_s)
+        found = edited(whole, self.edits.with_skips(skips))
+        if not found:
+            raise InvalidInput(
+                f"{self.file_path} has nothing left: all of it was cut out, or is idle; drop it."
+            )
+        return [file.resampled(segment, control_hz, task) for segment in found]
 
     def recorded_task(self) -> Task:
         """Return the task with the arms that were recorded; that of somebody's own task as the file says it.
@@ -114,6 +138,7 @@ class LabelledEpisode(BaseModel):
             "note": said.note,
             "dropped": said.dropped,
             "datasets": tuple(sorted(said.datasets)),
+            "edits": said.edits,
         }
         return self.model_copy(update=changes)
 

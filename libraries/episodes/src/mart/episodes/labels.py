@@ -1,7 +1,8 @@
 """Say something about episodes afterwards: files never change, labels are appended to `labels.jsonl` beside them.
 
-Each line says one thing about one file, and the newest of its kind holds. Deleting a line takes it back. What a line
-says that this version does not know (another kind, another value, a torn line) is left where it is and counts nothing.
+Each line says one thing about one file, and the newest of its kind holds; of edits (edits.py) all hold. All lines of
+one act have the same stamp, by which a later line undoes it. What a line says that this version does not know (another
+kind, another value, a torn line) is left where it is and counts nothing.
 
     from mart.episodes import labels
 
@@ -13,132 +14,24 @@ from __future__ import annotations
 import logging
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
-from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
+from mart.episodes.episode_labels import EpisodeLabels, carried, fold
+from mart.episodes.label import DROP, KEEP, MAX_NOTE_CHARACTERS, Label, LabelKind
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput
-from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.runtime.json_lines import append_json_lines, read_json_lines
+
+__all__ = [
+    "DROP", "FILE_NAME", "KEEP", "MAX_NOTE_CHARACTERS", "EpisodeLabels", "Label", "LabelKind", "append", "carried",
+    "fold", "is_root", "read", "read_folded", "resolved", "root_of", "say",
+]  # fmt: skip
 
 _log = logging.getLogger(__name__)
 
 FILE_NAME = "labels.jsonl"
-MAX_NOTE_CHARACTERS = 2000
-_MAX_PATH_CHARACTERS = 4096
-_MAX_NS = 2**63  # 2262
 _MAX_REASON_CHARACTERS = 200
-KEEP, DROP = "keep", "drop"
 _DAY = re.compile(r"\d{4}-\d{2}-\d{2}")
-_DATASET = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
-
-
-class LabelKind(StrEnum):
-    """Name what a label speaks of."""
-
-    OUTCOME = "outcome"  # value: success, failure or discarded
-    NOTE = "note"  # value: free text
-    USE = "use"  # value: keep or drop (leave out of data sets)
-    VERDICT = "verdict"  # value: verified, diverged or unverified, from a later re-simulation
-    JOIN = "join"  # value: the name of a data set that it becomes part of (datasets.py)
-    LEAVE = "leave"  # value: the name of a data set that it was part of
-
-
-_ALLOWED: dict[LabelKind, tuple[str, ...]] = {
-    LabelKind.OUTCOME: (EpisodeOutcome.SUCCESS, EpisodeOutcome.FAILURE, EpisodeOutcome.DISCARDED),
-    LabelKind.USE: (KEEP, DROP),
-    LabelKind.VERDICT: tuple(Verdict),
-}
-
-
-@dataclass(frozen=True)
-class Label:
-    """Say one thing about one file. Raises InvalidInput for a value that the kind cannot have, and for such a path.
-
-    path: relative to the folder of the labels and below it, with forward slashes. at_ns: Unix time. by: who says it, as
-    others see them; empty where that is not known.
-    """
-
-    path: str
-    kind: LabelKind
-    value: str
-    at_ns: int
-    detail: str = ""
-    by: str = ""
-
-    def __post_init__(self) -> None:
-        _require_path(self.path)
-        for text in (self.value, self.detail, self.by):
-            _require_text(text)
-        if not 0 <= self.at_ns < _MAX_NS:
-            raise InvalidInput(f"A label of {self.at_ns} ns was given; it must be a time of before 2262.")
-        allowed = _ALLOWED.get(self.kind)
-        if allowed is not None and self.value not in allowed:
-            raise InvalidInput(f"The {self.kind} {self.value!r} was given; it must be {', '.join(allowed)}.")
-        if self.kind in (LabelKind.JOIN, LabelKind.LEAVE) and not _DATASET.fullmatch(self.value):
-            raise InvalidInput(
-                f"The data set {self.value[:100]!r} was given; name it with 1 to 64 lower-case letters, digits, '-' or "
-                "'_', the first a letter or digit."
-            )
-        if len(self.value) > MAX_NOTE_CHARACTERS:
-            raise InvalidInput(
-                f"A note of {len(self.value)} characters was given; {MAX_NOTE_CHARACTERS} are allowed."
-            )
-
-
-@dataclass(frozen=True)
-class EpisodeLabels:
-    """Hold what is said about one file now; None where nothing was said.
-
-    outcome_by: who said the outcome, empty where that is not known.
-    datasets: the names of those that it is part of, and since when (Unix time, nanoseconds).
-    """
-
-    outcome: str | None = None
-    outcome_by: str = ""
-    note: str | None = None
-    verdict: str | None = None
-    dropped: bool = False
-    datasets: Mapping[str, int] = field(default_factory=dict)
-
-    def with_label(self, label: Label) -> EpisodeLabels:
-        """Return what holds once `label` has been given."""
-        match label.kind:
-            case LabelKind.OUTCOME:
-                return replace(self, outcome=label.value, outcome_by=label.by)
-            case LabelKind.NOTE:
-                return replace(self, note=label.value)
-            case LabelKind.VERDICT:
-                return replace(self, verdict=label.value)
-            case LabelKind.USE:
-                return replace(self, dropped=label.value == DROP)
-            case LabelKind.JOIN:
-                return replace(self, datasets={**self.datasets, label.value: label.at_ns})
-            case LabelKind.LEAVE:
-                kept = {name: at_ns for name, at_ns in self.datasets.items() if name != label.value}
-                return replace(self, datasets=kept)
-
-
-def fold(labels: Iterable[Label]) -> dict[str, EpisodeLabels]:
-    """Return by path what holds about each file, out of labels in the order they were given."""
-    known: dict[str, EpisodeLabels] = {}
-    for label in labels:
-        known[label.path] = known.get(label.path, EpisodeLabels()).with_label(label)
-    return known
-
-
-def carried(said: EpisodeLabels | None, old: str, new: str, at_ns: int) -> list[Label]:
-    """Return the labels by which one file takes the place of another: what holds of it, and that the old is dropped.
-
-    old, new: their paths, as labels name them. The verdict is not carried on: it is of the very bytes.
-    """
-    known = said or EpisodeLabels()
-    texts = {LabelKind.OUTCOME: known.outcome, LabelKind.NOTE: known.note}
-    found = [Label(new, kind, text, at_ns) for kind, text in texts.items() if text is not None]
-    found += [Label(new, LabelKind.JOIN, name, at_ns) for name in known.datasets]
-    found += [Label(new, LabelKind.USE, DROP, at_ns)] if known.dropped else []
-    return [*found, Label(old, LabelKind.USE, DROP, at_ns, f"repaired as {new}")]
 
 
 def read(root: Path) -> list[Label]:
@@ -212,26 +105,6 @@ def _parse(fields: Mapping[str, Any] | None) -> Label:
     if not isinstance(at_ns, int) or not all(isinstance(text, str) for text in said):
         raise ValueError("its time is no whole number, or what it says no text")
     return Label(fields["path"], LabelKind(fields["kind"]), fields["value"], at_ns, detail, by)
-
-
-def _require_path(path: str) -> None:
-    _require_text(path)
-    parts = path.split("/")
-    if not path.isprintable() or len(path) > _MAX_PATH_CHARACTERS or path.startswith("/") or ".." in parts:
-        raise InvalidInput(
-            f"A label for {path[:100]!r} was given; it must be a path below the folder, of at most "
-            f"{_MAX_PATH_CHARACTERS} printable characters."
-        )
-
-
-def _require_text(text: str) -> None:
-    """Raise InvalidInput where a text cannot be written as UTF-8, as the names of some files cannot."""
-    try:
-        text.encode()
-    except UnicodeEncodeError as error:
-        raise InvalidInput(
-            f"{text[:100]!r} was given, which cannot be written as UTF-8; rename the file, or say it in other words."
-        ) from error
 
 
 _warned: dict[Path, frozenset[int]] = {}  # file → lines; a catalogue reads its labels every second

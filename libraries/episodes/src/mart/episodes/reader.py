@@ -133,18 +133,27 @@ class EpisodeFile:
         states = list(self.states())
         try:
             data = arrays_from_states(states) if known is None else arrays_for_task(states, known)
-            return data if control_hz is None else self._at(data, known, control_hz)
         except InvalidInput as error:
             raise InvalidInput(f"{self.path} cannot be read into arrays: {error}") from error
+        return self.resampled(data, control_hz, known)
 
-    def _at(self, data: EpisodeData, task: Task | None, control_hz: float) -> EpisodeData:
-        recorded_hz = self.episode.control_hz
-        if task is None or recorded_hz is None:
+    def resampled(self, data: EpisodeData, control_hz: float | None, task: Task | None = None) -> EpisodeData:
+        """Return what was read of every tick in ticks of `control_hz`; None leaves it as it is.
+
+        task: as for `arrays`. Raises InvalidInput, naming the file, where the rate cannot be had.
+        """
+        if control_hz is None:
+            return data
+        known, recorded_hz = task or self._known_task(), self.episode.control_hz
+        if known is None or recorded_hz is None:
             raise InvalidInput(
-                "another control rate was asked for, and it names no task of the catalogue or no rate; "
-                "read it as it is."
+                f"{self.path} cannot be read into arrays: another control rate was asked for, and it names no task of "
+                "the catalogue or no rate; read it as it is."
             )
-        return at_control_hz(data, recorded_hz, control_hz, [arm.kind.limits for arm in task.arms])
+        try:
+            return at_control_hz(data, recorded_hz, control_hz, [arm.kind.limits for arm in known.arms])
+        except InvalidInput as error:
+            raise InvalidInput(f"{self.path} cannot be read into arrays: {error}") from error
 
     def messages(self, *topics: str) -> Iterator[RecordedMessage]:
         """Iterate over the messages of these topics, or of all, in the order of the file.

@@ -48,6 +48,7 @@ def at_control_hz(
     last = ticks[1:] - 1  # rows of the last action of each transition
     return replace(
         data,
+        ticks=data.ticks[ticks],
         observations={name: values[ticks] for name, values in data.observations.items()},
         actions=_actions(data, ticks, [limits] * len(data.arms) if isinstance(limits, Limits) else limits),
         sources=data.sources[last],

@@ -24,7 +24,7 @@ from mart.episodes.arrays import EpisodeData
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Conflict
 from mart.protocol.tasks import Observation, Task
-from mart.recorder.export.selection import ExportSelection, read_data
+from mart.recorder.export.selection import ExportSelection, read_segments
 
 _VERSION = "v3.0"
 _FILE = "chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
@@ -38,7 +38,7 @@ Columns = dict[str, NDArray[Any]]  # by feature, one row a frame
 def write_lerobot(selection: ExportSelection, path: Path) -> int:
     """Write the folder and return how many frames are in it; it has its name when it is whole.
 
-    Raises Conflict where it is there already or cannot be written, and what `read_data` raises.
+    Raises Conflict where it is there already or cannot be written, and what `read_segments` raises.
     """
     if path.exists():
         raise Conflict(f"{path} is there already; name another folder or remove it.")
@@ -54,10 +54,10 @@ def write_lerobot(selection: ExportSelection, path: Path) -> int:
 
 
 def _write(selection: ExportSelection, folder: Path) -> int:
-    episodes = [
-        _frames(read_data(episode, selection.task, selection.control_hz), selection, number)
-        for number, episode in enumerate(selection.each(selection.episodes))
-    ]
+    segments = (
+        one for episode in selection.each(selection.episodes) for one in read_segments(selection, episode)
+    )
+    episodes = [_frames(segment, selection, number) for number, segment in enumerate(segments)]
     columns = {name: np.concatenate([episode[name] for episode in episodes]) for name in episodes[0]}
     frames = len(columns["index"])
     columns["index"] = np.arange(frames)
@@ -86,6 +86,7 @@ def _frames(data: EpisodeData, selection: ExportSelection, number: int) -> Colum
         "action": data.actions.reshape(count, -1).astype(np.float32),
         "source": data.sources.astype(np.int64),
         "engaged": data.engaged,
+        "recorded_tick": data.ticks[:-1],
         "next.reward": data.success[1:].astype(np.float32),
         "next.success": data.success[1:],
         "next.done": frame == count - 1,

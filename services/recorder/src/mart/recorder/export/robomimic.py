@@ -1,8 +1,8 @@
 """Write robomimic's HDF5, as its 0.3 reads it (robomimic.github.io/docs/datasets/overview.html).
 
-A demonstration is an episode, an observation of the catalogue is an observation of robomimic's: `arm0/gripper` becomes
-`arm0_gripper`, since a slash would make a group. Nothing is converted: quaternions stay wxyz, numbers float64. What
-robomimic has no place for is in attributes that it ignores.
+A demonstration is an episode, or a segment of one that people have edited. An observation of the catalogue is an
+observation of robomimic's: `arm0/gripper` becomes `arm0_gripper`, since a slash would make a group. Nothing is
+converted: quaternions stay wxyz, numbers float64. What robomimic has no place for is in attributes that it ignores.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from mart.episodes.arrays import EpisodeData
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import Conflict
 from mart.protocol.tasks import Task
-from mart.recorder.export.selection import SOURCES, ExportSelection, read_data
+from mart.recorder.export.selection import SOURCES, ExportSelection, read_segments
 
 # robomimic.envs.env_base.EnvType.GYM_TYPE. It knows four types, and none of them makes a world of MART: its rollouts
 # have to be off.
@@ -30,7 +30,7 @@ _GYM_TYPE = 2
 def write_robomimic(selection: ExportSelection, path: Path) -> int:
     """Write the file and return how many transitions are in it; it has its name when it is whole.
 
-    Raises Conflict where it is there already or cannot be written, and what `read_data` raises.
+    Raises Conflict where it is there already or cannot be written, and what `read_segments` raises.
     """
     if path.exists():
         raise Conflict(f"{path} is there already; name another file or remove it.")
@@ -53,15 +53,16 @@ def key_of(name: str) -> str:
 
 def _write(file: h5py.File, selection: ExportSelection) -> int:
     data = file.create_group("data")
-    total, groups = 0, defaultdict(list)
-    for number, episode in enumerate(selection.each(selection.episodes)):
-        demo = f"demo_{number}"
-        episode_data = read_data(episode, selection.task, selection.control_hz)
-        _write_demo(data.create_group(demo), episode_data, episode)
-        total += len(episode_data)
+    total, number, groups = 0, 0, defaultdict(list)
+    for episode in selection.each(selection.episodes):
         in_data_sets = (f"dataset-{name}" for name in episode.datasets)
-        for key in filter(None, (episode.outcome, episode.skill, *in_data_sets)):
-            groups[key].append(demo)
+        keys = [*filter(None, (episode.outcome, episode.skill, *in_data_sets))]
+        for segment in read_segments(selection, episode):
+            demo = f"demo_{number}"
+            _write_demo(data.create_group(demo), segment, episode)
+            total, number = total + len(segment), number + 1
+            for key in keys:
+                groups[key].append(demo)
     data.attrs["total"] = total
     data.attrs["env_args"] = json.dumps(_environment(selection))
     data.attrs["source"] = json.dumps(SOURCES)
@@ -78,6 +79,7 @@ def _write_demo(group: h5py.Group, data: EpisodeData, episode: LabelledEpisode) 
     group["rewards"] = data.success[1:].astype(np.float64)
     group["dones"] = last.astype(np.int64)
     group["source"] = data.sources
+    group["ticks"] = data.ticks[:-1]
     group["engaged"] = data.engaged.astype(np.uint8)
     for name, values in data.observations.items():
         group[f"obs/{key_of(name)}"] = values[:-1]

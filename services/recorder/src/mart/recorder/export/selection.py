@@ -26,12 +26,14 @@ class ExportSelection:
     """Hold episodes of one task and the same arms, the oldest first.
 
     control_hz: in whose ticks they are written, whatever their own rates are.
+    skip_idle_s: leave out every stretch of at least so many seconds in which no arm moves; None: what people cut alone.
     each: how a writer goes through them, for whoever counts along.
     """
 
     task: Task
     control_hz: float
     episodes: tuple[LabelledEpisode, ...]
+    skip_idle_s: float | None = None
     each: Callable[[Sequence[LabelledEpisode]], Iterable[LabelledEpisode]] = iter
 
 
@@ -68,18 +70,17 @@ def _checked(episode: LabelledEpisode) -> LabelledEpisode:
     return episode
 
 
-def read_data(episode: LabelledEpisode, task: Task, control_hz: float | None = None) -> EpisodeData:
-    """Read an episode into arrays, as the task's catalogue entry says, in ticks of `control_hz` or its own.
+def read_segments(selection: ExportSelection, episode: LabelledEpisode) -> list[EpisodeData]:
+    """Read the segments that are left of an episode, as the task's catalogue entry says, in ticks of the selection.
 
     Raises Corrupt where the file is damaged, its model included, and InvalidInput, naming it, where it is not whole,
-    not finite, was recorded at a lower rate, or an action is outside -1 … 1.
+    not finite, was recorded at a lower rate, has nothing left, or an action is outside -1 … 1.
     """
-    file = episode.open()
-    file.check_model()
-    data = file.arrays(task, control_hz)
-    if (np.abs(data.actions) > 1.0).any():
+    episode.open().check_model()
+    segments = episode.segments(selection.task, selection.control_hz, selection.skip_idle_s)
+    if any((np.abs(segment.actions) > 1.0).any() for segment in segments):
         raise InvalidInput(f"{episode.file_path} cannot be exported: an action is outside -1 … 1.")
-    return data
+    return segments
 
 
 def _why_none(episodes: Sequence[LabelledEpisode]) -> str:

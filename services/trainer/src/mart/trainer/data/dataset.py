@@ -29,7 +29,11 @@ S = TypeVar("S", bound=np.generic)
 
 
 class UsedEpisode(BaseModel):
-    """One episode that was learned from. ticks: at the data set's rate; recorded_hz: None where it was not noted."""
+    """One episode that was learned from.
+
+    ticks: at the data set's rate, of what is left. recorded_hz: None where it was not noted. edits: what people changed
+    of it, as labels say it.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -40,10 +44,11 @@ class UsedEpisode(BaseModel):
     verdict: str
     operators: tuple[str, ...]
     recorded_hz: float | None = None
+    edits: str = ""
 
 
 class DataDigest(BaseModel):
-    """What a training learned from; `sha256` is over the files' hashes in their order.
+    """What a training learned from; `sha256` is over the files' hashes in their order, with their edits.
 
     control_hz: at which it was learned from, whatever the episodes' own rates are.
     """
@@ -66,7 +71,7 @@ class Dataset:
     """Episodes one after another. Row r is a state; the last row of an episode has no action (zeros stand there).
 
     observations: float32[rows, layout.width], actions: float32[rows, arms, 7], sources: int8[rows, arms],
-    ends: int64[rows], the row of the last state of the same episode.
+    ends: int64[rows], the row of the last state of the same episode, or of the same segment where it was edited.
     """
 
     digest: DataDigest
@@ -106,35 +111,55 @@ def load_dataset(
         )
     chosen = select(found, selection, any_rate=control_hz is not None)
     task, recorded_hz = _facts(chosen[0])
-    read = _read(chosen, task, control_hz, cache)
-    chosen, hashes, episodes = [one for one, _, _ in read], [h for _, h, _ in read], [e for _, _, e in read]
+    read = _read(chosen, task, control_hz, selection.skip_idle_s, cache)
+    chosen = [one.episode for one in read]
     digest = DataDigest(
         task=task.name,
         control_hz=control_hz or recorded_hz,
         arms=task.arm_names,
         arm_kinds=task.arm_kinds,
         selection=selection,
-        episodes=tuple(map(_used, chosen, hashes, episodes)),
-        ticks=sum(len(episode.actions) for episode in episodes),
-        sha256=hashlib.sha256("".join(hashes).encode()).hexdigest(),
+        episodes=tuple(map(_used, read)),
+        ticks=sum(one.ticks for one in read),
+        sha256=hashlib.sha256(
+            "".join(f"{one.sha256}{one.episode.edits}" for one in read).encode()
+        ).hexdigest(),
         dataset=account(dataset, given, found, chosen, selection) if dataset else None,
     )
-    return join(digest, ObservationLayout.of(task), episodes)
+    return join(digest, ObservationLayout.of(task), [segment for one in read for segment in one.segments])
+
+
+@dataclass(frozen=True)
+class _ReadEpisode:
+    """Hold an episode, the hash of its file, and what is learned from it."""
+
+    episode: LabelledEpisode
+    sha256: str
+    segments: list[EpisodeArrays]
+
+    @property
+    def ticks(self) -> int:
+        return sum(len(segment.actions) for segment in self.segments)
 
 
 def _read(
-    chosen: Iterable[LabelledEpisode], task: Task, control_hz: float | None, cache: Path | None
-) -> list[tuple[LabelledEpisode, str, EpisodeArrays]]:
+    chosen: Iterable[LabelledEpisode],
+    task: Task,
+    control_hz: float | None,
+    skip_idle_s: float | None,
+    cache: Path | None,
+) -> list[_ReadEpisode]:
     """Read episodes, each with the hash of its file. One that turns out to be damaged is left out, and the log says so.
 
     Raises Corrupt where none is left.
     """
-    read: list[tuple[LabelledEpisode, str, EpisodeArrays]] = []
+    read: list[_ReadEpisode] = []
     damaged: list[Corrupt] = []
     for one in chosen:
         sha256 = sha256_of(one.file_path)
         try:
-            read.append((one, sha256, read_cached(one.open(), task, control_hz, sha256, cache)))
+            segments = read_cached(one, task, sha256, cache, control_hz=control_hz, skip_idle_s=skip_idle_s)
+            read.append(_ReadEpisode(one, sha256, segments))
         except Corrupt as error:
             _log.warning("Left out: %s", error)
             damaged.append(error)
@@ -144,7 +169,7 @@ def _read(
 
 
 def join(digest: DataDigest, layout: ObservationLayout, episodes: Iterable[EpisodeArrays]) -> Dataset:
-    """Join episodes into one data set; each gets a row without action at its end."""
+    """Join episodes, or segments of them, into one data set; each gets a row without action at its end."""
     listed = list(episodes)
     lengths = np.array([len(episode.observations) for episode in listed])
     return Dataset(
@@ -163,15 +188,17 @@ def _facts(first: LabelledEpisode) -> tuple[Task, float]:
     return first.recorded_task(), first.control_hz
 
 
-def _used(one: LabelledEpisode, sha256: str, episode: EpisodeArrays) -> UsedEpisode:
+def _used(read: _ReadEpisode) -> UsedEpisode:
+    one = read.episode
     return UsedEpisode(
         path=str(one.file_path),
-        sha256=sha256,
-        ticks=len(episode.actions),
+        sha256=read.sha256,
+        ticks=read.ticks,
         outcome=one.outcome,
         verdict=one.verdict,
         operators=tuple(sorted({f"{shift.operator} {shift.name}".rstrip() for shift in one.shifts})),
         recorded_hz=one.control_hz,
+        edits=str(one.edits),
     )
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.episodes.arrays import EpisodeData, arrays_from_states
-from mart.episodes.reader import EpisodeFile
+from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.messages import State
 from mart.protocol.tasks import Task
 from mart.trainer.data.layout import ObservationLayout
@@ -21,7 +21,7 @@ from mart.trainer.data.layout import ObservationLayout
 
 @dataclass(frozen=True)
 class EpisodeArrays:
-    """Hold T transitions of an episode, T + 1 observations.
+    """Hold T transitions of an episode, or of a segment of one, T + 1 observations.
 
     observations: float32[T + 1, layout.width].
     actions: float32[T, arms, 7], what was applied in the tick after each observation but the last.
@@ -34,13 +34,17 @@ class EpisodeArrays:
 
 
 def read_episode(
-    file: EpisodeFile, task: Task, layout: ObservationLayout, control_hz: float | None = None
-) -> EpisodeArrays:
-    """Read an episode of a task, at a control rate (`mart.episodes.resampling`); None: its own.
+    episode: LabelledEpisode,
+    task: Task,
+    layout: ObservationLayout,
+    control_hz: float | None = None,
+    skip_idle_s: float | None = None,
+) -> list[EpisodeArrays]:
+    """Read the segments of an episode of a task, as people edited it (`LabelledEpisode.segments`).
 
     Raises Corrupt where the file is damaged and InvalidInput, naming it, where it is not whole or has no such rate.
     """
-    return from_data(layout, file.arrays(task, control_hz))
+    return [from_data(layout, segment) for segment in episode.segments(task, control_hz, skip_idle_s)]
 
 
 def from_states(layout: ObservationLayout, states: Sequence[State]) -> EpisodeArrays:

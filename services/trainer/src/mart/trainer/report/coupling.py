@@ -92,16 +92,17 @@ def read_couplings(folder: Path, policies: Sequence[Policy] = ()) -> list[Coupli
 
 def _coupling(task: Task, episodes: Sequence[LabelledEpisode], policy: Policy | None) -> Coupling:
     layout = ObservationLayout.of(task)
-    data = list(_arrays(task, episodes, LEARNING_CONTROL_HZ if policy is None else policy.control_hz))
-    if len(data) < MIN_EPISODES:
+    read = list(_segments(task, episodes, LEARNING_CONTROL_HZ if policy is None else policy.control_hz))
+    if len(read) < MIN_EPISODES:
         raise InvalidInput(
-            f"{len(data)} successful episodes of {task.name} can be read; at least {MIN_EPISODES} tell something "
+            f"{len(read)} successful episodes of {task.name} can be read; at least {MIN_EPISODES} tell something "
             "about dependence: `mart episodes repair` may save more."
         )
+    data = [segment for segments in read for segment in segments]
     observed = [_observed(layout, one) for one in data]
     return Coupling(
         task=task,
-        episodes=len(data),
+        episodes=len(read),
         found={
             arm: dependence(observed, layout.columns_of(arm.name), index)
             for index, arm in enumerate(task.arms)
@@ -111,14 +112,16 @@ def _coupling(task: Task, episodes: Sequence[LabelledEpisode], policy: Policy | 
     )
 
 
-def _arrays(task: Task, episodes: Sequence[LabelledEpisode], control_hz: float) -> Iterator[EpisodeData]:
-    """Read episodes in ticks of `control_hz`, those of a lower rate in their own.
+def _segments(
+    task: Task, episodes: Sequence[LabelledEpisode], control_hz: float
+) -> Iterator[list[EpisodeData]]:
+    """Read the segments of each episode in ticks of `control_hz`, those of a lower rate in their own.
 
     One that turns out to be damaged is left out, and the log says so.
     """
     for episode in episodes:
         try:
-            yield episode.open().arrays(task, min(control_hz, episode.control_hz or control_hz))
+            yield episode.segments(task, min(control_hz, episode.control_hz or control_hz))
         except Corrupt as error:
             _log.warning("Left out: %s", error)
 
