@@ -28,7 +28,7 @@ PAGE_LIBRARIES := services/web/src/mart/web/static/vendor/three.mjs
 
 # LeRobot needs other versions than the parts, so it is installed beside them (docs/decisions/0075).
 LEROBOT := .venv-lerobot
-LEROBOT_PARTS := protocol libraries/runtime libraries/operators libraries/render libraries/lerobot services/driver
+LEROBOT_PARTS := protocol libraries/runtime libraries/episodes libraries/operators libraries/render libraries/rollouts libraries/lerobot services/driver services/trainer
 
 BENCHMARKS := $(subst _,-,$(filter-out report,$(basename $(notdir $(wildcard benchmarks/*.py)))))
 

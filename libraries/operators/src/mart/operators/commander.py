@@ -127,6 +127,7 @@ class SeatCommander:
             sim_time_s=state.sim_time_s,
             observations=_observations(state, self._shapes),
             poses_tool_in_base={arm: pose_from_message(arms[arm].tool_in_base) for arm in self.arms},
+            integration_state=state.integration_state,
         )
 
     def _world_was_reset(self, state: State, first: ArmState) -> bool:

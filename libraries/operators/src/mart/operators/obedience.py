@@ -77,6 +77,10 @@ class ObedientOperator(Operator):
         self._operator = operator
         self._forget()
 
+    def prepare(self) -> None:
+        """Hand on; see `Operator.prepare`."""
+        self._operator.prepare()
+
     def begin(self, episode: int) -> None:
         """Forget every cue, and hand on; see `Operator.begin`."""
         self._forget()

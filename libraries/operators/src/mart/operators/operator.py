@@ -35,6 +35,7 @@ class SeatView:
 
     `observations`: float64 by the task's names, each of the shape that the task gives it. `poses_tool_in_base`:
     measured, for each arm that the operator drives. `sim_time_s` counts from the reset of the world.
+    `integration_state`: MuJoCo's, little-endian float64, from which `mart.render` draws pictures with the room's model.
     """
 
     task: Task
@@ -43,6 +44,7 @@ class SeatView:
     sim_time_s: float
     observations: Mapping[str, Array]
     poses_tool_in_base: Mapping[str, Pose]
+    integration_state: bytes = b""
 
     def step(
         self, arm: str, step_m: ArrayLike = (0, 0, 0), turn_rad: ArrayLike = (0, 0, 0), gripper: float = 0.0
@@ -58,6 +60,12 @@ class Operator(ABC):
     ...     def act(self, view):
     ...         return {arm: view.step(arm, (0, 0, 0.01)) for arm in view.poses_tool_in_base}
     """
+
+    def prepare(self) -> None:  # noqa: B027 - most have nothing to load
+        """Load and warm up what takes long, before the seat is taken: once it is, people wait for every answer.
+
+        Called once, on the thread that calls the other methods afterwards.
+        """
 
     def begin(self, episode: int) -> None:  # noqa: B027 - most have nothing to forget
         """Forget what was: the world has been reset, or the seat was just taken. `episode` is the room's count."""

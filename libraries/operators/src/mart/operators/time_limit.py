@@ -24,26 +24,30 @@ class TimeLimitedOperator(Operator):
         )
         threading.Thread(target=self._run, name="operator", daemon=True).start()
 
+    def prepare(self) -> None:
+        """Hand on, and wait as long as it takes; see `Operator.prepare`."""
+        self._ask(self._operator.prepare, None)
+
     def begin(self, episode: int) -> None:
         """Hand on; see `Operator.begin`."""
-        self._ask(lambda: self._operator.begin(episode))
+        self._ask(lambda: self._operator.begin(episode), self._limit_s)
 
     def act(self, view: SeatView) -> Mapping[str, ToolTarget]:
         """Hand on; see `Operator.act`."""
-        return self._ask(lambda: self._operator.act(view))  # type: ignore[return-value]  # checked by its caller
+        return self._ask(lambda: self._operator.act(view), self._limit_s)  # type: ignore[return-value]  # checked by its caller
 
     def on_cue(self, cue: Cue, arm: str) -> None:
         """Hand on; see `Operator.on_cue`."""
-        self._ask(lambda: self._operator.on_cue(cue, arm))
+        self._ask(lambda: self._operator.on_cue(cue, arm), self._limit_s)
 
-    def _ask(self, deed: Callable[[], object]) -> object:
+    def _ask(self, deed: Callable[[], object], limit_s: float | None) -> object:
         answer: queue.SimpleQueue[object] = queue.SimpleQueue()
         self._work.put((deed, answer))
         try:
-            said = answer.get(timeout=self._limit_s)
+            said = answer.get(timeout=limit_s)
         except queue.Empty:
             raise Unavailable(
-                f"The operator took longer than {self._limit_s:g} s for one tick; be quicker, or raise the limit."
+                f"The operator took longer than {limit_s:g} s for one tick; be quicker, or raise the limit."
             ) from None
         if isinstance(said, Exception):
             raise said

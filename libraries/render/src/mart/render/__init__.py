@@ -10,5 +10,16 @@ from mart.render.compiled_model import load_model, viewpoint_id
 from mart.render.moving_bodies import BodyPoses
 from mart.render.renderer import Image, Renderer
 from mart.render.scene_export import PageScene, export_scene
+from mart.render.state_pictures import PictureSpec, StatePictures
 
-__all__ = ["BodyPoses", "Image", "PageScene", "Renderer", "export_scene", "load_model", "viewpoint_id"]
+__all__ = [
+    "BodyPoses",
+    "Image",
+    "PageScene",
+    "PictureSpec",
+    "Renderer",
+    "StatePictures",
+    "export_scene",
+    "load_model",
+    "viewpoint_id",
+]

@@ -28,7 +28,7 @@ from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Unavailable
 from mart.trainer.data.data_spec import Selection
 from mart.trainer.evaluate.evaluation import EpisodeResult, RolloutOutcome
-from mart.trainer.models.policies.policy import Policy
+from mart.trainer.models.policies.policy import Policy, SeeingPolicy
 from mart.trainer.train.progress import TrainingProgress
 from mart.trainer.train.run_directory import RunDirectory
 from mart.trainer.train.spec import TrainingSpec
@@ -38,6 +38,7 @@ __all__ = [
     "EpisodeResult",
     "Policy",
     "RolloutOutcome",
+    "SeeingPolicy",
     "Selection",
     "TrainingProgress",
     "TrainingSpec",
@@ -50,12 +51,14 @@ __all__ = [
 def load_policy(checkpoint: Path, device: str = "cpu") -> Policy:
     """Load the policy of one checkpoint folder; it computes on `device`: cpu, cuda, cuda:N or auto.
 
+    A folder of another project is loaded by the installed part that knows it (entry points `mart.policy_loaders`).
     Raises NotFound where there is no checkpoint; Corrupt where it is damaged, of another format, or of a task that this
     version knows otherwise; Unavailable where the device, or PyTorch, is not there.
     """
     with _torch_needed():
-        from mart.trainer.models.policies.load import load_policy as load
-    return load(checkpoint, device)
+        from mart.trainer.models.policies.find import load_any_policy
+
+        return load_any_policy(checkpoint, device)
 
 
 def train_policy(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from mart.protocol.errors import InvalidInput
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import Progress, progress
 
@@ -64,15 +65,51 @@ def evaluate(
     from mart.trainer.evaluate.replicas import worlds
 
     config = EvalConfig(episodes, score_episodes, seed, time_limit, keep)
+    names = [name for name in replicas.split(",") if name]
+    if _is_foreign(checkpoint):
+        _evaluate_foreign(checkpoint, task, config, names, device=device, as_json=as_json)
+        return
     chosen = _chosen(checkpoint, task)
     with (
-        worlds([name for name in replicas.split(",") if name]) as client,
+        worlds(names) as client,
         progress("Ticks", _ticks_ahead(chosen, config), as_json=as_json) as shown,
     ):
         evaluator = Evaluator(client, config, device, shown.advance)
         evaluations = _evaluated(evaluator, chosen, shown, as_json=as_json)
     result: dict[str, Any] = {"evaluations": [formatting.as_json(found) for found in evaluations]}
     print_result(result, formatting.summary(evaluations), as_json)
+
+
+def _is_foreign(checkpoint: Path) -> bool:
+    from mart.trainer.models.policies.find import is_foreign
+    from mart.trainer.train.run_directory import SPEC_FILE
+
+    return is_foreign(checkpoint) and not (checkpoint / SPEC_FILE).is_file()
+
+
+def _evaluate_foreign(
+    checkpoint: Path, task: str | None, config: EvalConfig, replicas: list[str], *, device: str, as_json: bool
+) -> None:
+    """Judge a policy that another project trained. Raises InvalidInput where it is for another task."""
+    from mart.protocol.tasks import get_task
+    from mart.trainer.evaluate import formatting
+    from mart.trainer.evaluate.evaluator import Evaluator
+    from mart.trainer.evaluate.replicas import worlds
+    from mart.trainer.evaluate.rollouts import batch_count
+    from mart.trainer.models.policies.find import load_any_policy
+
+    policy = load_any_policy(checkpoint, device)
+    if task not in (None, policy.task):
+        raise InvalidInput(f"{checkpoint} was trained for {policy.task}, not for {task}; give one that was.")
+    known = get_task(policy.task, len(policy.arms), policy.arm_kinds)
+    ticks = round((config.time_limit_s or known.trial_limit_s) * policy.control_hz)
+    with (
+        worlds(replicas) as client,
+        progress("Ticks", batch_count(1, config.episodes) * ticks, as_json=as_json) as shown,
+    ):
+        found = [Evaluator(client, config, device, shown.advance).evaluate_policy(policy, checkpoint)]
+    result = {"evaluations": [formatting.as_json(one) for one in found]}
+    print_result(result, formatting.summary(found), as_json)
 
 
 def _chosen(checkpoint: Path, task: str | None) -> Path:

@@ -21,11 +21,37 @@ from mart.trainer.evaluate.evaluation import Evaluation, append_evaluations, bes
 from mart.trainer.evaluate.rollout_recorder import RolloutRecorder
 from mart.trainer.evaluate.rollouts import RolloutResult, roll_out
 from mart.trainer.evaluate.world_seeds import Purpose, world_seeds
-from mart.trainer.models.checkpoint import read_record
+from mart.trainer.models.checkpoint import CheckpointRecord, read_record
 from mart.trainer.models.policies.load import load_policy
+from mart.trainer.models.policies.policy import Policy
 from mart.trainer.train.run_directory import RunDirectory
 
 OnEvaluation = Callable[[Evaluation], None]
+
+
+@dataclass(frozen=True)
+class _EvaluatedPolicy:
+    """What an evaluation says of a policy; seed and updates of its training, 0 of one that was trained elsewhere."""
+
+    name: str
+    task: str
+    control_hz: float
+    arms: tuple[str, ...]
+    arm_kinds: tuple[str, ...]
+    seed: int = 0
+    updates: int = 0
+
+    @classmethod
+    def of(cls, record: CheckpointRecord) -> _EvaluatedPolicy:
+        return cls(
+            record.name,
+            record.task,
+            record.control_hz,
+            record.arms,
+            record.arm_kinds,
+            record.seed,
+            record.updates,
+        )
 
 
 @dataclass(frozen=True)
@@ -54,8 +80,19 @@ class Evaluator:
             policies, self.client, seeds, config.world_seed, config.time_limit_s, on_ticks=self.on_ticks
         )
         return [
-            self._evaluation(path, purpose, own, kept_in) for path, own in zip(paths, rollouts, strict=True)
+            self._evaluation(_EvaluatedPolicy.of(read_record(path)), path, purpose, own, kept_in)
+            for path, own in zip(paths, rollouts, strict=True)
         ]
+
+    def evaluate_policy(self, policy: Policy, path: Path) -> Evaluation:
+        """Evaluate a policy that was trained elsewhere; return its evaluation, which names the folder `path`."""
+        config, purpose = self.config, Purpose.SELECTION
+        seeds = world_seeds(purpose, config.world_seed, config.number(purpose))
+        (rollouts,) = roll_out(
+            [policy], self.client, seeds, config.world_seed, config.time_limit_s, on_ticks=self.on_ticks
+        )
+        evaluated = _EvaluatedPolicy(path.name, policy.task, policy.control_hz, policy.arms, policy.arm_kinds)
+        return self._evaluation(evaluated, path, purpose, rollouts, None)
 
     def evaluate_new(self, run: RunDirectory, on_evaluation: OnEvaluation) -> None:
         """Evaluate every checkpoint of the run that was not evaluated in these worlds yet, one's seeds together."""
@@ -101,9 +138,13 @@ class Evaluator:
             on_evaluation(found)
 
     def _evaluation(
-        self, path: Path, purpose: Purpose, rollouts: Sequence[RolloutResult], kept_in: Path | None
+        self,
+        record: _EvaluatedPolicy,
+        path: Path,
+        purpose: Purpose,
+        rollouts: Sequence[RolloutResult],
+        kept_in: Path | None,
     ) -> Evaluation:
-        record = read_record(path)
         task = get_task(record.task, len(record.arms), record.arm_kinds)
         names: dict[int, str] = {}
         if kept_in is not None:

@@ -5,21 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.batch_state import ACTION_SIZE, BatchState
 from mart.protocol.errors import InvalidInput
+from mart.protocol.messages import Model
 from mart.protocol.tasks import Task, get_task
 from mart.rollouts.client import RolloutClient
 from mart.trainer.evaluate.evaluation import EpisodeResult, RolloutOutcome
+from mart.trainer.models.policies.policy import pictures_of
 
 if TYPE_CHECKING:
     from mart.trainer.models.policies.policy import Policy
 
 Array = NDArray[np.float64]
+# Of a policy's worlds, by name: of the states float64[worlds, size], where the flags bool[worlds] want them.
+DrawPictures = Callable[["Policy", Array, NDArray[np.bool_]], Mapping[str, NDArray[np.uint8]]]
 
 # Fixed, so that an episode is the same however many policies are judged together: what a policy samples depends on the
 # number of the world in its batch.
@@ -96,11 +100,36 @@ class _PolicyBatch:
     def roll_out(
         self, client: RolloutClient, policy_seed: int, limit_s: float, on_ticks: Callable[[int], None]
     ) -> None:
-        control_hz, arms = self._policies[0].control_hz, len(self._task.arms)
-        seeds = list(self._seeds) * len(self._policies)
-        worlds = client.reset(self._task.name, seeds, control_hz, arms, arm_kinds=self._task.arm_kinds)
         for policy in self._policies:
             policy.begin(len(self._seeds), policy_seed)
+        if any(map(pictures_of, self._policies)):
+            from mart.trainer.evaluate.rollout_pictures import RolloutPictures
+
+            with RolloutPictures(self._model(client), self._policies) as shown:
+                self._play(client, limit_s, on_ticks, shown.draw)
+        else:
+            self._play(client, limit_s, on_ticks, None)
+
+    def _model(self, client: RolloutClient) -> Model:
+        task = self._task
+        return client.model(task.name, self._policies[0].control_hz, len(task.arms), task.arm_kinds)
+
+    def _play(
+        self,
+        client: RolloutClient,
+        limit_s: float,
+        on_ticks: Callable[[int], None],
+        draw: DrawPictures | None,
+    ) -> None:
+        task, control_hz = self._task, self._policies[0].control_hz
+        worlds = client.reset(
+            task.name,
+            list(self._seeds) * len(self._policies),
+            control_hz,
+            len(task.arms),
+            arm_kinds=task.arm_kinds,
+            integration_states=draw is not None,
+        )
         self._look(worlds)
         most = round(limit_s * control_hz)
         for tick in range(most):
@@ -108,7 +137,7 @@ class _PolicyBatch:
             if not running.any():
                 on_ticks(most - tick)
                 return
-            self._actions.append(self._act(worlds.observations))
+            self._actions.append(self._act(worlds, draw))
             self._ticks += running
             worlds = client.step(self._actions[-1], running)
             self._look(worlds)
@@ -118,12 +147,17 @@ class _PolicyBatch:
     def _ended(self) -> NDArray[np.bool_]:
         return self._success | self._failed
 
-    def _act(self, observations: Mapping[str, Array]) -> Array:
+    def _act(self, worlds: BatchState, draw: DrawPictures | None) -> Array:
         """Return what is done next, float64[worlds, arms, 7]; zeros where a policy has nothing left to play."""
+        observations = worlds.observations
         actions = np.zeros((len(self._ticks), len(self._task.arms), ACTION_SIZE))
         for policy, own in zip(self._policies, self._slices, strict=True):
             if not self._ended[own].all():
-                actions[own] = policy.act({name: observations[name][own] for name in policy.needs})
+                seen: dict[str, NDArray[Any]] = {name: observations[name][own] for name in policy.needs}
+                states = worlds.integration_states
+                if draw is not None and states is not None:
+                    seen |= draw(policy, states[own], ~self._ended[own])
+                actions[own] = policy.act(seen)
         return actions
 
     def _look(self, worlds: BatchState) -> None:

@@ -41,7 +41,7 @@ def policies(room: str | None) -> None:
 @json_option
 def operate(*, checkpoint: Path, room: str, arms: tuple[str, ...], name: str, as_json: bool) -> None:
     """Take seats for a policy and drive them until Ctrl-C, beside people who may take over and hand back."""
-    from mart.trainer.models.policies.load import load_policy
+    from mart.trainer.models.policies.find import load_any_policy
     from mart.trainer.serve.service import operate as drive
     from mart.trainer.serve.settings import OperateSettings
 
@@ -50,4 +50,4 @@ def operate(*, checkpoint: Path, room: str, arms: tuple[str, ...], name: str, as
         print_result({"room": room, "name": called, "arms": list(taken)}, text, as_json)
 
     settings = OperateSettings(checkpoint=checkpoint, room=room, arms=arms, name=name)
-    drive(settings, load_policy, seated)
+    drive(settings, load_any_policy, seated)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mart.operators.operator import Operator, SeatView, ToolTarget, target_from_action
 from mart.protocol.batch_state import ACTION_SIZE
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from mart.trainer.models.policies.policy import Policy  # with all of torch behind it
 
 
+DrawPictures = Callable[[bytes], Mapping[str, NDArray[np.uint8]]]
+
+
 class PolicyOperator(Operator):
     """Drive the arms of one policy with one memory.
 
@@ -22,8 +26,9 @@ class PolicyOperator(Operator):
     applies is what the policy meant.
     """
 
-    def __init__(self, policy: Policy) -> None:
-        self._policy = policy
+    def __init__(self, policy: Policy, draw: DrawPictures | None = None) -> None:
+        """Drive with a policy. draw: by name what a policy that sees is shown, of an integration state."""
+        self._policy, self._draw = policy, draw
 
     def begin(self, episode: int) -> None:
         """Forget, and draw samples of this episode; see `Operator.begin`."""
@@ -31,7 +36,12 @@ class PolicyOperator(Operator):
 
     def act(self, view: SeatView) -> Mapping[str, ToolTarget]:
         """Return what the policy wants of all its arms. Raises Corrupt where that is not finite or misshapen."""
-        observations = {name: view.observations[name][np.newaxis] for name in self._policy.needs}
+        observations: dict[str, NDArray[Any]] = {
+            name: view.observations[name][np.newaxis] for name in self._policy.needs
+        }
+        if self._draw is not None:
+            pictures = self._draw(view.integration_state)
+            observations |= {name: picture[np.newaxis] for name, picture in pictures.items()}
         actions = self._policy.act(observations)
         arms = self._policy.arms
         if actions.shape != (1, len(arms), ACTION_SIZE) or not np.isfinite(actions).all():

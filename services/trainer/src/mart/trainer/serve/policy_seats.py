@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING
 from mart.operators.commander import SeatCommander
 from mart.operators.driver import SeatSelection
 from mart.operators.obedience import ObedientOperator
+from mart.operators.operator import Operator
 from mart.protocol.control_rate import ticks_for_each
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
 from mart.protocol.room_task import task_of_room
 from mart.protocol.tasks import Task
 from mart.protocol.vocabulary import ServiceKind
+from mart.trainer.models.policies.policy import pictures_of
 from mart.trainer.serve.policy_operator import PolicyOperator, parts_of
 
 if TYPE_CHECKING:
@@ -67,23 +69,27 @@ class PromotedPolicies(SeatSelection[str]):
 def policy_commanders(policy: Policy, status: RoomStatus) -> Sequence[SeatCommander]:
     """Return what a policy drives with in a room of this status: one commander for each of its independent parts.
 
+    Raises InvalidInput as `commander_of`, and for a policy that sees.
+    """
+    if pictures_of(policy):
+        raise InvalidInput(
+            "It is shown pictures; seat it with `mart operate --checkpoint`, which draws them."
+        )
+    return [commander_of(part, PolicyOperator(part), status) for part in parts_of(policy)]
+
+
+def commander_of(policy: Policy, operator: Operator, status: RoomStatus) -> SeatCommander:
+    """Return what one part of a policy drives with, by its operator, in a room of this status.
+
     It obeys its partners' cues, and acts at its own rate also where the room's is a multiple of it. Raises InvalidInput
     where the policy was not made for such a room, or the room's rate is no multiple.
     """
     task = task_of_room(status)
     require_fit(policy, task)
     each = ticks_for_each(policy.control_hz, status.control_hz)
-    return [
-        SeatCommander(
-            ObedientOperator(PolicyOperator(part)),
-            task,
-            part.arms,
-            OPERATOR_POLICY,
-            part.needs,
-            act_every_ticks=each,
-        )
-        for part in parts_of(policy)
-    ]
+    return SeatCommander(
+        ObedientOperator(operator), task, policy.arms, OPERATOR_POLICY, policy.needs, act_every_ticks=each
+    )
 
 
 def require_fit(policy: Policy, task: Task) -> None:

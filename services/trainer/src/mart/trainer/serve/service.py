@@ -13,19 +13,29 @@ from typing import TYPE_CHECKING
 
 from mart.operators.claim import claimed_seats
 from mart.operators.client import ProgramSeats, drive_claimed
+from mart.operators.commander import SeatCommander
 from mart.operators.driver import SeatDriver
+from mart.operators.operator import Operator
 from mart.operators.room_client import RoomClient
-from mart.protocol.errors import InvalidInput, NotFound
+from mart.operators.time_limit import TimeLimitedOperator
+from mart.protocol import keys
+from mart.protocol.errors import NotFound
+from mart.protocol.messages import Model, RoomStatus
+from mart.protocol.received import decode_received
 from mart.protocol.vocabulary import ServiceKind
+from mart.runtime.bus import Bus
 from mart.runtime.service import running
-from mart.trainer.serve.policy_operator import parts_of
-from mart.trainer.serve.policy_seats import LoadPolicy, PromotedPolicies, policy_commanders
+from mart.trainer.models.policies.policy import pictures_of
+from mart.trainer.serve.policy_operator import PolicyOperator, parts_of
+from mart.trainer.serve.policy_seats import LoadPolicy, PromotedPolicies, commander_of
 from mart.trainer.serve.settings import OperateSettings, PoliciesSettings
 
 if TYPE_CHECKING:
     from mart.trainer.models.policies.policy import Policy
 
 _NICEST = 19
+_TIME_LIMIT_S = 2.0  # for one tick, as of any program in a seat
+_MODEL_TIMEOUT_S = 5.0
 
 
 def serve_policies(settings: PoliciesSettings, loader: Callable[[], LoadPolicy]) -> None:
@@ -59,29 +69,46 @@ def operate(
 ) -> None:
     """Drive until the process is asked to stop; `seated` is told the name and the arms.
 
-    While a person has taken over it waits for the seat. Raises Conflict where somebody else sits there, or when the
-    last seat has been given to another; InvalidInput or NotFound where the policy cannot drive these arms.
+    While a person has taken over it waits for the seat. An answer that takes longer than 2 s leaves it. Of a policy
+    that drives several arms together some can be given: it acts for all, and commands those. Raises Conflict where
+    somebody else sits there, or when the last seat has been given to another; NotFound where the policy does not drive
+    such an arm, InvalidInput where it was not made for this room.
     """
     policy = load(settings.checkpoint)
     arms = _arms(policy, settings.arms)
     name = settings.name or settings.checkpoint.name
     holder_id = secrets.token_hex(16)
     called = f"operate-{secrets.token_hex(8)}"  # everybody sees it: another one
-    with (
-        running(settings, ServiceKind.OPERATE, called) as service,
-        claimed_seats(RoomClient(service.bus, settings.room), arms, holder_id, name) as seats,
-    ):
-        program = ProgramSeats(seats, name, lambda status: policy_commanders(policy, status))
-        seated(name, arms)
-        drive_claimed(SeatDriver(service.bus, settings.room, program), seats, settings.room, service.stop)
+    with running(settings, ServiceKind.OPERATE, called) as service:
+        model = _model(service.bus, settings.room) if pictures_of(policy) else None
+        parts = [part for part in parts_of(policy) if set(part.arms) & set(arms)]
+        operators = [TimeLimitedOperator(_operator(part, model), _TIME_LIMIT_S) for part in parts]
+        for operator in operators:
+            operator.prepare()
+
+        def commanders(status: RoomStatus) -> list[SeatCommander]:
+            return [commander_of(*one, status) for one in zip(parts, operators, strict=True)]
+
+        with claimed_seats(RoomClient(service.bus, settings.room), arms, holder_id, name) as seats:
+            program = ProgramSeats(seats, name, commanders)
+            seated(name, arms)
+            drive_claimed(SeatDriver(service.bus, settings.room, program), seats, settings.room, service.stop)
+
+
+def _model(bus: Bus, room: str) -> Model:
+    return decode_received(Model, bus.query(keys.model(room), b"", _MODEL_TIMEOUT_S))
+
+
+def _operator(policy: Policy, model: Model | None) -> Operator:
+    if model is None or not pictures_of(policy):
+        return PolicyOperator(policy)
+    from mart.trainer.serve.seeing_operator import SeeingOperator
+
+    return SeeingOperator(policy, model)
 
 
 def _arms(policy: Policy, asked: tuple[str, ...]) -> tuple[str, ...]:
     unknown = sorted(set(asked) - set(policy.arms))
     if unknown:
         raise NotFound.named("arm of this policy", unknown[0], policy.arms)
-    if asked and set(asked) != set(policy.arms) and len(parts_of(policy)) == 1:
-        raise InvalidInput(
-            f"{', '.join(asked)} was given, but this policy drives {', '.join(policy.arms)} together; give them all."
-        )
     return asked or policy.arms

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mart.protocol.batch_state import ACTION_SIZE
 
-__all__ = ["ACTION_SIZE", "Array", "Policy"]
+if TYPE_CHECKING:
+    from mart.render import PictureSpec  # with MuJoCo behind it
+
+__all__ = ["ACTION_SIZE", "Array", "Policy", "SeeingPolicy", "pictures_of"]
 
 Array = NDArray[np.float64]
 
@@ -43,7 +46,7 @@ class Policy(Protocol):
         """Begin an episode, before its first tick. World i draws its samples from (seed, i), however many there are."""
         ...
 
-    def act(self, observations: Mapping[str, Array]) -> Array:
+    def act(self, observations: Mapping[str, NDArray[Any]]) -> Array:
         """Return what to do next, given the observations of now.
 
         observations: by name, each float64[worlds, *shape]; more than `needs` may be there.
@@ -58,3 +61,21 @@ class Policy(Protocol):
         Raises NotFound for an unknown arm and InvalidInput where the arms are driven together, saying which.
         """
         ...
+
+
+@runtime_checkable
+class SeeingPolicy(Policy, Protocol):
+    """A policy that is shown pictures, too: `act` finds each by its name among the observations.
+
+    A picture is uint8[worlds, height, width, 3], sRGB, drawn of the very state that the other observations are of.
+    """
+
+    @property
+    def pictures(self) -> Mapping[str, PictureSpec]:
+        """What it is shown, by name; no name is that of an observation."""
+        ...
+
+
+def pictures_of(policy: Policy) -> Mapping[str, PictureSpec]:
+    """Return what a policy is shown by name; nothing of one that does not see."""
+    return policy.pictures if isinstance(policy, SeeingPolicy) else {}
