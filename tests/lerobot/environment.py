@@ -11,7 +11,7 @@ from pathlib import Path
 
 from tests.contract.repository import ROOT
 
-ENVIRONMENT = Path(os.environ.get("LEROBOT_ENVIRONMENT", ROOT / ".venv-lerobot"))
+ENVIRONMENT = ROOT / os.environ.get("LEROBOT_ENVIRONMENT", ".venv-lerobot")
 _PLUGINS = Path(__file__).with_name("plugins")
 _TIMEOUT_S = 240.0  # LeRobot's commands alone take 30 s to begin on a busy machine
 

@@ -7,9 +7,10 @@ from collections.abc import Mapping
 
 import pytest
 
-from mart.operators import Operator, SeatView, ToolTarget
+from mart.operators import ObedientOperator, Operator, SeatView, ToolTarget
 from mart.operators.commander import SeatCommander
 from mart.operators.time_limit import TimeLimitedOperator
+from mart.protocol import clock
 from mart.protocol.errors import InvalidInput, Unavailable
 from mart.protocol.messages import CUE_GO, OPERATOR_POLICY, Cue
 from tests.operators.rooms import TASK, Riser, state_of
@@ -40,6 +41,34 @@ def test_who_answers_in_time_is_heard() -> None:
     riser = Riser()
     assert len(observe(riser, limit_s=60.0).commands(0)) == 1
     assert riser.begun == [1]
+
+
+def test_what_takes_long_beforehand_is_waited_for_on_its_thread() -> None:
+    class Loading(Riser):
+        loaded_on = acted_on = 0
+
+        def prepare(self) -> None:
+            self.loaded_on = threading.get_ident()
+
+        def act(self, view: SeatView) -> Mapping[str, ToolTarget]:
+            self.acted_on = threading.get_ident()
+            return super().act(view)
+
+    loading = Loading()
+    limited = TimeLimitedOperator(loading, 60.0)
+    limited.prepare()
+    commander = SeatCommander(ObedientOperator(limited), TASK, ("arm0",), OPERATOR_POLICY)
+    commander.seat({"arm0": 2})
+    commander.observe(state_of(1))
+    assert loading.loaded_on == loading.acted_on != threading.get_ident()
+
+
+def test_nothing_limits_what_takes_long_beforehand() -> None:
+    class Slow(Riser):
+        def prepare(self) -> None:
+            clock.sleep_s(0.1)
+
+    TimeLimitedOperator(Slow(), 0.01).prepare()
 
 
 def test_a_cue_is_handed_on() -> None:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import closing
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from numpy.typing import NDArray
 
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
@@ -18,6 +21,7 @@ from mart.protocol.errors import InvalidInput, NotFound, Unavailable
 from mart.protocol.messages import State
 from mart.protocol.recording import STATE
 from mart.protocol.tasks import get_task
+from mart.render import PictureSpec, Renderer
 from mart.rollouts.client import RolloutClient
 from mart.trainer.evaluate.cli import evaluate
 from mart.trainer.evaluate.config import EvalConfig
@@ -65,6 +69,20 @@ class Scripted:
         raise InvalidInput(f"{arm} is driven together with the others.")
 
 
+@dataclass
+class Seeing(Scripted):
+    """Keeps the pictures that it was shown."""
+
+    pictures: Mapping[str, PictureSpec] = field(
+        default_factory=lambda: {"ahead": PictureSpec("front", 48, 32)}
+    )
+    shown: list[NDArray[np.uint8]] = field(default_factory=list)
+
+    def act(self, observations: Mapping[str, NDArray[Any]]) -> Array:
+        self.shown.append(observations["ahead"])
+        return super().act({name: observations[name] for name in self.needs})
+
+
 @pytest.fixture(scope="module")
 def client() -> Iterator[RolloutClient]:
     with worlds(()) as client:
@@ -94,6 +112,22 @@ def test_success_ends_an_episode_and_so_does_time(client: RolloutClient, experts
     assert {(rollout.result.outcome, rollout.result.time_s, rollout.result.done) for rollout in lost} == {
         ("time", 7.0, ())
     }
+
+
+def test_a_policy_that_sees_is_shown_the_very_states_that_it_acts_on(
+    client: RolloutClient, experts: Scripted, episodes: Recorded
+) -> None:
+    seeing = Seeing(experts.actions)
+    idling, seen = roll_out([idle(), seeing], client, SEEDS, policy_seed=0)
+    assert [rollout.result.outcome for rollout in seen] == ["success"] * 3
+    assert not any(rollout.result.succeeded for rollout in idling)
+    assert {pictures.shape for pictures in seeing.shown} == {(3, 32, 48, 3)}
+    with closing(Renderer(episodes.world.model, "front", 48, 32)) as renderer:
+        for world, states in enumerate(episodes.states):
+            drawn = renderer.draw(states[10].integration_state).astype(int)
+            assert np.abs(seeing.shown[10][world] - drawn).mean() < 0.5
+    shortest = int(np.argmin([len(rollout.actions) for rollout in seen]))
+    assert not seeing.shown[-1][shortest].any()  # it has ended: nobody looks there
 
 
 def test_an_episode_is_the_same_alone_and_beside_others(client: RolloutClient, experts: Scripted) -> None:

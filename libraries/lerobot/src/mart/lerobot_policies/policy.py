@@ -33,6 +33,7 @@ class LeRobotPolicy:
         """Load the weights. Raises Corrupt where they are damaged, Unavailable where the device is not there."""
         self._checkpoint = checkpoint
         facts = checkpoint.facts
+        self.name = f"LeRobot's {checkpoint.kind}"
         self.task, self.control_hz = facts.task, facts.control_hz
         self.arms, self.arm_kinds = facts.arms, facts.arm_kinds
         named = [name for names in checkpoint.numbers.values() for name in names]

@@ -68,6 +68,7 @@ def _write(selection: ExportSelection, folder: Path) -> int:
     stats = {name: _statistics(values) for name, values in columns.items()}
     (folder / "meta/stats.json").write_text(json.dumps(stats, indent=2))
     (folder / "meta/info.json").write_text(json.dumps(_info(selection, columns, len(episodes)), indent=2))
+    (folder / "meta/mart.json").write_text(json.dumps(_facts(selection), indent=2))
     return frames
 
 
@@ -176,6 +177,13 @@ def _robots(task: Task) -> str:
     if not task.arm_kinds:
         return f"{len(task.arms)} Franka Pandas"  # as every version has called them
     return " + ".join(arm.kind.title for arm in task.arms)
+
+
+def _facts(selection: ExportSelection) -> dict[str, Any]:
+    """Return what LeRobot has no place for, and who seats a policy that was trained on it has to know."""
+    task = selection.task
+    kinds = {"arm_kinds": task.arm_kinds} if task.arm_kinds else {}
+    return {"task": task.name, "control_hz": selection.control_hz, "arms": task.arm_names} | kinds
 
 
 def _info(selection: ExportSelection, columns: Columns, episodes: int) -> dict[str, Any]:

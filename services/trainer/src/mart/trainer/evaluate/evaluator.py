@@ -91,7 +91,8 @@ class Evaluator:
         (rollouts,) = roll_out(
             [policy], self.client, seeds, config.world_seed, config.time_limit_s, on_ticks=self.on_ticks
         )
-        evaluated = _EvaluatedPolicy(path.name, policy.task, policy.control_hz, policy.arms, policy.arm_kinds)
+        name = getattr(policy, "name", path.name)
+        evaluated = _EvaluatedPolicy(name, policy.task, policy.control_hz, policy.arms, policy.arm_kinds)
         return self._evaluation(evaluated, path, purpose, rollouts, None)
 
     def evaluate_new(self, run: RunDirectory, on_evaluation: OnEvaluation) -> None:
