@@ -26,9 +26,9 @@ def test_a_straight_way_with_a_rest() -> None:
     found = quality()
     assert found.path_m == pytest.approx(0.6)
     assert found.path_ratio == pytest.approx(1.0)
-    assert (found.idle_s, found.idle_share) == (pytest.approx(2.0), pytest.approx(0.4))
+    assert (found.idle_s, found.idle_share) == pytest.approx((2.0, 0.4))
     assert (found.path_rad, found.regrasps, found.held_share) == (0.0, 0, 0.0)
-    assert (found.waited_s, found.late_share) == (pytest.approx(2.0), pytest.approx(0.1))
+    assert (found.waited_s, found.late_share) == pytest.approx((2.0, 0.1))
     assert found.engagements == 1
 
 
@@ -68,4 +68,4 @@ def test_engagements_and_held_ticks_are_counted() -> None:
     flags = np.zeros((100, 2), np.bool_)
     flags[5:10, 0] = flags[50:60, 0] = True
     found = quality(engaged=flags, held=flags)
-    assert (found.engagements, found.held_share) == (2, pytest.approx(0.15))
+    assert (found.engagements, found.held_share) == pytest.approx((2, 0.15))

@@ -43,7 +43,7 @@ def test_what_messages_say_is_counted(tmp_path: Path) -> None:
         file.add(event_entry(event, codec.encode(event), event.wall_ns))
     finalize(file, episode, facts, tmp_path, by_toy_replica, repaired=False)
     found = measure(only(tmp_path))
-    assert (found.stops, found.link_losses, found.duration_s) == (2, 1, pytest.approx(2.0))
+    assert (found.stops, found.link_losses, found.duration_s) == pytest.approx((2, 1, 2.0))
     assert (found.missing_ticks, found.missing_commands) == (0, 0)
     assert found.waited_s == pytest.approx(0.4)
     assert found.arms["arm1"].waited_s == pytest.approx(0.4)

@@ -53,7 +53,7 @@ def measured(episode: LabelledEpisode) -> Measured:
 
 
 class QualityStore:
-    """Remember measurements below a folder of episodes; only while it is open where the disk takes none. One thread's."""
+    """Remember measurements below a folder of episodes, on the disk where it takes them. For one thread."""
 
     def __init__(self, root: Path) -> None:
         self._database = _open(root / FILE_NAME)
