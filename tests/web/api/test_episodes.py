@@ -71,7 +71,7 @@ async def test_without_a_catalogue_the_page_waits(enter: Enter) -> None:
         "episode/picture",
         "episode/quality",
         "episode/video",
-    ],  # fmt: skip
+    ],
 )
 async def test_only_who_has_joined_sees_episodes(enter: Enter, root: Path, path: str) -> None:
     asked = await (await enter()).get(f"/api/{path}", params={"path": PATH, "camera": "arm0"})

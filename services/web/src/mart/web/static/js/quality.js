@@ -93,36 +93,48 @@ const rowsOf = (groups, measure) =>
     numbers.filter((number) => number.name === measure).map((number) => ({ name, number })),
   );
 
-/** @param {Messages.QualityGroup[]} groups */
+/**
+ * The roles are said because a narrow page shows each row as a card, which is no table to a screen reader.
+ * @param {Messages.QualityGroup[]} groups
+ */
 function table(groups) {
   const measures = measuresOf(groups);
-  const titles = measures.map((name) => rowsOf(groups, name)[0]?.number.title ?? name);
-  const heads = [by.value === "day" ? "Day" : "Who drove", "Episodes", "Good", "Unlike others", ...titles];
+  const titles = ["Episodes", "Good", "Unlike others", ...measures.map((name) => titleOf(groups, name))];
+  const heads = [by.value === "day" ? "Day" : "Who drove", ...titles].map((text) =>
+    element("th", { scope: "col", role: "columnheader" }, text),
+  );
   return element(
     "table",
-    { class: "figures" },
-    element("thead", {}, element("tr", {}, ...heads.map((text) => element("th", { scope: "col" }, text)))),
-    element("tbody", {}, ...groups.map((group) => tableRow(group, measures))),
+    { class: "figures", role: "table" },
+    element("thead", { role: "rowgroup" }, element("tr", { role: "row" }, ...heads)),
+    element("tbody", { role: "rowgroup" }, ...groups.map((group) => tableRow(group, measures, titles))),
   );
 }
+
+/** @type {(groups: Messages.QualityGroup[], measure: string) => string} */
+const titleOf = (groups, measure) => rowsOf(groups, measure)[0]?.number.title ?? measure;
 
 /**
  * @param {Messages.QualityGroup} group
  * @param {string[]} measures
+ * @param {string[]} titles of the cells
  */
-function tableRow({ name, episodes, successes, outliers, numbers }, measures) {
+function tableRow({ name, episodes, successes, outliers, numbers }, measures, titles) {
   const cells = measures.map((measure) => {
     const number = numbers.find((one) => one.name === measure);
     return number ? numberText(number.value, number.unit) : "–";
   });
+  const head = element("th", { scope: "row", role: "rowheader" }, groupText(name));
   const texts = [String(episodes), String(successes), String(outliers), ...cells];
-  const head = element("th", { scope: "row" }, groupText(name));
-  return element("tr", {}, head, ...texts.map((text) => element("td", {}, text)));
+  const rest = texts.map((text, index) =>
+    element("td", { role: "cell", dataset: { title: titles[index] ?? "" } }, text),
+  );
+  return element("tr", { role: "row" }, head, ...rest);
 }
 
 /** @param {Api.Episode} episode */
 function outlierRow({ path, room, number, started_ms: startedMs, outliers }) {
   const href = `/episodes?${new URLSearchParams({ path })}`;
   const name = `${room}, episode ${number}, ${dateText(startedMs)}`;
-  return element("li", {}, element("a", { href }, name), element("span", { class: "soft block" }, outliers.join("; ")));
+  return element("li", {}, element("a", { href }, name), element("span", { class: "soft" }, outliers.join("; ")));
 }

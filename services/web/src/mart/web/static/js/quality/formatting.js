@@ -10,11 +10,15 @@ export function numberText(value, unit) {
   return `${text.replace("-", MINUS)} ${unit}`.trim();
 }
 
-/** "usually 3.1 to 7.4 s"; nothing where too few say so. @type {(number: Messages.QualityNumber) => string} */
-export function usualText({ low, high, unit }) {
+/**
+ * "usually 3.1 s to 7.4 s"; nothing where too few say so, or where it is the very same.
+ * @type {(number: Messages.QualityNumber) => string}
+ */
+export function usualText({ value, low, high, unit }) {
   if (low === undefined || high === undefined) return "";
   const [from, to] = [numberText(low, unit), numberText(high, unit)];
-  return from === to ? `usually ${from}` : `usually ${from} to ${to}`;
+  if (from === to) return from === numberText(value, unit) ? "" : `usually ${from}`;
+  return `usually ${from} to ${to}`;
 }
 
 /** "12 of 300 looked at"; nothing where all are. @type {(comparison: Api.QualityComparison) => string} */

@@ -47,7 +47,7 @@ function range({ name, number }, low, high) {
     "div",
     { class: "range" },
     element("span", { class: "range-name", title: groupText(name) }, groupText(name)),
+    element("span", { class: "figures" }, numberText(number.value, number.unit)),
     element("span", { class: "scale", "aria-hidden": "true" }, reach, middle),
-    element("span", { class: "range-value figures" }, numberText(number.value, number.unit)),
   );
 }
