@@ -38,8 +38,12 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[QualitySite]:
         yield QualitySite(f"https://localhost:{port}/", Path(data_dir / "join-code").read_text().strip())
 
 
-def test_from_a_comparison_to_the_episode_that_is_unlike_the_others(browser: Browser, site: QualitySite) -> None:
-    with joined(browser, site.url, site.join_code, "quality", size="wide", scheme="light") as page:
+def test_from_a_comparison_to_the_episode_that_is_unlike_the_others(
+    browser: Browser, site: QualitySite
+) -> None:
+    # The toy room's pictures are none, so their video is refused.
+    looked = joined(browser, site.url, site.join_code, "quality", size="wide", scheme="light", refused=True)
+    with looked as page:
         expect(page.locator("#progress")).to_have_text("9 episodes", timeout=60_000)
         rows = page.locator("#table tbody tr")
         expect(rows).to_have_count(2)
@@ -49,7 +53,7 @@ def test_from_a_comparison_to_the_episode_that_is_unlike_the_others(browser: Bro
         page.get_by_role("combobox", name="Compare").select_option("Days")
         expect(rows).to_have_count(1)
         page.locator("#outliers a").click()
-        card = page.get_by_label("Quality")
+        card = page.get_by_role("region", name="Quality")
         expect(card).to_contain_text("Unlike others: 10.0 times the median, 1 s")
         expect(card).to_contain_text("9 episodes of its task")
         for what in seen_in(page, LOOKS[:4], "episode-quality"):

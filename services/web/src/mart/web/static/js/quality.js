@@ -1,6 +1,7 @@
 // The page that compares how people and days have recorded the episodes of one task.
 
 import * as api from "./api.js";
+import { theArm } from "./arms.js";
 import { byId, element, setShown, setText } from "./dom.js";
 import { dateText } from "./episodes/formatting.js";
 import { isMember, toLobby } from "./member.js";
@@ -132,9 +133,13 @@ function tableRow({ name, episodes, successes, outliers, numbers }, measures, ti
   return element("tr", { role: "row" }, head, ...rest);
 }
 
+/** "Idle of arm0: …" → "Idle of the blue arm: …" @type {(text: string) => string} */
+const withArmNames = (text) => text.replace(/ of (arm\d+):/, (_, arm) => ` of ${theArm(arm)}:`);
+
 /** @param {Api.Episode} episode */
 function outlierRow({ path, room, number, started_ms: startedMs, outliers }) {
   const href = `/episodes?${new URLSearchParams({ path })}`;
   const name = `${room}, episode ${number}, ${dateText(startedMs)}`;
-  return element("li", {}, element("a", { href }, name), element("span", { class: "soft" }, outliers.join("; ")));
+  const why = outliers.map(withArmNames).join("; ");
+  return element("li", {}, element("a", { href }, name), element("span", { class: "soft" }, why));
 }
