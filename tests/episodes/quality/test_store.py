@@ -7,7 +7,7 @@ import pytest
 from mart.episodes import LabelKind, labels, list_episodes
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.quality import store
-from mart.episodes.quality.store import FILE_NAME, Measured, measure_all
+from mart.episodes.quality.store import FILE_NAME, MeasuredQuality, measure_all
 from tests.recorder.files import write_episode
 
 
@@ -28,7 +28,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     found: list[str] = []
     real = store.measured
 
-    def measured(episode: LabelledEpisode) -> Measured:
+    def measured(episode: LabelledEpisode) -> MeasuredQuality:
         found.append(episode.path)
         return real(episode)
 

@@ -25,7 +25,7 @@ _VERSION = 1  # of what is measured and how: of another one everything is measur
 _TABLE = "CREATE TABLE quality (path TEXT PRIMARY KEY, stamp TEXT, row TEXT)"
 
 
-class Measured(BaseModel):
+class MeasuredQuality(BaseModel):
     """Hold what was measured of an episode, or why it could not be (`error`)."""
 
     model_config = ConfigDict(frozen=True)
@@ -44,12 +44,12 @@ def stamp_of(episode: LabelledEpisode) -> str:
     return f"{status.st_size} {status.st_ctime_ns} {record} {episode.edits}"
 
 
-def measured(episode: LabelledEpisode) -> Measured:
+def measured(episode: LabelledEpisode) -> MeasuredQuality:
     """Measure an episode; of one that cannot be measured, say why."""
     try:
-        return Measured(quality=measure(episode))
+        return MeasuredQuality(quality=measure(episode))
     except MartError as error:
-        return Measured(error=str(error))
+        return MeasuredQuality(error=str(error))
 
 
 class QualityStore:
@@ -62,7 +62,7 @@ class QualityStore:
         """Close the file."""
         self._database.close()
 
-    def known(self, episode: LabelledEpisode) -> Measured | None:
+    def known(self, episode: LabelledEpisode) -> MeasuredQuality | None:
         """Return what was measured of the episode as it is now; None where nothing was."""
         try:
             row = self._database.execute(
@@ -70,12 +70,12 @@ class QualityStore:
             ).fetchone()
             if row is None or row[0] != stamp_of(episode):
                 return None
-            return Measured.model_validate_json(row[1])
+            return MeasuredQuality.model_validate_json(row[1])
         except (sqlite3.Error, ValidationError) as error:
             _log.warning("What was measured of %s is not known any more: %s", episode.path, error)
             return None
 
-    def keep(self, episode: LabelledEpisode, found: Measured) -> None:
+    def keep(self, episode: LabelledEpisode, found: MeasuredQuality) -> None:
         """Remember what was measured of an episode."""
         values = (episode.path, stamp_of(episode), found.model_dump_json())
         try:
@@ -84,7 +84,7 @@ class QualityStore:
         except sqlite3.Error as error:
             _log.info("What was measured of %s could not be kept: %s", episode.path, error)
 
-    def get(self, episode: LabelledEpisode) -> Measured:
+    def get(self, episode: LabelledEpisode) -> MeasuredQuality:
         """Return what is known of an episode, which is measured where nothing is."""
         found = self.known(episode)
         if found is None:
@@ -93,7 +93,7 @@ class QualityStore:
         return found
 
 
-def measure_all(episodes: Iterable[LabelledEpisode]) -> Iterator[tuple[LabelledEpisode, Measured]]:
+def measure_all(episodes: Iterable[LabelledEpisode]) -> Iterator[tuple[LabelledEpisode, MeasuredQuality]]:
     """Iterate over episodes, of any folders, with what is measured of each; what was measured before is remembered."""
     stores: dict[Path, QualityStore] = {}
     try:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.quality.comparison import JudgedEpisode, judge
-from mart.episodes.quality.store import Measured, measure_all
+from mart.episodes.quality.store import MeasuredQuality, measure_all
 from mart.protocol import clock
 
 _log = logging.getLogger(__name__)
@@ -39,7 +39,7 @@ class QualityMeasurer:
     def __init__(self) -> None:
         self.known = KnownQuality()
         self._wanted: Sequence[LabelledEpisode] = ()
-        self._measured: dict[str, tuple[LabelledEpisode, Measured]] = {}
+        self._measured: dict[str, tuple[LabelledEpisode, MeasuredQuality]] = {}
         self._news = threading.Event()
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
