@@ -1,4 +1,4 @@
-"""Read of an episode's states what its quality is measured of, one by one: an hour of two arms at 60 Hz takes some 110 MB.
+"""Read of states, one by one, what quality is measured of: an hour of two arms at 60 Hz takes some 110 MB.
 
 The observations and the states of the simulation, which are most of a file, are not kept.
 """
