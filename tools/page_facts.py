@@ -40,6 +40,8 @@ _MESSAGES: tuple[type[Message], ...] = (
     CatalogueReply.Curated,
     CatalogueReply.Details,
     CatalogueReply.Listing,
+    CatalogueReply.QualityComparison,
+    CatalogueReply.QualityDetails,
     Policy,
     TrainerReply.Choices,
     TrainerReply.Details,

@@ -26,6 +26,7 @@ def motion(ticks: int, still: tuple[range, ...] = ()) -> EpisodeData:
         actions=actions,
         sources=np.full((ticks, 2), 2, np.int8),
         engaged=np.ones((ticks, 2), np.bool_),
+        held=np.zeros((ticks, 2), np.bool_),
         subtasks={"grasp": states >= ticks // 2},
         success=states == ticks,
         sim_time_s=(3.0 + PERIOD_S * states).astype(np.float64),

@@ -61,5 +61,12 @@ def test_every_array_tells_of_the_same_ticks(cut: int, skip: int, split: int) ->
         states = segment.ticks.tolist()
         for name in ("sim_time_s", "sent_ns", "integration_states", "success", "tool_positions_in_base"):
             np.testing.assert_array_equal(getattr(segment, name), getattr(motion(12), name)[states])
-        assert len(segment.actions) == len(segment.sources) == len(segment.engaged) == len(states) - 1 > 0
+        assert (
+            len(segment.actions)
+            == len(segment.sources)
+            == len(segment.engaged)
+            == len(segment.held)
+            == len(states) - 1
+            > 0
+        )
         assert len(segment.subtasks["grasp"]) == len(states)

@@ -48,6 +48,7 @@ def followed(goals: Sequence[Pose], lag: float = 0.0) -> EpisodeData:
         actions=np.array(actions)[:, None],
         sources=np.full((ticks, 1), OPERATOR_HUMAN, np.int8),
         engaged=np.ones((ticks, 1), np.bool_),
+        held=np.zeros((ticks, 1), np.bool_),
         subtasks={"lift": np.arange(ticks + 1) >= ticks - 1},
         success=np.arange(ticks + 1) == ticks,
         sim_time_s=np.arange(ticks + 1) / 60.0,
@@ -126,10 +127,12 @@ def test_what_holds_at_the_end_of_a_transition_is_its_last_ticks() -> None:
     fine.actions[2, 0, 6] = 1.0
     fine.sources[:1] = OPERATOR_POLICY
     fine.engaged[2] = False
+    fine.held[2] = True
     coarse = at_control_hz(fine, 60.0, 20.0, LIMITS)
     assert coarse.actions[:, 0, 6].tolist() == [1.0, -1.0]
     assert coarse.sources[:, 0].tolist() == [OPERATOR_HUMAN, OPERATOR_HUMAN]
     assert coarse.engaged[:, 0].tolist() == [False, True]
+    assert coarse.held[:, 0].tolist() == [True, False]
 
 
 @given(ticks=st.integers(1, 500), rates=st.tuples(RATES, RATES))

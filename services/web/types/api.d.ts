@@ -273,6 +273,11 @@ declare namespace Api {
     room?: string;
     skill?: string;
     dataset?: string;
+    outliers?: string;
+  }
+
+  interface QualityComparison extends Omit<Messages.CatalogueReplyQualityComparison, "outliers"> {
+    outliers: Episode[];
   }
 
   type Curation = { action: "add" | "remove" } & ({ paths: string[] } | { all: EpisodeFilter });

@@ -49,6 +49,20 @@ declare namespace Messages {
     drivers: CatalogueReplyDriverStatistics[];
   }
 
+  interface CatalogueReplyQualityComparison {
+    groups: QualityGroup[];
+    measured: number;
+    episodes: number;
+    outliers: RecordedEpisode[];
+  }
+
+  interface CatalogueReplyQualityDetails {
+    numbers: QualityNumber[];
+    episodes: number;
+    pending: boolean;
+    error: string;
+  }
+
   interface Curve {
     name: string;
     updates: number[];
@@ -153,6 +167,26 @@ declare namespace Messages {
     arm_kinds: string[];
   }
 
+  interface QualityGroup {
+    name: string;
+    episodes: number;
+    successes: number;
+    outliers: number;
+    numbers: QualityNumber[];
+  }
+
+  interface QualityNumber {
+    name: string;
+    arm: string;
+    title: string;
+    unit: string;
+    value: number;
+    low?: number;
+    high?: number;
+    median?: number;
+    outlier: string;
+  }
+
   interface RecordedEpisode {
     path: string;
     size_bytes: string;
@@ -187,6 +221,7 @@ declare namespace Messages {
     subtasks?: number;
     outcome_by: string;
     verification_pending: boolean;
+    outliers: string[];
   }
 
   interface RecordedView {

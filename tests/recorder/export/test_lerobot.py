@@ -123,6 +123,8 @@ def test_each_tick_says_who_drove_and_whether_the_clutch_was_held(exported: Expo
     engaged = np.concatenate([one.engaged for one in exported.sources])
     np.testing.assert_array_equal(exported.column("source"), sources)
     np.testing.assert_array_equal(exported.column("engaged"), engaged)
+    held = np.concatenate([one.held for one in exported.sources])
+    np.testing.assert_array_equal(exported.column("held"), held)
     features = exported.json("info.json")["features"]
     assert features["source"] == {"dtype": "int64", "shape": [2], "names": ["arm0/source", "arm1/source"]}
     assert features["engaged"]["dtype"] == "bool"

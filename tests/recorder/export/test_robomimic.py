@@ -105,6 +105,7 @@ def assert_holds(demo: h5py.Group, states: list[State]) -> None:
     assert demo["dones"][:].tolist() == [0] * (len(before) - 1) + [1]
     assert demo["source"][:].tolist() == [[arm.source for arm in state.arms] for state in after]
     assert demo["engaged"][:].tolist() == [[arm.engaged for arm in state.arms] for state in after]
+    assert demo["held"][:].tolist() == [[not arm.fresh for arm in state.arms] for state in after]
     assert demo["rewards"][:].tolist() == [float(state.progress.success) for state in after]
 
 

@@ -39,6 +39,7 @@ def swung(
         actions=actions,
         sources=np.zeros((ticks, len(ARMS)), np.int8),
         engaged=np.ones((ticks, len(ARMS)), np.bool_),
+        held=np.zeros((ticks, len(ARMS)), np.bool_),
         subtasks={},
         success=np.zeros(ticks + 1, np.bool_),
         sim_time_s=3.0 + times_s,

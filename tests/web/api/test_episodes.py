@@ -21,7 +21,9 @@ from mart.protocol.messages import (
 )
 from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.catalogue import handlers
+from mart.recorder.catalogue.episode_catalogue import list_folder
 from mart.recorder.catalogue.handlers import CatalogueHandlers
+from mart.recorder.catalogue.quality_measurer import QualityMeasurer
 from mart.recorder.catalogue.serve import catalogue_answerer
 from mart.runtime.bus.memory import MemoryBus
 from mart.web.api.app_state import AppState
@@ -40,7 +42,10 @@ def root(app_state: AppState, bus: MemoryBus, tmp_path: Path) -> Iterator[Path]:
     """A folder with two episodes, and a catalogue that tells of it."""
     for number in (1, 2):
         write_episode(tmp_path, ticks=30, number=number)
-    answerer = catalogue_answerer(CatalogueHandlers(tmp_path))
+    quality = QualityMeasurer()
+    quality.see(list_folder(tmp_path))
+    quality.measure_wanted()
+    answerer = catalogue_answerer(CatalogueHandlers(tmp_path, quality=quality))
     with (
         contextlib.closing(bus.serve(keys.catalogue("catalogue-1"), answerer.respond)),
         contextlib.closing(bus.announce(keys.alive(ServiceKind.CATALOGUE, "catalogue-1"))),
@@ -56,7 +61,18 @@ async def test_without_a_catalogue_the_page_waits(enter: Enter) -> None:
     assert "`mart catalogue`" in refused.json()["error"]["message"]
 
 
-@pytest.mark.parametrize("path", ["episodes", "episode", "episode/file", "episode/picture", "episode/video"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        "episodes",
+        "episodes/quality",
+        "episode",
+        "episode/file",
+        "episode/picture",
+        "episode/quality",
+        "episode/video",
+    ],
+)
 async def test_only_who_has_joined_sees_episodes(enter: Enter, root: Path, path: str) -> None:
     asked = await (await enter()).get(f"/api/{path}", params={"path": PATH, "camera": "arm0"})
     assert asked.status_code == 401
@@ -186,3 +202,29 @@ async def test_what_is_saved_without_a_word_is_found_in_the_catalogue(
         f"episodes/{PATH}",
         "verified",
     )
+
+
+async def test_how_well_an_episode_was_is_told(enter: Enter, root: Path) -> None:
+    quality = (await (await enter("Ana")).get("/api/episode/quality", params={"path": PATH})).json()[
+        "quality"
+    ]
+    assert (quality["pending"], quality["error"], quality["episodes"]) == (False, "", 0)
+    assert {
+        "name": "duration_s",
+        "arm": "",
+        "title": "Length",
+        "unit": "s",
+        "value": 1.5,
+        "outlier": "",
+    } in quality["numbers"]
+
+
+async def test_people_and_days_are_compared(enter: Enter, root: Path) -> None:
+    ana, asked = await enter("Ana"), {"task": synthetic.TASK}
+    found = (await ana.get("/api/episodes/quality", params=asked)).json()["comparison"]
+    assert [group["name"] for group in found["groups"]] == ["Ana", "hold"]
+    assert (found["measured"], found["episodes"], found["outliers"]) == (2, 2, [])
+    found = (await ana.get("/api/episodes/quality", params=asked | {"by": "day"})).json()["comparison"]
+    assert [group["name"] for group in found["groups"]] == ["2026-09-21"]
+    assert (await ana.get("/api/episodes/quality", params=asked | {"by": "shoe size"})).status_code == 400
+    assert (await ana.get("/api/episodes", params={"outliers": "true"})).json()["listing"]["episodes"] == []

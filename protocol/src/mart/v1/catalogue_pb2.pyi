@@ -8,7 +8,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class RecordedEpisode(_message.Message):
-    __slots__ = ("path", "size_bytes", "room", "number", "task", "control_hz", "outcome", "verdict", "reason", "ticks", "simulated_s", "mode", "skill", "real_time_factor", "missing_ticks", "waited_s", "started_ns", "complete", "repaired", "interrupted", "operators", "error", "note", "dropped", "datasets", "missing_commands", "ended_by", "ended_by_name", "ended_by_arm", "subtasks_done", "subtasks", "outcome_by", "verification_pending")
+    __slots__ = ("path", "size_bytes", "room", "number", "task", "control_hz", "outcome", "verdict", "reason", "ticks", "simulated_s", "mode", "skill", "real_time_factor", "missing_ticks", "waited_s", "started_ns", "complete", "repaired", "interrupted", "operators", "error", "note", "dropped", "datasets", "missing_commands", "ended_by", "ended_by_name", "ended_by_arm", "subtasks_done", "subtasks", "outcome_by", "verification_pending", "outliers")
     class OperatorsEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -49,6 +49,7 @@ class RecordedEpisode(_message.Message):
     SUBTASKS_FIELD_NUMBER: _ClassVar[int]
     OUTCOME_BY_FIELD_NUMBER: _ClassVar[int]
     VERIFICATION_PENDING_FIELD_NUMBER: _ClassVar[int]
+    OUTLIERS_FIELD_NUMBER: _ClassVar[int]
     path: str
     size_bytes: int
     room: str
@@ -82,7 +83,8 @@ class RecordedEpisode(_message.Message):
     subtasks: int
     outcome_by: str
     verification_pending: bool
-    def __init__(self, path: _Optional[str] = ..., size_bytes: _Optional[int] = ..., room: _Optional[str] = ..., number: _Optional[int] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., reason: _Optional[str] = ..., ticks: _Optional[int] = ..., simulated_s: _Optional[float] = ..., mode: _Optional[str] = ..., skill: _Optional[str] = ..., real_time_factor: _Optional[float] = ..., missing_ticks: _Optional[int] = ..., waited_s: _Optional[float] = ..., started_ns: _Optional[int] = ..., complete: _Optional[bool] = ..., repaired: _Optional[bool] = ..., interrupted: _Optional[bool] = ..., operators: _Optional[_Mapping[str, str]] = ..., error: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ..., datasets: _Optional[_Iterable[str]] = ..., missing_commands: _Optional[int] = ..., ended_by: _Optional[str] = ..., ended_by_name: _Optional[str] = ..., ended_by_arm: _Optional[str] = ..., subtasks_done: _Optional[int] = ..., subtasks: _Optional[int] = ..., outcome_by: _Optional[str] = ..., verification_pending: _Optional[bool] = ...) -> None: ...
+    outliers: _containers.RepeatedScalarFieldContainer[str]
+    def __init__(self, path: _Optional[str] = ..., size_bytes: _Optional[int] = ..., room: _Optional[str] = ..., number: _Optional[int] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., reason: _Optional[str] = ..., ticks: _Optional[int] = ..., simulated_s: _Optional[float] = ..., mode: _Optional[str] = ..., skill: _Optional[str] = ..., real_time_factor: _Optional[float] = ..., missing_ticks: _Optional[int] = ..., waited_s: _Optional[float] = ..., started_ns: _Optional[int] = ..., complete: _Optional[bool] = ..., repaired: _Optional[bool] = ..., interrupted: _Optional[bool] = ..., operators: _Optional[_Mapping[str, str]] = ..., error: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ..., datasets: _Optional[_Iterable[str]] = ..., missing_commands: _Optional[int] = ..., ended_by: _Optional[str] = ..., ended_by_name: _Optional[str] = ..., ended_by_arm: _Optional[str] = ..., subtasks_done: _Optional[int] = ..., subtasks: _Optional[int] = ..., outcome_by: _Optional[str] = ..., verification_pending: _Optional[bool] = ..., outliers: _Optional[_Iterable[str]] = ...) -> None: ...
 
 class Span(_message.Message):
     __slots__ = ("begin_s", "end_s", "text")
@@ -138,10 +140,46 @@ class NamedDataSet(_message.Message):
     created_ns: int
     def __init__(self, name: _Optional[str] = ..., episodes: _Optional[int] = ..., sha256: _Optional[str] = ..., created_ns: _Optional[int] = ...) -> None: ...
 
+class QualityNumber(_message.Message):
+    __slots__ = ("name", "arm", "title", "unit", "value", "low", "high", "median", "outlier")
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    ARM_FIELD_NUMBER: _ClassVar[int]
+    TITLE_FIELD_NUMBER: _ClassVar[int]
+    UNIT_FIELD_NUMBER: _ClassVar[int]
+    VALUE_FIELD_NUMBER: _ClassVar[int]
+    LOW_FIELD_NUMBER: _ClassVar[int]
+    HIGH_FIELD_NUMBER: _ClassVar[int]
+    MEDIAN_FIELD_NUMBER: _ClassVar[int]
+    OUTLIER_FIELD_NUMBER: _ClassVar[int]
+    name: str
+    arm: str
+    title: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    median: float
+    outlier: str
+    def __init__(self, name: _Optional[str] = ..., arm: _Optional[str] = ..., title: _Optional[str] = ..., unit: _Optional[str] = ..., value: _Optional[float] = ..., low: _Optional[float] = ..., high: _Optional[float] = ..., median: _Optional[float] = ..., outlier: _Optional[str] = ...) -> None: ...
+
+class QualityGroup(_message.Message):
+    __slots__ = ("name", "episodes", "successes", "outliers", "numbers")
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    EPISODES_FIELD_NUMBER: _ClassVar[int]
+    SUCCESSES_FIELD_NUMBER: _ClassVar[int]
+    OUTLIERS_FIELD_NUMBER: _ClassVar[int]
+    NUMBERS_FIELD_NUMBER: _ClassVar[int]
+    name: str
+    episodes: int
+    successes: int
+    outliers: int
+    numbers: _containers.RepeatedCompositeFieldContainer[QualityNumber]
+    def __init__(self, name: _Optional[str] = ..., episodes: _Optional[int] = ..., successes: _Optional[int] = ..., outliers: _Optional[int] = ..., numbers: _Optional[_Iterable[_Union[QualityNumber, _Mapping]]] = ...) -> None: ...
+
 class CatalogueRequest(_message.Message):
-    __slots__ = ("list", "show", "label", "file", "video", "picture", "curate", "undo")
+    __slots__ = ("list", "show", "label", "file", "video", "picture", "curate", "undo", "compare_quality", "show_quality")
     class List(_message.Message):
-        __slots__ = ("task", "outcome", "verdict", "operator", "room", "offset", "count", "skill", "dataset", "since_ns")
+        __slots__ = ("task", "outcome", "verdict", "operator", "room", "offset", "count", "skill", "dataset", "since_ns", "outliers")
         TASK_FIELD_NUMBER: _ClassVar[int]
         OUTCOME_FIELD_NUMBER: _ClassVar[int]
         VERDICT_FIELD_NUMBER: _ClassVar[int]
@@ -152,6 +190,7 @@ class CatalogueRequest(_message.Message):
         SKILL_FIELD_NUMBER: _ClassVar[int]
         DATASET_FIELD_NUMBER: _ClassVar[int]
         SINCE_NS_FIELD_NUMBER: _ClassVar[int]
+        OUTLIERS_FIELD_NUMBER: _ClassVar[int]
         task: str
         outcome: str
         verdict: str
@@ -162,7 +201,8 @@ class CatalogueRequest(_message.Message):
         skill: str
         dataset: str
         since_ns: int
-        def __init__(self, task: _Optional[str] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., operator: _Optional[str] = ..., room: _Optional[str] = ..., offset: _Optional[int] = ..., count: _Optional[int] = ..., skill: _Optional[str] = ..., dataset: _Optional[str] = ..., since_ns: _Optional[int] = ...) -> None: ...
+        outliers: bool
+        def __init__(self, task: _Optional[str] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., operator: _Optional[str] = ..., room: _Optional[str] = ..., offset: _Optional[int] = ..., count: _Optional[int] = ..., skill: _Optional[str] = ..., dataset: _Optional[str] = ..., since_ns: _Optional[int] = ..., outliers: _Optional[bool] = ...) -> None: ...
     class Show(_message.Message):
         __slots__ = ("path",)
         PATH_FIELD_NUMBER: _ClassVar[int]
@@ -215,6 +255,18 @@ class CatalogueRequest(_message.Message):
         all: CatalogueRequest.List
         by: str
         def __init__(self, dataset: _Optional[str] = ..., take_out: _Optional[bool] = ..., paths: _Optional[_Iterable[str]] = ..., all: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ..., by: _Optional[str] = ...) -> None: ...
+    class CompareQuality(_message.Message):
+        __slots__ = ("task", "by")
+        TASK_FIELD_NUMBER: _ClassVar[int]
+        BY_FIELD_NUMBER: _ClassVar[int]
+        task: str
+        by: str
+        def __init__(self, task: _Optional[str] = ..., by: _Optional[str] = ...) -> None: ...
+    class ShowQuality(_message.Message):
+        __slots__ = ("path",)
+        PATH_FIELD_NUMBER: _ClassVar[int]
+        path: str
+        def __init__(self, path: _Optional[str] = ...) -> None: ...
     class Undo(_message.Message):
         __slots__ = ("dataset", "act_ns", "by")
         DATASET_FIELD_NUMBER: _ClassVar[int]
@@ -232,6 +284,8 @@ class CatalogueRequest(_message.Message):
     PICTURE_FIELD_NUMBER: _ClassVar[int]
     CURATE_FIELD_NUMBER: _ClassVar[int]
     UNDO_FIELD_NUMBER: _ClassVar[int]
+    COMPARE_QUALITY_FIELD_NUMBER: _ClassVar[int]
+    SHOW_QUALITY_FIELD_NUMBER: _ClassVar[int]
     list: CatalogueRequest.List
     show: CatalogueRequest.Show
     label: CatalogueRequest.Label
@@ -240,10 +294,12 @@ class CatalogueRequest(_message.Message):
     picture: CatalogueRequest.Picture
     curate: CatalogueRequest.Curate
     undo: CatalogueRequest.Undo
-    def __init__(self, list: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ..., show: _Optional[_Union[CatalogueRequest.Show, _Mapping]] = ..., label: _Optional[_Union[CatalogueRequest.Label, _Mapping]] = ..., file: _Optional[_Union[CatalogueRequest.File, _Mapping]] = ..., video: _Optional[_Union[CatalogueRequest.Video, _Mapping]] = ..., picture: _Optional[_Union[CatalogueRequest.Picture, _Mapping]] = ..., curate: _Optional[_Union[CatalogueRequest.Curate, _Mapping]] = ..., undo: _Optional[_Union[CatalogueRequest.Undo, _Mapping]] = ...) -> None: ...
+    compare_quality: CatalogueRequest.CompareQuality
+    show_quality: CatalogueRequest.ShowQuality
+    def __init__(self, list: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ..., show: _Optional[_Union[CatalogueRequest.Show, _Mapping]] = ..., label: _Optional[_Union[CatalogueRequest.Label, _Mapping]] = ..., file: _Optional[_Union[CatalogueRequest.File, _Mapping]] = ..., video: _Optional[_Union[CatalogueRequest.Video, _Mapping]] = ..., picture: _Optional[_Union[CatalogueRequest.Picture, _Mapping]] = ..., curate: _Optional[_Union[CatalogueRequest.Curate, _Mapping]] = ..., undo: _Optional[_Union[CatalogueRequest.Undo, _Mapping]] = ..., compare_quality: _Optional[_Union[CatalogueRequest.CompareQuality, _Mapping]] = ..., show_quality: _Optional[_Union[CatalogueRequest.ShowQuality, _Mapping]] = ...) -> None: ...
 
 class CatalogueReply(_message.Message):
-    __slots__ = ("error", "listing", "details", "episode", "piece", "curated")
+    __slots__ = ("error", "listing", "details", "episode", "piece", "curated", "quality_comparison", "quality_details")
     class DriverStatistics(_message.Message):
         __slots__ = ("name", "episodes", "successes", "simulated_s")
         NAME_FIELD_NUMBER: _ClassVar[int]
@@ -342,16 +398,42 @@ class CatalogueReply(_message.Message):
         episodes: int
         act_ns: int
         def __init__(self, dataset: _Optional[str] = ..., changed: _Optional[int] = ..., left_out: _Optional[_Mapping[str, int]] = ..., episodes: _Optional[int] = ..., act_ns: _Optional[int] = ...) -> None: ...
+    class QualityDetails(_message.Message):
+        __slots__ = ("numbers", "episodes", "pending", "error")
+        NUMBERS_FIELD_NUMBER: _ClassVar[int]
+        EPISODES_FIELD_NUMBER: _ClassVar[int]
+        PENDING_FIELD_NUMBER: _ClassVar[int]
+        ERROR_FIELD_NUMBER: _ClassVar[int]
+        numbers: _containers.RepeatedCompositeFieldContainer[QualityNumber]
+        episodes: int
+        pending: bool
+        error: str
+        def __init__(self, numbers: _Optional[_Iterable[_Union[QualityNumber, _Mapping]]] = ..., episodes: _Optional[int] = ..., pending: _Optional[bool] = ..., error: _Optional[str] = ...) -> None: ...
+    class QualityComparison(_message.Message):
+        __slots__ = ("groups", "measured", "episodes", "outliers")
+        GROUPS_FIELD_NUMBER: _ClassVar[int]
+        MEASURED_FIELD_NUMBER: _ClassVar[int]
+        EPISODES_FIELD_NUMBER: _ClassVar[int]
+        OUTLIERS_FIELD_NUMBER: _ClassVar[int]
+        groups: _containers.RepeatedCompositeFieldContainer[QualityGroup]
+        measured: int
+        episodes: int
+        outliers: _containers.RepeatedCompositeFieldContainer[RecordedEpisode]
+        def __init__(self, groups: _Optional[_Iterable[_Union[QualityGroup, _Mapping]]] = ..., measured: _Optional[int] = ..., episodes: _Optional[int] = ..., outliers: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ...) -> None: ...
     ERROR_FIELD_NUMBER: _ClassVar[int]
     LISTING_FIELD_NUMBER: _ClassVar[int]
     DETAILS_FIELD_NUMBER: _ClassVar[int]
     EPISODE_FIELD_NUMBER: _ClassVar[int]
     PIECE_FIELD_NUMBER: _ClassVar[int]
     CURATED_FIELD_NUMBER: _ClassVar[int]
+    QUALITY_COMPARISON_FIELD_NUMBER: _ClassVar[int]
+    QUALITY_DETAILS_FIELD_NUMBER: _ClassVar[int]
     error: _room_pb2.Error
     listing: CatalogueReply.Listing
     details: CatalogueReply.Details
     episode: RecordedEpisode
     piece: CatalogueReply.Piece
     curated: CatalogueReply.Curated
-    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., listing: _Optional[_Union[CatalogueReply.Listing, _Mapping]] = ..., details: _Optional[_Union[CatalogueReply.Details, _Mapping]] = ..., episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., piece: _Optional[_Union[CatalogueReply.Piece, _Mapping]] = ..., curated: _Optional[_Union[CatalogueReply.Curated, _Mapping]] = ...) -> None: ...
+    quality_comparison: CatalogueReply.QualityComparison
+    quality_details: CatalogueReply.QualityDetails
+    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., listing: _Optional[_Union[CatalogueReply.Listing, _Mapping]] = ..., details: _Optional[_Union[CatalogueReply.Details, _Mapping]] = ..., episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., piece: _Optional[_Union[CatalogueReply.Piece, _Mapping]] = ..., curated: _Optional[_Union[CatalogueReply.Curated, _Mapping]] = ..., quality_comparison: _Optional[_Union[CatalogueReply.QualityComparison, _Mapping]] = ..., quality_details: _Optional[_Union[CatalogueReply.QualityDetails, _Mapping]] = ...) -> None: ...

@@ -28,6 +28,7 @@ class EpisodeData:
     actions: float64[T, arms, 7], as applied, in [-1, 1]: a step of the tool (6 numbers), then the gripper.
     sources: int8[T, arms], who drove the arm in that tick (mart.v1.Operator).
     engaged: bool[T, arms], whether the arm's operator had the clutch held in that tick.
+    held: bool[T, arms], whether the arm was held in that tick, since no new command of its operator's was there.
     subtasks: by name, each bool[T + 1], whether it was done.
     success: bool[T + 1], whether the task was done.
     sim_time_s: float64[T + 1], simulated seconds, as the world counted them.
@@ -43,6 +44,7 @@ class EpisodeData:
     actions: NDArray[np.float64]
     sources: NDArray[np.int8]
     engaged: NDArray[np.bool_]
+    held: NDArray[np.bool_]
     subtasks: Mapping[str, NDArray[np.bool_]]
     success: NDArray[np.bool_]
     sim_time_s: NDArray[np.float64]
@@ -87,6 +89,7 @@ def arrays_from_states(
         actions=_actions(moved),
         sources=np.array([[arm.source for arm in row] for row in moved], dtype=np.int8),
         engaged=np.array([[arm.engaged for arm in row] for row in moved], dtype=np.bool_),
+        held=np.array([[not arm.fresh for arm in row] for row in moved], dtype=np.bool_),
         subtasks=_subtasks(states),
         success=np.array([state.progress.success for state in states]),
         sim_time_s=np.array([state.sim_time_s for state in states]),

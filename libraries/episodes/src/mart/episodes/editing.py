@@ -35,6 +35,7 @@ def _segment(data: EpisodeData, ranges: list[Range]) -> EpisodeData:
         actions=data.actions[moves],
         sources=data.sources[moves],
         engaged=data.engaged[moves],
+        held=data.held[moves],
         subtasks={name: done[seen] for name, done in data.subtasks.items()},
         success=data.success[seen],
         sim_time_s=data.sim_time_s[seen],

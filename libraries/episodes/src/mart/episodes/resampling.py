@@ -6,7 +6,7 @@ A transition at the coarser rate:
 - its action is the goal at its end against the pose at its start: where the action of its last recorded tick sent the
   tool, seen from the tool's measured pose in its first state, over the step limits and no longer than them, which is
   how a room works an action out of a target;
-- gripper, clutch and who drove are those of its last recorded tick, as is the goal;
+- gripper, clutch, who drove and whether the arm was held are those of its last recorded tick, as is the goal;
 - success, subtasks, times and integration states are those of its states.
 
 The first state is the first of the episode and the last is its last: where the ticks do not divide, the last transition
@@ -53,6 +53,7 @@ def at_control_hz(
         actions=_actions(data, ticks, [limits] * len(data.arms) if isinstance(limits, Limits) else limits),
         sources=data.sources[last],
         engaged=data.engaged[last],
+        held=data.held[last],
         subtasks={name: done[ticks] for name, done in data.subtasks.items()},
         success=data.success[ticks],
         sim_time_s=data.sim_time_s[ticks],

@@ -16,12 +16,13 @@ from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RecordedView, State
 from mart.protocol.recording import EVENT, VERSIONS, CadenceRecord, VerificationRecord, video_topic
 from mart.protocol.tasks import SHARED_VIEWPOINT
-from mart.recorder.catalogue import dataset_editing, pictures
+from mart.recorder.catalogue import dataset_editing, pictures, quality_answers
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.catalogue.drawings import Drawings
 from mart.recorder.catalogue.episode_catalogue import list_folder
 from mart.recorder.catalogue.kept_files import KeptFiles
 from mart.recorder.catalogue.listing import episode_message, filter_of, listing
+from mart.recorder.catalogue.quality_measurer import QualityMeasurer
 from mart.recorder.catalogue.timeline import timeline
 
 PIECE_BYTES = 1024 * 1024
@@ -34,10 +35,14 @@ class CatalogueHandlers:
     """Answer what is asked about the episodes in the folder `root`; of what is there, only labels ever change.
 
     render_log: what the processes that draw videos print; beside the folder, in `logs`, where it is not given.
+    quality: is told what is listed, and knows how well it was recorded.
     """
 
-    def __init__(self, root: Path, render_log: Path | None = None) -> None:
+    def __init__(
+        self, root: Path, render_log: Path | None = None, quality: QualityMeasurer | None = None
+    ) -> None:
         self._root = root
+        self._quality = quality or QualityMeasurer()
         self._drawings = Drawings(render_log or root.parent / "logs" / "render.log")
         self._rows: dict[str, LabelledEpisode] = {}
         self._read_s = float("-inf")
@@ -52,6 +57,8 @@ class CatalogueHandlers:
             "picture": lambda asked: CatalogueReply(piece=_piece(self._picture(asked.path), 0)),
             "curate": lambda asked: self._edited(self._edit(asked)),
             "undo": lambda asked: self._edited(self._undo(asked)),
+            "compare_quality": self._compare_quality,
+            "show_quality": self._show_quality,
         }
 
     def answer(self, request: CatalogueRequest) -> CatalogueReply:
@@ -68,7 +75,23 @@ class CatalogueHandlers:
     def _list(self, asked: CatalogueRequest.List) -> CatalogueReply:
         self._refresh()
         held = datasets.named(labels.read_folded(self._root)).values()
-        return CatalogueReply(listing=listing(list(self._rows.values()), asked, held))
+        found = listing(self._rows_for(asked), asked, held)
+        for one in found.episodes:
+            quality_answers.with_outliers(one, self._quality.known)
+        return CatalogueReply(listing=found)
+
+    def _rows_for(self, asked: CatalogueRequest.List) -> list[LabelledEpisode]:
+        rows = list(self._rows.values())
+        return quality_answers.only_outliers(self._quality.known, rows) if asked.outliers else rows
+
+    def _compare_quality(self, asked: CatalogueRequest.CompareQuality) -> CatalogueReply:
+        self._refresh()
+        found = quality_answers.comparison(self._quality.known, list(self._rows.values()), asked)
+        return CatalogueReply(quality_comparison=found)
+
+    def _show_quality(self, asked: CatalogueRequest.ShowQuality) -> CatalogueReply:
+        found = quality_answers.details(self._quality.known, self._row(asked.path).path)
+        return CatalogueReply(quality_details=found)
 
     def _refresh(self) -> None:
         now_s = clock.monotonic_s()
@@ -76,6 +99,7 @@ class CatalogueHandlers:
             rows = list_folder(self._root) if self._root.is_dir() else []
             self._rows = {row.path: row for row in rows}
             self._read_s = now_s
+            self._quality.see(rows)
 
     def _row(self, path: str) -> LabelledEpisode:
         """Return the episode at a path that is listed; no other can be asked for, so none leads out of the folder."""
@@ -126,7 +150,11 @@ class CatalogueHandlers:
         by_filter = asked.HasField("all")
         if by_filter == bool(asked.paths):
             raise InvalidInput("Name the episodes, or give a filter that lets them through: one of the two.")
-        chosen = filter_of(asked.all).apply(known) if by_filter else map(self._row, asked.paths)
+        chosen = (
+            filter_of(asked.all).apply(self._rows_for(asked.all))
+            if by_filter
+            else map(self._row, asked.paths)
+        )
         if asked.take_out:
             return dataset_editing.take_out(
                 self._root, asked.dataset, [row.path for row in chosen], now_ns, asked.by

@@ -10,6 +10,7 @@ from mart.protocol.messages import CatalogueReply, CatalogueRequest
 from mart.protocol.queryables import CATALOGUE
 from mart.protocol.vocabulary import ServiceKind
 from mart.recorder.catalogue.handlers import CatalogueHandlers
+from mart.recorder.catalogue.quality_measurer import QualityMeasurer
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.bus import Request
 from mart.runtime.service import announced, connected
@@ -24,10 +25,13 @@ def serve_catalogue(settings: RecorderSettings, name: str) -> None:
     """Answer questions until the process is asked to stop."""
     os.nice(_NICENESS)
     inbox = BoundedInbox[Request](_MAX_WAITING)
-    handlers = CatalogueHandlers(settings.episodes_dir, settings.data_dir / "logs" / "render.log")
+    quality = QualityMeasurer()
+    handlers = CatalogueHandlers(settings.episodes_dir, settings.data_dir / "logs" / "render.log", quality)
     answerer = catalogue_answerer(handlers)
     with connected(settings, ServiceKind.CATALOGUE, name) as service, contextlib.ExitStack() as stack:
         stack.enter_context(contextlib.closing(handlers))
+        stack.enter_context(contextlib.closing(quality))
+        quality.start()
         stack.enter_context(contextlib.closing(service.bus.serve(keys.catalogue(name), inbox.put)))
         stack.enter_context(announced(service))
         while not service.stop.is_set():

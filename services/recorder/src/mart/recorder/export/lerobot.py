@@ -87,6 +87,7 @@ def _frames(data: EpisodeData, selection: ExportSelection, number: int) -> Colum
         "action": data.actions.reshape(count, -1).astype(np.float32),
         "source": data.sources.astype(np.int64),
         "engaged": data.engaged,
+        "held": data.held,
         "recorded_tick": data.ticks[:-1],
         "next.reward": data.success[1:].astype(np.float32),
         "next.success": data.success[1:],
@@ -207,7 +208,7 @@ def _feature(name: str, values: NDArray[Any], task: Task) -> dict[str, Any]:
     names: list[str] | None = None
     if name == "action":
         names = [f"{arm}/action/{i}" for arm in task.arm_names for i in range(ACTION_SIZE)]
-    elif name in ("source", "engaged"):
+    elif name in ("source", "engaged", "held"):
         names = [f"{arm}/{name}" for arm in task.arm_names]
     for part, observations in _parts(task).items():
         if part == name:

@@ -81,6 +81,7 @@ def _write_demo(group: h5py.Group, data: EpisodeData, episode: LabelledEpisode) 
     group["source"] = data.sources
     group["ticks"] = data.ticks[:-1]
     group["engaged"] = data.engaged.astype(np.uint8)
+    group["held"] = data.held.astype(np.uint8)
     for name, values in data.observations.items():
         group[f"obs/{key_of(name)}"] = values[:-1]
         group[f"next_obs/{key_of(name)}"] = values[1:]

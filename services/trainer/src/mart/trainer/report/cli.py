@@ -90,6 +90,39 @@ def dependence(folder: Path, checkpoints: tuple[Path, ...], html: Path | None, a
     print_result({"tasks": [coupling.as_json() for coupling in couplings]}, "\n".join(lines), as_json)
 
 
+@report.command()
+@click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
+@click.option("--task", default="", help="Only of this task.")
+@click.option(
+    "--by",
+    type=click.Choice(["operator", "day", "episode"]),
+    default="operator",
+    show_default=True,
+    help="What the table compares.",
+)
+@click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Also write a page here.")
+@json_option
+def quality(paths: tuple[Path, ...], task: str, by: str, out: Path | None, as_json: bool) -> None:
+    """How well episodes were recorded and driven, who drove how, and which are unlike the others.
+
+    Without PATHS, of all that were recorded here. Nothing is left out for it: see docs/how-to-judge-your-data.md.
+    """
+    from mart.runtime.progress import tracked
+    from mart.runtime.settings import Settings
+    from mart.trainer.report import quality as measured
+
+    given = paths or (Settings().episodes_dir,)
+    found = measured.read_quality(given, task, lambda listed: tracked(listed, "Measured", as_json=as_json))
+    text = measured.in_words(found, by)
+    if out is not None:
+        from mart.trainer.report.html import save
+        from mart.trainer.report.quality_page import quality_page
+
+        save(out, quality_page(found))
+        text += f"\n\nThe page is {out}."
+    print_result(measured.as_json(found, by), text, as_json)
+
+
 def _table(title: str, folder: Path, reported: paper.Results, html: Path | None, *, as_json: bool) -> None:
     from mart.trainer.report.results import as_rows, in_words, read_results
 

@@ -21,7 +21,7 @@ def results_page(results: Results) -> str:
     models = sorted({model for task in results.tasks for model in results.models(task)}, key=_rank)
     cells = [cell for task in results.tasks for cell in results.cells[task].values()]
     numbers = sorted({len(cell.rates.seeds) for cell in cells})
-    return _page(
+    return render_page(
         "results.html",
         title=results.title,
         tasks=[_task(results, task) for task in results.tasks],
@@ -37,7 +37,7 @@ def results_page(results: Results) -> str:
 def dependence_page(couplings: Sequence[Coupling], model: str) -> str:
     """Return a page that draws how much arms depend on each other over an episode."""
     limits = plots.limits_percent(couplings)
-    return _page(
+    return render_page(
         "dependence.html",
         title="Dependence between arms",
         model=model,
@@ -61,7 +61,8 @@ def save(path: Path, page: str) -> None:
     path.write_text(page, encoding="utf-8")
 
 
-def _page(template: str, **values: Any) -> str:
+def render_page(template: str, **values: Any) -> str:
+    """Return a page of ours by the name of its template."""
     loader = PackageLoader("mart.trainer.report")
     environment = Environment(loader=loader, autoescape=select_autoescape(), undefined=StrictUndefined)
     return environment.get_template(template).render(**values)

@@ -12,6 +12,8 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from mart.episodes.quality.comparison import COMPARED, ComparedGroup, judged_name
+from mart.episodes.quality.outliers import JUDGED
 from mart.protocol.tasks import Arm
 from mart.trainer.report.coupling import Coupling
 from mart.trainer.report.dependence import BINS
@@ -90,6 +92,33 @@ def dependences(coupling: Coupling, limits_percent: tuple[float, float]) -> str:
         panels[-1].set_xlim(0, 100)
         panels[-1].set_xlabel("share of the episode, %")
         return _svg(figure, f"Dependence on the other arms over an episode of {coupling.task.title}")
+
+
+def ranges(groups: Sequence[ComparedGroup], task: str) -> str:
+    """Draw each measure in a panel of its own, a row a group: a dot for the median, a line over the middle 80 %."""
+    names = [name for name in COMPARED if _varies(groups, name)] or [*COMPARED[:1]]
+    columns = 4
+    down = -(-len(names) // columns)
+    with mpl.rc_context(fname=_STYLE):
+        figure = Figure(figsize=(10.8, down * (0.9 + 0.3 * len(groups))), layout="constrained")
+        panels = figure.subplots(down, columns, sharey=True, squeeze=False).flat
+        for panel, name in zip(panels, names, strict=False):
+            scale = 100 if JUDGED[name].unit == "%" else 1
+            for row, group in enumerate(groups):
+                if name in group.ranges:
+                    found = group.ranges[name]
+                    reach = (scale * (found.median - found.low), scale * (found.high - found.median))
+                    _bar(panel, row, scale * found.median, reach, filled=True)
+            _rows(panel, [group.name for group in groups])
+            panel.set_xlabel(judged_name(name))
+        for panel in figure.axes[len(names) :]:
+            panel.set_visible(False)
+        return _svg(figure, f"Measures of {task}, a row for each group; the table below has the numbers")
+
+
+def _varies(groups: Sequence[ComparedGroup], name: str) -> bool:
+    found = [group.ranges[name] for group in groups if name in group.ranges]
+    return len({bound for one in found for bound in (one.low, one.high)}) > 1
 
 
 def limits_percent(couplings: Sequence[Coupling]) -> tuple[float, float]:

@@ -37,6 +37,7 @@ class CatalogueFilter(BaseModel):
     room: Word = ""
     skill: Word = ""
     dataset: Word = ""
+    outliers: bool = False  # only those of which something is unlike the others
 
 
 class EpisodeListQuery(CatalogueFilter):
@@ -65,7 +66,7 @@ async def episodes(asked: Annotated[EpisodeListQuery, Query()], app: App, _user:
         return {"listing": None}
     request = CatalogueRequest(list=CatalogueRequest.List(**asked.model_dump()))
     listing = (await app.catalogue.ask(request)).listing
-    page = [_episode_json(episode) for episode in listing.episodes]
+    page = [episode_json(episode) for episode in listing.episodes]
     titles = {task: _title(task) for task in listing.tasks}
     return {"listing": as_json(listing) | {"episodes": page, "tasks": titles}}
 
@@ -76,7 +77,7 @@ async def episode(path: Path, app: App, _user: BrowsingUser) -> Json:
     request = CatalogueRequest(show=CatalogueRequest.Show(path=path))
     details = (await app.catalogue.ask(request)).details
     titles = _subtask_titles(details.episode)
-    told = as_json(details) | {"episode": _episode_json(details.episode)}
+    told = as_json(details) | {"episode": episode_json(details.episode)}
     for lane in told["lanes"]:
         lane["title"] = titles.get(lane["name"], lane["name"])
     return {"details": told}
@@ -90,7 +91,7 @@ async def label(path: Path, body: LabelRequest, app: App, user: WritingUser) -> 
     labelled = (await app.catalogue.ask(request)).episode
     if body.outcome is not None:
         app.lobby.see_label(labelled.path, body.outcome)
-    return {"episode": _episode_json(labelled)}
+    return {"episode": episode_json(labelled)}
 
 
 @router.get("/episode/file")
@@ -144,7 +145,8 @@ async def _whole(
     return StreamingResponse(pieces_of(first, piece), media_type=media_type, headers=sized)
 
 
-def _episode_json(episode: RecordedEpisode) -> Json:
+def episode_json(episode: RecordedEpisode) -> Json:
+    """Return an episode as the pages take it."""
     told = as_json(episode)
     return told | {
         "title": _title(episode.task),

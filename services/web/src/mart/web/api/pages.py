@@ -42,6 +42,12 @@ async def episodes(request: Request) -> Response:
     return page("episodes", request)
 
 
+@router.get("/quality", include_in_schema=False)
+async def quality(request: Request) -> Response:
+    """Send the page that compares how people and days have recorded."""
+    return page("quality", request)
+
+
 @router.get("/training", include_in_schema=False)
 async def training(request: Request) -> Response:
     """Send the page of runs and policies."""

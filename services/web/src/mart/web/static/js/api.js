@@ -211,6 +211,15 @@ export const episodes = (query, count) =>
 /** One episode in full. @type {(path: string) => Promise<{ details: Api.EpisodeDetails }>} */
 export const episode = (path) => request("GET", episodePath(path));
 
+/** How well one episode was. @type {(path: string) => Promise<{ quality: Messages.CatalogueReplyQualityDetails }>} */
+export const episodeQuality = (path) => request("GET", episodePath(path, "/quality"));
+
+/**
+ * How well the episodes of a task were, by operator or by day.
+ * @type {(task: string, by: string) => Promise<{ comparison: Api.QualityComparison }>}
+ */
+export const comparedQuality = (task, by) => request("GET", `/episodes/quality?${new URLSearchParams({ task, by })}`);
+
 /**
  * Says something about an episode; what is absent stays as it is.
  * @type {(path: string, labels: Api.EpisodeLabels) => Promise<{ episode: Api.Episode }>}

@@ -18,6 +18,7 @@ const FILTERS = {
   skill: "Skill",
   verdict: "Check",
   dataset: "Data set",
+  outliers: "Quality",
 };
 
 /** @typedef {keyof typeof FILTERS} Filter */
@@ -25,7 +26,7 @@ const FILTERS = {
 const NAMES = /** @type {Filter[]} */ (Object.keys(FILTERS));
 
 /** What can always be chosen. @type {Partial<Record<Filter, Option[]>>} */
-const FIXED = { outcome: OUTCOME_FILTERS, verdict: VERDICT_FILTERS };
+const FIXED = { outcome: OUTCOME_FILTERS, verdict: VERDICT_FILTERS, outliers: [["true", "Unlike others"]] };
 
 /** Beside the names of people and policies. @type {Option[]} */
 const OPERATORS = [

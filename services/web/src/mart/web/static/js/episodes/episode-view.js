@@ -8,6 +8,7 @@ import { factsCard } from "./episode-facts.js";
 import { dateText, remarks } from "./formatting.js";
 import { LabelForm } from "./label-form.js";
 import { Player } from "./player.js";
+import { qualityCard } from "./quality-card.js";
 import { laneRows, traceRows } from "./timeline.js";
 
 /** @typedef {(action: () => Promise<void>) => Promise<void>} AttemptChange runs a change and shows its failure */
@@ -72,6 +73,7 @@ export class EpisodeView {
       this.#labels.node,
       this.#seen(details),
       this.#facts,
+      qualityCard(episode.path),
     );
     this.#details = details;
     this.#known = episode;

@@ -116,7 +116,7 @@ export function saidText(episode) {
 
 /** What is unusual about an episode, in a few words each. @type {(episode: Api.Episode) => string[]} */
 export function remarks(episode) {
-  const { complete, repaired, interrupted, missing_ticks: missing, dropped, datasets, error } = episode;
+  const { complete, repaired, interrupted, missing_ticks: missing, dropped, datasets, outliers, error } = episode;
   if (error) return ["cannot be read"];
   return [
     saidText(episode),
@@ -126,8 +126,13 @@ export function remarks(episode) {
     complete ? "" : "incomplete",
     repaired ? "repaired" : "",
     missing > 0 ? `${plural(missing, "tick")} missing` : "",
+    outliers.length > 0 ? `unlike others: ${unlikeText(outliers)}` : "",
   ].filter(Boolean);
 }
+
+/** "Idle of arm0: 14 %, …" and so on → "idle, regrasps" @type {(outliers: string[]) => string} */
+const unlikeText = (outliers) =>
+  [...new Set(outliers.map((one) => one.replace(/( of arm\d+)?: .*$/, "").toLowerCase()))].join(", ");
 
 /**
  * What is taken where nothing is ticked: of one task, and what succeeded unless another outcome was chosen.
