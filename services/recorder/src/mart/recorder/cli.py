@@ -16,6 +16,7 @@ from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
 from mart.protocol.vocabulary import GOOD_VERDICTS, EpisodeOutcome
 from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
+from mart.recorder.import_cli import import_
 from mart.recorder.replay_cli import replay
 from mart.recorder.replica_option import recorder_settings, replica_option, resimulation
 from mart.recorder.settings import RecorderSettings
@@ -52,6 +53,7 @@ def episodes() -> None:
 
 
 episodes.add_command(replay)
+episodes.add_command(import_)
 
 
 @episodes.command("list")
