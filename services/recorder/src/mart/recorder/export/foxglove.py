@@ -131,25 +131,26 @@ class _SceneWriter:
         """Write a recorded message as it is; what no episode of ours holds is passed by."""
         schema = _schema_of(message.topic)
         if schema is not None:
-            self._write(message.topic, schema, message.payload, message.arrived_ns, message.sent_ns)
+            self._write(message, schema)
 
     def add(self, topic: str, message: Message, arrived_ns: int, sent_ns: int) -> None:
-        self._write(topic, type(message), message.SerializeToString(), arrived_ns, sent_ns)
+        payload = message.SerializeToString()
+        self._write(RecordedMessage(topic, payload, arrived_ns, sent_ns, 0), type(message))
 
     def finish(self) -> None:
         self._mcap.finish()  # type: ignore[no-untyped-call]
 
-    def _write(
-        self, topic: str, schema: type[Message], payload: bytes, arrived_ns: int, sent_ns: int
-    ) -> None:
+    def _write(self, message: RecordedMessage, schema: type[Message]) -> None:
         name = schema.DESCRIPTOR.full_name
         if name not in self._schemas:
             self._schemas[name] = register_schema(self._mcap, schema)
-        if (topic, name) not in self._channels:
-            self._channels[topic, name] = self._mcap.register_channel(
-                topic, MessageEncoding.Protobuf, self._schemas[name]
-            )
-        self._mcap.add_message(self._channels[topic, name], arrived_ns, payload, sent_ns)
+        key = (message.topic, name)
+        if key not in self._channels:
+            made = self._mcap.register_channel(message.topic, MessageEncoding.Protobuf, self._schemas[name])
+            self._channels[key] = made
+        self._mcap.add_message(
+            self._channels[key], message.arrived_ns, message.payload, message.sent_ns, message.sequence
+        )
         self.messages += 1
 
 
