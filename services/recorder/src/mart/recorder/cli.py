@@ -221,7 +221,8 @@ def export(
     """
     if file_format in VIEWS:
         wanted["dataset"] = dataset
-        return export_views(_given(paths), file_format, out, layout, wanted, as_json=as_json)
+        export_views(_given(paths), file_format, out, layout, wanted, as_json=as_json)
+        return
     if layout is not None:
         raise InvalidInput("--layout is for --format foxglove; leave it out.")
     from mart.episodes.filter import EpisodeFilter

@@ -1,7 +1,8 @@
 """Write beside a data set what it has no place for, so that `mart episodes import` makes the same episodes again.
 
-It is an HDF5 group, in robomimic's file `mart`, in LeRobot's folder the file `meta/mart.hdf5`; their own readers pass it
-by. Of each demonstration: what was after its last action, times, measured poses, subtasks, and the records of its file.
+It is an HDF5 group, in robomimic's file `mart`, in LeRobot's folder the file `meta/mart.hdf5`; their own readers pass
+it by. Of each demonstration: what was after its last action, times, measured poses, subtasks, and the records of its
+file.
 """
 
 from __future__ import annotations

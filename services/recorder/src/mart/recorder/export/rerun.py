@@ -21,6 +21,10 @@ from mart.render.visual_geoms import WORLD, BodyFrames, VisualGeom
 
 TICK, TIME = "tick", "time"
 _SHADOW = "shadow"
+# Okabe & Ito's, which stay apart for colour-blind people.
+_COLORS = (0xD55E00FF, 0x009E73FF, 0x0072B2FF, 0xE69F00FF, 0xCC79A7FF, 0x56B4E9FF, 0x808080FF)
+_BACKDROP = (46, 52, 60)
+_EYE_M, _TARGET_M = (1.3, -1.5, 1.1), (0.0, 0.0, 0.15)  # in the world: the table top is at z = 0
 _ACTION = ("x", "y", "z", "turn x", "turn y", "turn z", "gripper")
 
 
@@ -111,14 +115,18 @@ def _log_numbers(recording: Any, states: Sequence[State], times: list[Any]) -> i
     logged = 0
     for index, arm in enumerate(states[0].arms):
         path = f"action/{arm.arm}"
-        recording.log(path, rr.SeriesLines(names=list(_ACTION)), static=True)
+        recording.log(path, rr.SeriesLines(names=list(_ACTION), colors=list(_COLORS)), static=True)
         later = [rr.TimeColumn(TICK, sequence=[s.episode_tick for s in states[1:]])]
-        later.append(rr.TimeColumn(TIME, timestamp=np.array([s.stamps.sent_ns for s in states[1:]], "datetime64[ns]")))
+        later.append(
+            rr.TimeColumn(TIME, timestamp=np.array([s.stamps.sent_ns for s in states[1:]], "datetime64[ns]"))
+        )
         actions = np.array([state.arms[index].action for state in states[1:]])
         recording.send_columns(path, indexes=later, columns=_scalars(actions))
         logged += len(actions)
     for seen in states[0].observations:
-        values = np.array([next(o.value for o in state.observations if o.name == seen.name) for state in states])
+        values = np.array(
+            [next(o.value for o in state.observations if o.name == seen.name) for state in states]
+        )
         recording.send_columns(f"observation/{seen.name}", indexes=times, columns=_scalars(values))
         logged += len(values)
     return logged
@@ -159,7 +167,13 @@ def _blueprint(first: State, cameras: Sequence[str]) -> Any:
     seen = plots or [rrb.TimeSeriesView(origin="observation/action", name="action")]
     views = [rrb.Spatial2DView(origin=f"view/{camera}", name=camera) for camera in cameras]
     right = rrb.Vertical(*([rrb.Horizontal(*views)] if views else []), *seen)
-    return rrb.Blueprint(rrb.Horizontal(rrb.Spatial3DView(origin=WORLD, name="world"), right), collapse_panels=True)
+    world = rrb.Spatial3DView(
+        origin=WORLD,
+        name="world",
+        background=rrb.Background(color=_BACKDROP, kind="SolidColor"),
+        eye_controls=rrb.EyeControls3D(position=_EYE_M, look_target=_TARGET_M, eye_up=(0.0, 0.0, 1.0)),
+    )
+    return rrb.Blueprint(rrb.Horizontal(world, right), collapse_panels=True)
 
 
 def _body_path(body: str) -> str:

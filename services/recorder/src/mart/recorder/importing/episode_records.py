@@ -80,7 +80,7 @@ def room_record(
     """Return of what room it is. Its model is named where it is there; its rate only where ticks follow at it."""
     found = {"room": room, "task": task.name if task else None, "control_hz": control_hz}
     strings = {} if episode.origin is None else episode.origin.records.get(RoomRecord.NAME, {})
-    if episode.origin is None or episode.origin.mjb is None or not strings:
+    if not strings:
         return RoomRecord(**found, arm_kinds=task.arm_kinds if task else ())
     return RoomRecord.from_strings(strings).model_copy(update=found)
 

@@ -113,7 +113,7 @@ def _import(order: ImportOrder, episode: ForeignEpisode) -> Imported:
     described = room_record(episode, task, rate if follows else None, room)
     file = EpisodeWriter(free_path(order.out, record, PART_SUFFIX))
     try:
-        verification = _write(file, order, episode, rows, record, described)
+        verification = _write(file, order, episode, rows, (record, described))
         file.finish()
         read = EpisodeFile.open(file.path)
         read.check(file.messages)
@@ -139,9 +139,9 @@ def _write(
     order: ImportOrder,
     episode: ForeignEpisode,
     rows: StateRows,
-    record: EpisodeRecord,
-    room: RoomRecord,
+    records: tuple[EpisodeRecord, RoomRecord],
 ) -> VerificationRecord:
+    record, room = records
     file.describe(room)
     model = _model(episode, room)
     if model is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -47,7 +48,8 @@ def read_episodes(path: Path) -> Iterator[ForeignEpisode | LeftOut]:
         origins = file if hdf5.group(file, "mart") is not None else None
         for place, demo in enumerate(sorted(hdf5.names(data), key=_order)):
             try:
-                yield _read(data, origins, demo, place, path, digest)
+                origin = None if origins is None else read_origin(origins, demo)
+                yield replace(_read(data, demo, path, digest), number=place, origin=origin)
             except Corrupt as error:
                 yield LeftOut(demo, str(error))
 
@@ -64,9 +66,7 @@ def _order(name: str) -> tuple[int, str]:
     return (int(match[1]) if match else 2**31, name)
 
 
-def _read(
-    data: h5py.Group, origins: h5py.Group | None, demo: str, place: int, path: Path, digest: str
-) -> ForeignEpisode:
+def _read(data: h5py.Group, demo: str, path: Path, digest: str) -> ForeignEpisode:
     group = hdf5.group(data, demo)
     if group is None:
         raise Corrupt("it is not there.")
@@ -82,7 +82,7 @@ def _read(
     flags = {name: _column(group, name, count, budget) for name in ("source", "engaged", "ticks", "rewards")}
     return ForeignEpisode(
         name=demo,
-        number=place,
+        number=0,
         source_file=path.name,
         source_sha256=digest,
         observations=seen,
@@ -96,7 +96,6 @@ def _read(
         outcome=hdf5.words(group, "outcome"),
         operators=_strings(operators),
         left_out=tuple(left_out),
-        origin=None if origins is None else read_origin(origins, demo),
     )
 
 
