@@ -17,6 +17,7 @@ from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.tasks import get_task
 from mart.recorder.cli import export
 from mart.recorder.importing.foreign_episode import LeftOut
+from mart.recorder.verify.file_check import check_file
 from mart.recorder.verify.resimulation import verify
 from mart.sim.rollout.compiled_worlds import CompiledWorlds
 from mart.sim.rollout.resimulation import Resimulator
@@ -77,6 +78,7 @@ def test_robomimic_comes_back_bit_for_bit_and_is_verified(source: Recorded, tmp_
     assert_equal(source.data, again.arrays(TASK))
     before = open_episode(source.path)
     assert again.model() == before.model()
+    assert check_file(one.path).is_whole
     assert again.operators == before.operators
     assert (again.episode.outcome, again.episode.seed) == (before.episode.outcome, before.episode.seed)
     assert again.metadata["mart.origin"]["episode"] == "demo_0"

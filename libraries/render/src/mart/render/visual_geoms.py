@@ -20,6 +20,7 @@ Numbers = NDArray[np.float64]
 
 WORLD = "world"
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+_COLOR_ROLE = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
 _Type = mujoco.mjtGeom
 _KINDS = {
     _Type.mjGEOM_BOX: "box",
@@ -40,7 +41,8 @@ class VisualGeom:
     kind: box, ellipsoid, cylinder (both along z), capsule (along z), plane (facing z) or mesh.
     half_size_m: as MuJoCo has it: half lengths of a box and a plane, radii of an ellipsoid; of a cylinder and a capsule
     radius, radius and half the length of the straight part. Zeros for a mesh.
-    rgba: 0 … 1. vertices_m: float64[n, 3] and triangles: int64[m, 3], of a mesh alone.
+    rgba: 0 … 1; what has a texture is of that one's mean colour.
+    vertices_m: float64[n, 3] and triangles: int64[m, 3], of a mesh alone.
     """
 
     name: str
@@ -119,10 +121,22 @@ class BodyFrames:
             half_size_m=np.zeros(3) if is_mesh else np.array(seen.size, dtype=np.float64),
             position_m=(model.geom_pos if moves else data.geom_xpos)[geom].copy(),
             quaternion_wxyz=model.geom_quat[geom].copy() if moves else _quaternion(data.geom_xmat[geom]),
-            rgba=np.array(seen.rgba, dtype=np.float64),
+            rgba=np.array(seen.rgba, dtype=np.float64) * self._texture_rgba(int(seen.matid)),
             vertices_m=vertices,
             triangles=triangles,
         )
+
+    def _texture_rgba(self, material: int) -> Numbers:
+        """Return the mean colour of a material's flat texture, white where it has none."""
+        model, white = self._model, np.ones(4)
+        texture = int(model.mat_texid[material, _COLOR_ROLE]) if material >= 0 else -1
+        if texture < 0:
+            return white
+        channels, start = int(model.tex_nchannel[texture]), int(model.tex_adr[texture])
+        count = int(model.tex_height[texture]) * int(model.tex_width[texture])
+        pixels = np.asarray(model.tex_data[start : start + count * channels]).reshape(count, channels)
+        white[: min(channels, 3)] = pixels.mean(axis=0)[:3] / 255
+        return white
 
     def _mesh(self, mesh: int) -> tuple[Numbers, NDArray[np.int64]]:
         model = self._model

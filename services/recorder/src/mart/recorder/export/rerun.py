@@ -93,9 +93,8 @@ def _shape(geom: VisualGeom) -> tuple[Any, ...]:
     solid = {"colors": color, "fill_mode": "solid"}
     match geom.kind:
         case "mesh":
-            shape = rr.Mesh3D(
-                vertex_positions=geom.vertices_m, triangle_indices=geom.triangles, albedo_factor=color[0]
-            )
+            corners, normals = _flat_shaded(geom)
+            shape = rr.Mesh3D(vertex_positions=corners, vertex_normals=normals, albedo_factor=color[0])
         case "box":
             shape = rr.Boxes3D(half_sizes=[half], **solid)
         case "plane":
@@ -107,6 +106,14 @@ def _shape(geom: VisualGeom) -> tuple[Any, ...]:
         case _:  # rerun's capsule begins at its lower end
             shape = rr.Capsules3D(lengths=[2 * z], radii=[x], translations=[[0, 0, -z]], **solid)
     return shape, place
+
+
+def _flat_shaded(geom: VisualGeom) -> tuple[Any, Any]:
+    """Return a mesh's corners, three a triangle, and the triangle's normal at each: rerun lights no mesh without."""
+    corners = geom.vertices_m[geom.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    return corners.reshape(-1, 3), np.repeat(normals, 3, axis=0)
 
 
 def _log_numbers(recording: Any, states: Sequence[State], times: list[Any]) -> int:

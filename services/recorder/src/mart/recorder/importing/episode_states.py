@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import (
+    OPERATOR_HOLD,
+    OPERATOR_UNSPECIFIED,
     ArmState,
     Observation,
     PoseMessage,
@@ -31,6 +33,7 @@ ACTION = "action"  # the observation that holds it where no task says what it me
 _ASSUMED_HZ = 20.0
 _LONGEST_NAME = 128
 _MOST_SOURCES = 4  # mart.v1.Operator
+_NOBODY = (OPERATOR_UNSPECIFIED, OPERATOR_HOLD)
 
 
 @dataclass(frozen=True)
@@ -200,6 +203,7 @@ def _arm(rows: StateRows, row: int, arm: int) -> ArmState:
         action=rows.actions[row - 1, arm].tolist() if row else [],
         source=int(rows.sources[transition, arm]),
         engaged=bool(rows.engaged[transition, arm]) if row else False,
+        fresh=row > 0 and int(rows.sources[transition, arm]) not in _NOBODY,
         measured=name in rows.measured,
     )
 
