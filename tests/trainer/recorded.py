@@ -27,10 +27,11 @@ from mart.protocol.messages import (
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.vocabulary import Verdict
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
-from mart.recorder.record.finalize import finalize, part_path
+from mart.recorder.record.finalize import describe_room, finalize, part_path
 from mart.recorder.record.room_facts import RoomFacts
 from mart.sim.experts import Expert, get_skill
 from mart.sim.world import World
+from mart.sim.world.model_message import model_message
 
 TASK = "two_arm_multi_cube_lifting"
 ROOM = "room-1"
@@ -79,8 +80,9 @@ def write(
     outcome: Outcome = OUTCOME_SUCCESS,
     verdict: Verdict = Verdict.VERIFIED,
     name: str = "expert",
+    with_model: bool = False,
 ) -> Path:
-    """An episode file as the recorder leaves it."""
+    """An episode file as the recorder leaves it; the model, 2 MB, is in it where it is wanted."""
     first, last = states[0], states[-1]
     seats = [
         Seat(arm=arm.arm, operator=OPERATOR_SCRIPT, epoch=arm.seat_epoch, name=name) for arm in first.arms
@@ -100,6 +102,7 @@ def write(
         facts.learn_event(event)
         episode.add_event(event)
     file = EpisodeWriter(part_path(root, episode, facts))
+    describe_room(file, facts, model_message(world) if with_model else None)
     for event in events:
         file.add(event_entry(event, codec.encode(event), event.wall_ns))
     for state in states:

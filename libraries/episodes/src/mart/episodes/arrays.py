@@ -125,7 +125,7 @@ def _actions(moved: Sequence[Sequence[ArmState]]) -> NDArray[np.float64]:
     """Return float64[T, arms, 7]."""
     if any(len(arm.action) != ACTION_SIZE for row in moved for arm in row):
         raise InvalidInput(f"an arm has no action of {ACTION_SIZE} numbers after the first state.")
-    actions = np.array([[arm.action for arm in row] for row in moved])
+    actions = np.array([[arm.action for arm in row] for row in moved]).reshape(len(moved), -1, ACTION_SIZE)
     if not np.isfinite(actions).all():
         raise InvalidInput("an action holds NaN or infinity; every number must be finite.")
     return actions
@@ -135,6 +135,7 @@ def _poses(arms_of: Sequence[Sequence[ArmState]]) -> NDArray[np.float64]:
     """Return float64[T + 1, arms, 7]: x, y, z, and a quaternion wxyz of unit norm."""
     tools = [[arm.tool_in_base for arm in row] for row in arms_of]
     poses = np.array([[(t.x, t.y, t.z, t.qw, t.qx, t.qy, t.qz) for t in row] for row in tools])
+    poses = poses.reshape(len(tools), -1, 7)  # of no arm, too
     norms = np.linalg.norm(poses[..., 3:], axis=-1, keepdims=True)
     if not (np.isfinite(poses).all() and (np.abs(norms - 1.0) < QUATERNION_NORM_TOLERANCE).all()):
         raise InvalidInput("a measured pose of a tool is missing or is none.")

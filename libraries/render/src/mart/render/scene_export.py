@@ -58,7 +58,7 @@ class _SceneExport:
 
     def written(self, subtasks: Sequence[Subtask]) -> bytes:
         model = self._model
-        geoms = [self._geom(seen) for seen in _seen_geoms(model, self._data)]
+        geoms = [self._geom(seen) for seen in seen_geoms(model, self._data)]
         extent_m = float(model.stat.extent)
         description = {
             "bodies": [model.body(body).name for body in self._bodies],
@@ -245,7 +245,7 @@ class _SceneExport:
         return f"the geom {self._model.geom(seen.objid).name!r}"
 
 
-def _seen_geoms(model: mujoco.MjModel, data: mujoco.MjData) -> list[mujoco.MjvGeom]:
+def seen_geoms(model: mujoco.MjModel, data: mujoco.MjData) -> list[mujoco.MjvGeom]:
     """Return what MuJoCo draws of a model, colours and sizes as it draws them."""
     scene = mujoco.MjvScene(model, maxgeom=_MAX_GEOMS)
     everything = mujoco.mjtCatBit.mjCAT_ALL

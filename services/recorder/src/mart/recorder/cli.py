@@ -16,9 +16,11 @@ from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
 from mart.protocol.vocabulary import GOOD_VERDICTS, EpisodeOutcome
 from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
+from mart.recorder.import_cli import import_
 from mart.recorder.replay_cli import replay
 from mart.recorder.replica_option import recorder_settings, replica_option, resimulation
 from mart.recorder.settings import RecorderSettings
+from mart.recorder.view_export_cli import VIEWS, export_views
 from mart.runtime.cli import Gathered, json_option, print_result
 from mart.runtime.progress import progress, tracked
 from mart.runtime.rate_option import control_hz_option
@@ -52,6 +54,7 @@ def episodes() -> None:
 
 
 episodes.add_command(replay)
+episodes.add_command(import_)
 
 
 @episodes.command("list")
@@ -184,9 +187,9 @@ def label(
 @click.option(
     "--format",
     "file_format",
-    type=click.Choice(["robomimic", "lerobot"]),
+    type=click.Choice(["robomimic", "lerobot", *VIEWS]),
     required=True,
-    help="Whose data set it is.",
+    help="Whose data set it is, or whose viewer shall show each episode.",
 )
 @click.option(
     "--out", type=click.Path(path_type=Path), required=True, help="The file or folder to be written."
@@ -195,6 +198,11 @@ def label(
 @word_option("--verdict", VERDICTS, *GOOD_VERDICTS)
 @click.option("--dataset", default="", help="Only of this data set.")
 @control_hz_option
+@click.option(
+    "--layout",
+    type=click.Path(path_type=Path),
+    help="Write a layout for Foxglove, too, that shows all at once.",
+)
 @json_option
 def export(
     *,
@@ -203,10 +211,20 @@ def export(
     out: Path,
     dataset: str,
     control_hz: float | None,
+    layout: Path | None,
     as_json: bool,
     **wanted: Any,
 ) -> None:
-    """Write episodes of one task as a data set of another project; dropped ones are left out."""
+    """Write episodes of one task as a data set of another project; dropped ones are left out.
+
+    For a viewer (foxglove, rerun) each becomes a file of its own, whatever its task is and however it ended.
+    """
+    if file_format in VIEWS:
+        wanted["dataset"] = dataset
+        export_views(_given(paths), file_format, out, layout, wanted, as_json=as_json)
+        return
+    if layout is not None:
+        raise InvalidInput("--layout is for --format foxglove; leave it out.")
     from mart.episodes.filter import EpisodeFilter
     from mart.episodes.folder import readable
     from mart.recorder.catalogue.episode_catalogue import list_paths

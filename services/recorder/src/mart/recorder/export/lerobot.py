@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -24,6 +25,7 @@ from mart.episodes.arrays import EpisodeData
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import Conflict
 from mart.protocol.tasks import Observation, Task
+from mart.recorder.export.origins import GROUP, write_origin
 from mart.recorder.export.selection import ExportSelection, read_segments
 
 _VERSION = "v3.0"
@@ -54,10 +56,14 @@ def write_lerobot(selection: ExportSelection, path: Path) -> int:
 
 
 def _write(selection: ExportSelection, folder: Path) -> int:
-    segments = (
-        one for episode in selection.each(selection.episodes) for one in read_segments(selection, episode)
-    )
-    episodes = [_frames(segment, selection, number) for number, segment in enumerate(segments)]
+    (folder / "meta").mkdir(parents=True)
+    episodes: list[Columns] = []
+    with h5py.File(folder / "meta/mart.hdf5", "w") as file:
+        origins = file.create_group(GROUP)
+        for episode in selection.each(selection.episodes):
+            for segment in read_segments(selection, episode):
+                write_origin(origins, f"episode_{len(episodes)}", segment, episode, states=False)
+                episodes.append(_frames(segment, selection, len(episodes)))
     columns = {name: np.concatenate([episode[name] for episode in episodes]) for name in episodes[0]}
     frames = len(columns["index"])
     columns["index"] = np.arange(frames)

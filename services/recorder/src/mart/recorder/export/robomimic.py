@@ -20,6 +20,7 @@ from mart.episodes.arrays import EpisodeData
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import Conflict
 from mart.protocol.tasks import Task
+from mart.recorder.export.origins import GROUP, write_origin
 from mart.recorder.export.selection import SOURCES, ExportSelection, read_segments
 
 # robomimic.envs.env_base.EnvType.GYM_TYPE. It knows four types, and none of them makes a world of MART: its rollouts
@@ -60,6 +61,7 @@ def _write(file: h5py.File, selection: ExportSelection) -> int:
         for segment in read_segments(selection, episode):
             demo = f"demo_{number}"
             _write_demo(data.create_group(demo), segment, episode)
+            write_origin(file.require_group(GROUP), demo, segment, episode, states=True)
             total, number = total + len(segment), number + 1
             for key in keys:
                 groups[key].append(demo)

@@ -66,7 +66,7 @@ class CommandLedger:
     def add_state(self, state: State) -> None:
         """Take the names that a state says. States come in their order; what was lost between them is not known."""
         for arm in state.arms:
-            if arm.fresh:
+            if arm.fresh and arm.sequence:  # an imported action came of no command
                 self._arms[arm.arm].name((arm.seat_epoch, arm.sequence))
 
     def add_command(self, arm: str, command: Command) -> bool:

@@ -1,0 +1,1 @@
+"""Make episodes of the files of other projects, one module a format."""
