@@ -112,7 +112,7 @@ def _facts(selection: ExportSelection, episodes: int, ticks: int, name: str) -> 
         "",
         "Made by MART (collaborative teleoperation of arms in one room).",
         "",
-        *_table("what", "is", None, [(key, value) for key, value in facts.items()]),
+        *_table("what", "is", None, list(facts.items())),
         "",
         f"Row t holds what was seen before action t. {_FRAMES}",
         "",

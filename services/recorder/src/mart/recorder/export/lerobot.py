@@ -75,7 +75,8 @@ def write_piece(selection: ExportSelection, episode: LabelledEpisode, folder: Pa
             drawn = islice(pictures.of(data, camera), len(data))
             counts = write_video(segment / f"{camera.key}.mp4", drawn, camera, int(selection.control_hz))
             np.save(segment / f"{camera.key}.npy", counts)
-        np.savez(segment / _COLUMNS, **columns_of(data, selection.task, selection.control_hz))
+        columns: dict[str, Any] = columns_of(data, selection.task, selection.control_hz)
+        np.savez(segment / _COLUMNS, **columns)
 
 
 def _part(folder: Path, selection: ExportSelection) -> SegmentPart:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -60,11 +60,9 @@ class EpisodePictures:
         from mart.render import Renderer
 
         with closing(Renderer(self._model, camera.name, camera.width_px, camera.height_px)) as renderer:
-            draw = {
-                RGB: renderer.draw,
-                DEPTH: renderer.draw_depth,
-                SEGMENTATION: renderer.draw_segmentation,
-            }[kind]
+            draw: Callable[[bytes], NDArray[Any]] = renderer.draw
+            if kind != RGB:
+                draw = renderer.draw_depth if kind == DEPTH else renderer.draw_segmentation
             for state in data.integration_states.astype("<f8"):
                 yield draw(state.tobytes())
 
@@ -90,13 +88,13 @@ def captured_pictures(
     NotFound where there is no picture and Corrupt where they cannot be read.
     """
     frames = _decoded(file, camera.name)
-    before_ns, newest = next(frames)
+    _, newest = next(frames)
     after = next(frames, None)
     picture = _scaled(newest, camera)
     for wanted_ns in at_ns.tolist():
         is_newer = False
         while after is not None and after[0] <= wanted_ns:
-            (before_ns, newest), is_newer = after, True
+            newest, is_newer = after[1], True
             after = next(frames, None)
         if is_newer:
             picture = _scaled(newest, camera)
@@ -125,7 +123,7 @@ def _decoded(file: EpisodeFile, camera: str) -> Iterator[tuple[int, av.VideoFram
 
 
 def _scaled(frame: av.VideoFrame, camera: CameraRequest) -> NDArray[np.uint8]:
-    picture = without_tick_code(frame.to_ndarray(format="rgb24"))
+    picture = without_tick_code(frame.to_ndarray(format="rgb24").astype(np.uint8, copy=False))
     cropped = av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), format="rgb24")
     scaled = cropped.reformat(camera.width_px, camera.height_px, format="rgb24", interpolation="AREA")
     return scaled.to_ndarray().astype(np.uint8, copy=False)
