@@ -81,7 +81,7 @@ class LeRobotPlace:
 
 
 def _video_libraries(links: Path) -> list[Path]:
-    """Return where FFmpeg's libraries lie: PyAV brings them, and LeRobot's decoder looks for them by their own names."""
+    """Return where FFmpeg's libraries lie: PyAV brings them, and LeRobot looks for them by their own names."""
     links.mkdir(parents=True, exist_ok=True)
     for library in ENVIRONMENT.resolve().glob("lib/python3*/site-packages/av.libs/lib*.so.*"):
         plain = re.fullmatch(r"(lib(?:av|sw)\w+)-[0-9a-f]+(\.so\.\d+)\..*", library.name)
