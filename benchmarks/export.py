@@ -95,7 +95,9 @@ def _encoded(pictures: NDArray[np.uint8], folder: Path) -> float:
 
 
 def _lerobots(folder: Path) -> dict[str, float]:
-    command = [LEROBOT / "bin" / "python", PEER, folder / "pictures.npy", f"{CONTROL_HZ}", folder / "peer"]
+    paths = LEROBOT / "bin" / "python", PEER, folder / "pictures.npy", folder / "peer"
+    python, script, pictures, out = map(str, paths)
+    command = [python, script, pictures, f"{CONTROL_HZ}", out]
     environment = os.environ | {"HF_HUB_OFFLINE": "1", "OMP_NUM_THREADS": "1", "HOME": str(folder)}
     done = subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE, text=True)
     found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])

@@ -94,3 +94,17 @@ def test_a_tiny_policy_trains_on_it(folder: Path, tmp_path: Path, policy: str) -
     )
     assert done.returncode == 0, done.stdout
     assert (tmp_path / "trained/checkpoints/000002/pretrained_model/model.safetensors").is_file()
+
+
+def test_lerobot_doctor_finds_nothing_broken(folder: Path, tmp_path: Path) -> None:
+    done = LeRobotPlace(tmp_path / "lerobot").run(
+        "lerobot-doctor", "check", folder / "two", "--fail-on", "fail"
+    )
+    assert done.returncode == 0, done.stdout
+    for part in (
+        "Metadata & Format Compliance",
+        "Temporal Consistency",
+        "Video Integrity",
+        "Feature Consistency",
+    ):
+        assert f"[PASS] {part}" in done.stdout, done.stdout

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from contextlib import closing
-from fractions import Fraction
 from pathlib import Path
 
 import av
@@ -38,15 +37,15 @@ def write(episodes: Path, out: Path, file_format: str, *arguments: str) -> None:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Two episodes of the simulation, and one of the same that a camera named table watched."""
     root, world = tmp_path_factory.mktemp("episodes"), World.build(recorded.TASK)
-    for seed in (1, 2):
-        states = recorded.perform(world, seed, number=seed, most_ticks=TICKS)
+    both = [recorded.perform(world, seed, number=seed, most_ticks=TICKS) for seed in (1, 2)]
+    for states in both:
         recorded.write(root / "drawn", world, states, with_model=True)
-    begin_ns = states[0].stamps.sent_ns
+    begin_ns = both[1][0].stamps.sent_ns
     captured = [
         (begin_ns + number * 30_000_000 + 10_000_000, frame.data)
         for number, frame in enumerate(pictures(640, 496))
     ]
-    recorded.write(root / "captured", world, states, with_model=True, captured={"table": captured})
+    recorded.write(root / "captured", world, both[1], with_model=True, captured={"table": captured})
     return root
 
 
@@ -59,8 +58,8 @@ def lerobot(folder: Path) -> Path:
 def played(path: Path) -> Iterator[tuple[float, NDArray[np.uint8]]]:
     with av.open(str(path)) as video:
         for frame in video.decode(video=0):
-            assert frame.pts is not None
-            yield float(frame.pts * Fraction(frame.time_base)), frame.to_ndarray(format="rgb24")
+            assert frame.time is not None
+            yield frame.time, frame.to_ndarray(format="rgb24").astype(np.uint8)
 
 
 def drawn(path: Path, viewpoint: str, width_px: int, height_px: int) -> list[NDArray[np.uint8]]:
