@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import shutil
 import subprocess
 from collections.abc import Iterator, Sequence
@@ -32,6 +33,7 @@ class LeRobotPlace:
             "HOME": str(folder),
             "PYTHONPATH": str(site),
             "XDG_STATE_HOME": os.environ["XDG_STATE_HOME"],
+            "LD_LIBRARY_PATH": os.pathsep.join(map(str, _video_libraries(folder / "ffmpeg"))),
             "HF_HUB_OFFLINE": "1",
             "OMP_NUM_THREADS": "1",
             "MUJOCO_GL": os.environ.get("MUJOCO_GL", "egl"),
@@ -76,3 +78,13 @@ class LeRobotPlace:
                     process.wait(30.0)
                 except subprocess.TimeoutExpired:
                     process.kill()
+
+
+def _video_libraries(links: Path) -> list[Path]:
+    """Return where FFmpeg's libraries lie: PyAV brings them, and LeRobot looks for them by their own names."""
+    links.mkdir(parents=True, exist_ok=True)
+    for library in ENVIRONMENT.resolve().glob("lib/python3*/site-packages/av.libs/lib*.so.*"):
+        plain = re.fullmatch(r"(lib(?:av|sw)\w+)-[0-9a-f]+(\.so\.\d+)\..*", library.name)
+        if plain is not None:
+            (links / "".join(plain.groups())).symlink_to(library)
+    return [links, *ENVIRONMENT.resolve().glob("lib/python3*/site-packages/av.libs")]

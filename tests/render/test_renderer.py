@@ -134,3 +134,22 @@ def test_no_viewpoint_of_a_task_shows_the_sky() -> None:
     for viewpoint in world.task.viewpoints:
         with closing(Renderer(world.model, viewpoint, 120, 240)) as renderer:
             assert renderer.draw(world.integration_state()).max(axis=2).min() > 0
+
+
+def test_depth_is_in_metres_along_the_cameras_axis(renderer: Renderer, model: mujoco.MjModel) -> None:
+    """The balls' nearest points are 1.8 m away, their middles' rows and columns known from the picture."""
+    depth_m = renderer.draw_depth(state_of(model))
+    assert depth_m.shape == (120, 160)
+    assert depth_m.dtype == np.float32
+    assert depth_m.min() == pytest.approx(1.8, abs=0.02)
+    assert depth_m[0, 0] == pytest.approx(model.vis.map.zfar * model.stat.extent, rel=1e-3)
+
+
+def test_segmentation_says_which_body_a_pixel_shows(renderer: Renderer, model: mujoco.MjModel) -> None:
+    bodies = renderer.draw_segmentation(state_of(model))
+    picture = renderer.draw(state_of(model))
+    assert bodies.dtype == np.int32
+    assert set(np.unique(bodies)) == {-1, 0, model.body("ball").id}
+    assert (bodies[picture[..., 0] > 200] == 0).all()
+    assert (bodies[picture[..., 1] > 200] == model.body("ball").id).all()
+    assert (bodies[picture.max(axis=2) == 0] == -1).all()

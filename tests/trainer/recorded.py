@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
-from mart.episodes.mcap_entries import event_entry, state_entries
+from mart.episodes.mcap_entries import event_entry, state_entries, video_entry
 from mart.episodes.reader import EpisodeFile
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol import codec
@@ -81,14 +82,20 @@ def write(
     verdict: Verdict = Verdict.VERIFIED,
     name: str = "expert",
     with_model: bool = False,
+    captured: Mapping[str, Sequence[tuple[int, bytes]]] | None = None,
 ) -> Path:
-    """An episode file as the recorder leaves it; the model, 2 MB, is in it where it is wanted."""
+    """An episode file as the recorder leaves it. captured: by real camera, its encoded pictures, each with its time."""
     first, last = states[0], states[-1]
     seats = [
         Seat(arm=arm.arm, operator=OPERATOR_SCRIPT, epoch=arm.seat_epoch, name=name) for arm in first.arms
     ]
     started = Event.EpisodeStarted(
-        number=first.episode, seats=seats, task=task, control_hz=control_hz, model_sha256=world.model_sha256
+        number=first.episode,
+        seats=seats,
+        task=task,
+        control_hz=control_hz,
+        model_sha256=world.model_sha256,
+        captured_cameras=[*(captured or {})],
     )
     ended = Event.EpisodeEnded(
         number=first.episode, outcome=outcome, ticks=last.episode_tick, last_tick=last.tick
@@ -101,8 +108,15 @@ def write(
     for event in events:
         facts.learn_event(event)
         episode.add_event(event)
+    if with_model:
+        facts.learn_model(model_message(world))
     file = EpisodeWriter(part_path(root, episode, facts))
     describe_room(file, facts, model_message(world) if with_model else None)
+    for camera, pictures in (captured or {}).items():
+        for at_ns, data in pictures:
+            video = CompressedVideo(frame_id=camera, data=data, format="h264")
+            video.timestamp.FromNanoseconds(at_ns)
+            file.add(video_entry(camera, video, codec.encode(video), at_ns))
     for event in events:
         file.add(event_entry(event, codec.encode(event), event.wall_ns))
     for state in states:

@@ -11,7 +11,7 @@ import pytest
 from mart.episodes.reader import open_episode
 from mart.protocol.errors import InvalidInput
 from mart.protocol.tasks import get_task
-from mart.recorder.cli import export
+from mart.recorder.export_cli import export
 from mart.sim.world import World
 from mart.trainer.data.data_spec import Selection
 from mart.trainer.data.dataset import load_dataset

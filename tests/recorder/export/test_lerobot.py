@@ -14,7 +14,7 @@ from mart.episodes.arrays import EpisodeData
 from mart.episodes.reader import open_episode
 from mart.protocol.errors import Conflict, InvalidInput
 from mart.protocol.tasks import get_task
-from mart.recorder.cli import export
+from mart.recorder.export_cli import export
 from mart.sim.world import World
 from tests.trainer import recorded
 

@@ -21,9 +21,9 @@ from mart.protocol.messages import OUTCOME_FAILURE, State
 from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import Verdict
 from mart.recorder.catalogue.episode_catalogue import list_paths
-from mart.recorder.cli import export
 from mart.recorder.export.robomimic import key_of, write_robomimic
 from mart.recorder.export.selection import ExportSelection, choose, read_segments
+from mart.recorder.export_cli import export
 from mart.sim.world import World
 from mart.trainer.data.episode import from_states as as_the_trainer
 from mart.trainer.data.layout import ObservationLayout

@@ -5,8 +5,6 @@ Heavy modules are imported inside: `mart --help` loads this file.
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,16 +12,15 @@ import click
 
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
-from mart.protocol.vocabulary import GOOD_VERDICTS, EpisodeOutcome
-from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
+from mart.protocol.vocabulary import GOOD_VERDICTS
+from mart.recorder.export_cli import export
+from mart.recorder.filter_options import LABELS, filter_of, filters
 from mart.recorder.import_cli import import_
 from mart.recorder.replay_cli import replay
 from mart.recorder.replica_option import recorder_settings, replica_option, resimulation
-from mart.recorder.settings import RecorderSettings
-from mart.recorder.view_export_cli import VIEWS, export_views
+from mart.recorder.settings import RecorderSettings, given_or_recorded
 from mart.runtime.cli import Gathered, json_option, print_result
 from mart.runtime.progress import progress, tracked
-from mart.runtime.rate_option import control_hz_option
 
 _path = click.argument("path", type=click.Path(path_type=Path))
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
@@ -53,6 +50,7 @@ def episodes() -> None:
     """Work on episode files or folders of them; without a path, on all that were recorded here."""
 
 
+episodes.add_command(export)
 episodes.add_command(replay)
 episodes.add_command(import_)
 
@@ -66,7 +64,7 @@ def list_episodes(paths: tuple[Path, ...], as_json: bool, **wanted: Any) -> None
     from mart.recorder import formatting
     from mart.recorder.catalogue.episode_catalogue import list_paths
 
-    listed = filter_of(wanted, unusable=True).apply(list_paths(_given(paths)))
+    listed = filter_of(wanted, unusable=True).apply(list_paths(given_or_recorded(paths)))
     print_result({"episodes": [*map(formatting.listed, listed)]}, formatting.table(listed), as_json)
 
 
@@ -101,7 +99,7 @@ def verify(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     from mart.recorder.verify.verdict_label import keep_verdict
 
     found: list[dict[str, Any]] = []
-    listed = described(episode_files(_given(paths)))
+    listed = described(episode_files(given_or_recorded(paths)))
     with resimulation(replica) as ask:
         for one in tracked(readable(listed, paths), "Verified", as_json=as_json):
             file = one.open()
@@ -126,7 +124,7 @@ def check(paths: tuple[Path, ...], as_json: bool) -> int:
     from mart.recorder import formatting
     from mart.recorder.verify.file_check import check_file
 
-    found = [check_file(path) for path in episode_files(_given(paths))]
+    found = [check_file(path) for path in episode_files(given_or_recorded(paths))]
     print_result(*formatting.checked(found), as_json)
     return 0 if all(one.is_whole for one in found) else 1
 
@@ -144,7 +142,7 @@ def repair(paths: tuple[Path, ...], replica: str | None, as_json: bool) -> int:
     from mart.recorder.repair.repair import file_count, repair_paths
     from mart.recorder.verify.resimulation import verify as verify_file
 
-    given = _given(paths)
+    given = given_or_recorded(paths)
     with (
         resimulation(replica, wherever_possible=True) as ask,
         progress("Files", file_count(given), as_json=as_json) as shown,
@@ -180,78 +178,3 @@ def label(
                 labels.say(path, kind, value, clock.wall_ns())
     listed = described(chosen)
     print_result({"episodes": [*map(formatting.listed, listed)]}, formatting.table(listed), as_json)
-
-
-@episodes.command()
-@_paths
-@click.option(
-    "--format",
-    "file_format",
-    type=click.Choice(["robomimic", "lerobot", *VIEWS]),
-    required=True,
-    help="Whose data set it is, or whose viewer shall show each episode.",
-)
-@click.option(
-    "--out", type=click.Path(path_type=Path), required=True, help="The file or folder to be written."
-)
-@word_option("--outcome", OUTCOMES, EpisodeOutcome.SUCCESS.value)
-@word_option("--verdict", VERDICTS, *GOOD_VERDICTS)
-@click.option("--dataset", default="", help="Only of this data set.")
-@control_hz_option
-@click.option(
-    "--layout",
-    type=click.Path(path_type=Path),
-    help="Write a layout for Foxglove, too, that shows all at once.",
-)
-@json_option
-def export(
-    *,
-    paths: tuple[Path, ...],
-    file_format: str,
-    out: Path,
-    dataset: str,
-    control_hz: float | None,
-    layout: Path | None,
-    as_json: bool,
-    **wanted: Any,
-) -> None:
-    """Write episodes of one task as a data set of another project; dropped ones are left out.
-
-    For a viewer (foxglove, rerun) each becomes a file of its own, whatever its task is and however it ended.
-    """
-    if file_format in VIEWS:
-        wanted["dataset"] = dataset
-        export_views(_given(paths), file_format, out, layout, wanted, as_json=as_json)
-        return
-    if layout is not None:
-        raise InvalidInput("--layout is for --format foxglove; leave it out.")
-    from mart.episodes.filter import EpisodeFilter
-    from mart.episodes.folder import readable
-    from mart.recorder.catalogue.episode_catalogue import list_paths
-    from mart.recorder.export.selection import choose, sound
-
-    if file_format == "robomimic":
-        from mart.recorder.export.robomimic import write_robomimic as write
-    else:
-        from mart.recorder.export.lerobot import write_lerobot as write
-
-    of_dataset = EpisodeFilter(datasets=(dataset,) if dataset else (), unusable=True)
-    listed = of_dataset.apply(list_paths(_given(paths)))
-    asked = filter_of(wanted, unusable=False)
-    taken = readable(sound(asked.apply(readable(listed, paths))), paths)
-    selection = choose(taken or [one for one in listed if one.error is None], asked, control_hz)
-    each = partial(tracked, label="Episodes", as_json=as_json)
-    ticks = write(replace(selection, each=each), out)
-    count, task = len(selection.episodes), selection.task.name
-    result = {"path": str(out), "format": file_format, "task": task, "episodes": count, "ticks": ticks}
-    rate = f"{selection.control_hz:g} Hz"
-    print_result(
-        result | {"control_hz": selection.control_hz},
-        f"{out}: {count} of {len(listed)} episodes of {task}, {ticks} ticks of {rate}.",
-        as_json,
-    )
-
-
-def _given(paths: tuple[Path, ...]) -> tuple[Path, ...]:
-    default = RecorderSettings().episodes_dir
-    return paths or ((default,) if default.exists() else ())

@@ -94,9 +94,14 @@ def last_picture(frames: Iterable[RecordedFrame]) -> bytes:
         decoder = VideoCodecContext.create("h264", "r")
         picture = [*decoder.decode(av.Packet(newest.data)), *decoder.decode(None)][0]
         image = picture.to_ndarray(format="rgb24").astype(np.uint8, copy=False)
-        return as_jpeg(image[: round(picture.height * (1 - _TICK_CODE_SHARE))])
+        return as_jpeg(without_tick_code(image))
     except (av.FFmpegError, IndexError) as error:
         raise Corrupt(f"The recorded pictures cannot be read: {error}.") from error
+
+
+def without_tick_code(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return a recorded picture, shape (rows, columns, 3), without the strip below it that tells the tick."""
+    return picture[: round(len(picture) * (1 - _TICK_CODE_SHARE))]
 
 
 def _nanoseconds(video: CompressedVideo) -> int:

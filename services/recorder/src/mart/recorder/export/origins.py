@@ -52,6 +52,14 @@ def write_origin(
         _write_model(origins, file)
 
 
+def copy_origin(origins: h5py.Group, demo: str, target: h5py.Group, new: str) -> None:
+    """Copy what belongs to one demonstration under a new name, and models that are not there yet."""
+    origins.copy(f"{DEMOS}/{demo}", target.require_group(DEMOS), new)
+    for sha256 in origins.get(MODELS, ()):
+        if f"{MODELS}/{sha256}" not in target:
+            origins.copy(f"{MODELS}/{sha256}", target.require_group(MODELS), sha256)
+
+
 def _write_model(origins: h5py.Group, file: EpisodeFile) -> None:
     """Write a model once, however many demonstrations have it."""
     sha256 = file.room.model_sha256 or ""

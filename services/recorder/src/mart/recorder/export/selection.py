@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from importlib.metadata import version
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from mart.protocol.errors import Corrupt, InvalidInput, NotFound
 from mart.protocol.messages import operator_from_word
 from mart.protocol.tasks import Task
 from mart.protocol.vocabulary import OperatorKind
+from mart.recorder.export.cameras import CameraRequest
 
 # What the numbers in a column of sources mean, by tick and arm.
 SOURCES: Mapping[int, str] = {operator_from_word(kind): kind.value for kind in OperatorKind}
@@ -27,6 +29,10 @@ class ExportSelection:
 
     control_hz: in whose ticks they are written, whatever their own rates are.
     skip_idle_s: leave out every stretch of at least so many seconds in which no arm moves; None: what people cut alone.
+    cameras: whose pictures stand beside the numbers. captured: which of them were real ones; the others are drawn anew.
+    depth, segmentation: whether drawn pictures come with these, too.
+    jobs: how many processes work at it.
+    with_names: whether the data card names who drove.
     each: how a writer goes through them, for whoever counts along.
     """
 
@@ -34,7 +40,27 @@ class ExportSelection:
     control_hz: float
     episodes: tuple[LabelledEpisode, ...]
     skip_idle_s: float | None = None
+    cameras: tuple[CameraRequest, ...] = ()
+    captured: tuple[str, ...] = ()
+    depth: bool = False
+    segmentation: bool = False
+    jobs: int = 1
+    with_names: bool = False
     each: Callable[[Sequence[LabelledEpisode]], Iterable[LabelledEpisode]] = iter
+
+    def asked(self, file_format: str) -> dict[str, object]:
+        """Return what an export of it depends on, for JSON: whoever goes on with one must have asked for the same."""
+        return {
+            "format": file_format,
+            "version": version("mart-recorder"),
+            "control_hz": self.control_hz,
+            "skip_idle_s": self.skip_idle_s,
+            "cameras": [*map(str, self.cameras)],
+            "depth": self.depth,
+            "segmentation": self.segmentation,
+            "with_names": self.with_names,
+            "episodes": {str(one.file_path.resolve()): one.model_dump_json() for one in self.episodes},
+        }
 
 
 def choose(
