@@ -166,3 +166,18 @@ def test_what_cannot_be_had_is_refused_and_leaves_nothing(
 def test_a_camera_that_is_real_in_some_episodes_alone_is_refused(folder: Path, tmp_path: Path) -> None:
     with pytest.raises(InvalidInput, match="1 of 3"):
         write(folder, tmp_path / "lifting", "lerobot", "--camera", "table:32x32")
+
+
+@pytest.mark.parametrize("arguments", [(), ("--with-names",)])
+def test_people_are_named_only_where_it_is_asked_for(tmp_path: Path, arguments: tuple[str, ...]) -> None:
+    world = World.build(recorded.TASK)
+    states = recorded.perform(world, 1, most_ticks=TICKS)
+    recorded.write(tmp_path / "episodes", world, states, name="Ana Example")
+    for file_format, out, card in (
+        ("robomimic", "lifting.hdf5", "lifting.md"),
+        ("lerobot", "lifting", "lifting/README.md"),
+    ):
+        write(tmp_path / "episodes", tmp_path / out, file_format, *arguments)
+        assert ("Ana Example" in (tmp_path / card).read_text()) == bool(arguments)
+    with h5py.File(tmp_path / "lifting.hdf5") as file:
+        assert ("Ana Example" in file["data/demo_0"].attrs["operators"]) == bool(arguments)

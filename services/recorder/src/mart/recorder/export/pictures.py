@@ -31,7 +31,7 @@ class EpisodePictures:
     """
 
     def __init__(self, file: EpisodeFile, captured: Sequence[str]) -> None:
-        """captured: which cameras were real ones."""
+        """Read the episode of `file`. captured: which cameras were real ones."""
         self._file = file
         self._captured = captured
 

@@ -20,6 +20,7 @@ import numpy as np
 from mart.episodes.arrays import EpisodeData
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.protocol.errors import Conflict
+from mart.protocol.recording import OperatorsRecord
 from mart.protocol.tasks import Task
 from mart.recorder.export.cameras import CameraRequest
 from mart.recorder.export.card import robomimic_card
@@ -61,7 +62,7 @@ def write_piece(selection: ExportSelection, episode: LabelledEpisode, folder: Pa
     with h5py.File(folder / _DEMOS, "w") as file:
         for number, data in enumerate(read_segments(selection, episode)):
             group = file.create_group(f"{number:04d}")
-            _write_demo(group, data, episode)
+            _write_demo(group, data, episode, selection.with_names)
             _write_pictures(group, data, selection, pictures)
             write_origin(file.require_group(GROUP), group.name.strip("/"), data, episode, states=True)
 
@@ -95,7 +96,7 @@ def _assemble(file: h5py.File, selection: ExportSelection, pieces: Sequence[Path
     return total, number
 
 
-def _write_demo(group: h5py.Group, data: EpisodeData, episode: LabelledEpisode) -> None:
+def _write_demo(group: h5py.Group, data: EpisodeData, episode: LabelledEpisode, with_names: bool) -> None:
     last = np.arange(1, len(data) + 1) == len(data)
     group["states"] = data.integration_states[:-1]
     group["actions"] = data.actions.reshape(len(data), -1)
@@ -111,7 +112,19 @@ def _write_demo(group: h5py.Group, data: EpisodeData, episode: LabelledEpisode) 
     group.attrs["num_samples"] = len(data)
     group.attrs["episode"] = episode.file_path.name
     group.attrs["outcome"] = episode.outcome
-    group.attrs["operators"] = json.dumps(episode.operators)
+    group.attrs["operators"] = json.dumps(_operators(episode, with_names))
+
+
+def _operators(episode: LabelledEpisode, with_names: bool) -> dict[str, str]:
+    """Return who drove each arm, with changes; people's and policies' names only where they were asked for."""
+    if with_names:
+        return episode.operators
+    shifts = OperatorsRecord.from_strings(episode.operators).shifts
+    nameless = {
+        arm: tuple(shift.model_copy(update={"name": ""}) for shift in of_arm)
+        for arm, of_arm in shifts.items()
+    }
+    return OperatorsRecord(shifts=nameless).to_strings()
 
 
 def _write_pictures(
