@@ -18,7 +18,7 @@ from mcap_protobuf.decoder import DecoderFactory
 
 from mart.episodes.reader import open_episode
 from mart.episodes.scan import ForeignFile
-from mart.protocol.errors import Conflict, InvalidInput, Unavailable
+from mart.protocol.errors import Conflict, Corrupt, InvalidInput, Unavailable
 from mart.protocol.messages import OUTCOME_FAILURE
 from mart.recorder.cli import export
 from mart.recorder.export.foxglove_layout import layout
@@ -164,12 +164,11 @@ def test_what_was_imported_to_be_looked_at_is_shown(tmp_path: Path) -> None:
     assert len(decoded(tmp_path / "seen.mcap")["/state"]) == 4
 
 
-def test_recorded_video_is_passed_on(tmp_path: Path) -> None:
-    path = write_episode(tmp_path / "episodes").path
-    # The toy room's model is none; what it recorded is shown without one.
-    with pytest.raises(Exception, match="model"):
+def test_a_model_that_cannot_be_loaded_is_told_of(tmp_path: Path) -> None:
+    path = write_episode(tmp_path / "episodes").path  # of the toy room, whose model is none
+    with pytest.raises(Corrupt, match="model"):
         write(path, "foxglove", tmp_path / "seen.mcap")
-    assert not (tmp_path / "seen.mcap").exists()
+    assert not list(tmp_path.glob("seen*"))
 
 
 def test_without_rerun_a_sentence_says_what_to_install(

@@ -16,7 +16,7 @@ from mart.episodes.reader import EpisodeFile
 from mart.protocol.errors import Unavailable
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.recorder.importing import lerobot, robomimic
-from mart.recorder.importing.foreign_episode import LeftOut
+from mart.recorder.importing.foreign_episode import NotImported
 from mart.recorder.importing.import_episodes import Imported, ImportOrder, import_all
 from mart.recorder.record.finalize import VerifyFile
 from mart.recorder.verify.resimulation import nobody, verify
@@ -30,7 +30,7 @@ def unasked(file: EpisodeFile, room: RoomRecord) -> VerificationRecord:
 
 def imported(
     source: Path, out: Path, *, task: str | None = None, verify: VerifyFile = unasked
-) -> list[Imported | LeftOut]:
+) -> list[Imported | NotImported]:
     """Import as the command does."""
     module = lerobot if source.is_dir() else robomimic
     order = ImportOrder(
@@ -46,15 +46,15 @@ def imported(
     return list(import_all(order, module.read_episodes(source)))
 
 
-def only(report: list[Imported | LeftOut]) -> Imported:
+def only(report: list[Imported | NotImported]) -> Imported:
     (one,) = report
     assert isinstance(one, Imported), one
     return one
 
 
-def why(report: list[Imported | LeftOut]) -> str:
+def why(report: list[Imported | NotImported]) -> str:
     (one,) = report
-    assert isinstance(one, LeftOut), one
+    assert isinstance(one, NotImported), one
     return one.why
 
 

@@ -16,7 +16,7 @@ from mart.episodes.reader import EpisodeFile, open_episode
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.tasks import get_task
 from mart.recorder.cli import export
-from mart.recorder.importing.foreign_episode import LeftOut
+from mart.recorder.importing.foreign_episode import NotImported
 from mart.recorder.verify.file_check import check_file
 from mart.recorder.verify.resimulation import verify
 from mart.sim.rollout.compiled_worlds import CompiledWorlds
@@ -160,6 +160,6 @@ def test_the_number_of_reports_is_that_of_demonstrations(source: Recorded, tmp_p
     path = exported(source, "robomimic", tmp_path / "lifting.hdf5")
     sources.write_demo(path, {"actions": np.zeros((3, 5))}, demo="demo_1", env_args="{}")
     first, second = sources.imported(path, tmp_path / "in", task=TASK.name)
-    assert not isinstance(first, LeftOut)
-    assert isinstance(second, LeftOut)
+    assert not isinstance(first, NotImported)
+    assert isinstance(second, NotImported)
     assert "7 an arm" in second.why

@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from mart.recorder.importing.foreign_episode import LeftOut
+from mart.recorder.importing.foreign_episode import NotImported
 from mart.recorder.importing.import_episodes import Imported
 
 _SHOWN = 20
 
 
-def told(source: Path, out: Path, report: Sequence[Imported | LeftOut]) -> tuple[dict[str, Any], str]:
+def told(source: Path, out: Path, report: Sequence[Imported | NotImported]) -> tuple[dict[str, Any], str]:
     """Return the report as a JSON object and in words."""
     done = [one for one in report if isinstance(one, Imported)]
-    left = [one for one in report if isinstance(one, LeftOut)]
+    left = [one for one in report if isinstance(one, NotImported)]
     result = {
         "source": str(source),
         "out": str(out),
@@ -34,7 +34,7 @@ def told(source: Path, out: Path, report: Sequence[Imported | LeftOut]) -> tuple
     return result, "\n".join(lines)
 
 
-def is_whole(report: Sequence[Imported | LeftOut]) -> bool:
+def is_whole(report: Sequence[Imported | NotImported]) -> bool:
     """Tell whether something was there and all of it was taken, or had been before."""
     return bool(report) and all(
         isinstance(one, Imported) or one.why.startswith("it is there already") for one in report

@@ -27,7 +27,7 @@ from mart.protocol.messages import Command, Event, State
 from mart.protocol.recording import EVENT, STATE, TRANSFORMS
 from mart.recorder.export import foxglove_scene as scene
 from mart.recorder.export.model_frames import frames_of
-from mart.render.visual_geoms import BodyFrames
+from mart.render.visual_geoms import WORLD, BodyFrames
 
 SCENE = "/scene"
 _SIZE_PX = (640, 496)  # of a picture where none was recorded, the strip of tick codes with it
@@ -87,7 +87,7 @@ def _write_poses(writer: _SceneWriter, frames: BodyFrames, message: RecordedMess
         return
     positions, quaternions = frames.poses(state.integration_state)
     moved = [
-        scene.frame(scene.WORLD, scene.frame_id(name), position, quaternion, message.sent_ns)
+        scene.frame(WORLD, scene.frame_id(name), position, quaternion, message.sent_ns)
         for name, position, quaternion in zip(frames.names, positions, quaternions, strict=True)
     ]
     writer.add(TRANSFORMS, FrameTransforms(transforms=moved), message.arrived_ns, message.sent_ns)

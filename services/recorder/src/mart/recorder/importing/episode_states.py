@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from mart.protocol.messages import (
     OPERATOR_UNSPECIFIED,
     ArmState,
     Observation,
+    Operator,
     PoseMessage,
     Progress,
     State,
@@ -34,6 +36,9 @@ _ASSUMED_HZ = 20.0
 _LONGEST_NAME = 128
 _MOST_SOURCES = 4  # mart.v1.Operator
 _NOBODY = (OPERATOR_UNSPECIFIED, OPERATOR_HOLD)
+
+
+Rows = TypeVar("Rows", NDArray[np.float64], NDArray[np.bool_])
 
 
 @dataclass(frozen=True)
@@ -76,7 +81,8 @@ def rows_to_look_at(episode: ForeignEpisode, control_hz: float | None, started_n
         ticks=np.arange(count),
         success=success,
         subtasks={},
-        **_clock(count, control_hz, started_ns),
+        sim_time_s=_seconds(count, control_hz),
+        sent_ns=_stamps(count, control_hz, started_ns),
         positions=np.zeros((count, 0, 3)),
         quaternions=np.zeros((count, 0, 4)),
         states=None,
@@ -120,7 +126,8 @@ def rows_of_task(episode: ForeignEpisode, task: Task, control_hz: float | None, 
         ticks=_ticks(episode, taken),
         success=_success(episode, taken),
         subtasks={},
-        **_clock(taken + 1, control_hz, started_ns),
+        sim_time_s=_seconds(taken + 1, control_hz),
+        sent_ns=_stamps(taken + 1, control_hz, started_ns),
         positions=_tools(seen, arms, "tool_position_in_base", 3),
         quaternions=_tools(seen, arms, "tool_quaternion_in_base", 4),
         states=None,
@@ -201,21 +208,22 @@ def _arm(rows: StateRows, row: int, arm: int) -> ArmState:
         tool_in_base=PoseMessage(x=x, y=y, z=z, qw=qw, qx=qx, qy=qy, qz=qz),
         gripper=0.0 if gripper is None else float(gripper[row, 0]),
         action=rows.actions[row - 1, arm].tolist() if row else [],
-        source=int(rows.sources[transition, arm]),
+        source=cast("Operator", int(rows.sources[transition, arm])),
         engaged=bool(rows.engaged[transition, arm]) if row else False,
         fresh=row > 0 and int(rows.sources[transition, arm]) not in _NOBODY,
         measured=name in rows.measured,
     )
 
 
-def _clock(
-    count: int, control_hz: float | None, started_ns: int
-) -> dict[str, NDArray[np.float64] | NDArray[np.int64]]:
-    seconds = np.arange(count) / (control_hz or _ASSUMED_HZ)
-    return {"sim_time_s": seconds, "sent_ns": started_ns + np.rint(seconds * 1e9).astype(np.int64)}
+def _seconds(count: int, control_hz: float | None) -> Array:
+    return np.arange(count) / (control_hz or _ASSUMED_HZ)
 
 
-def _named(found: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
+def _stamps(count: int, control_hz: float | None, started_ns: int) -> NDArray[np.int64]:
+    return started_ns + np.rint(_seconds(count, control_hz) * 1e9).astype(np.int64)
+
+
+def _named(found: Mapping[str, Rows]) -> dict[str, Rows]:
     for key in found:
         is_name = 0 < len(key) <= _LONGEST_NAME and key.isprintable()
         _require(is_name, f"{key[:40]!r} is no name; one has 1 to {_LONGEST_NAME} printable characters")

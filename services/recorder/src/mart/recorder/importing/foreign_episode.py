@@ -84,7 +84,7 @@ class ForeignEpisode:
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class NotImported:
     """Say which demonstration was not imported, and why."""
 
     name: str

@@ -35,7 +35,7 @@ from mart.recorder.importing.episode_records import (
     room_record,
 )
 from mart.recorder.importing.episode_states import StateRows, rows_of_task, rows_to_look_at, states_of
-from mart.recorder.importing.foreign_episode import ForeignEpisode, LeftOut, Setting
+from mart.recorder.importing.foreign_episode import ForeignEpisode, NotImported, Setting
 from mart.recorder.importing.setting import task_of
 from mart.recorder.record.finalize import VerifyFile, below, free_path, versions
 
@@ -73,28 +73,30 @@ class ImportOrder:
 
 
 def import_all(
-    order: ImportOrder, episodes: Iterable[ForeignEpisode | LeftOut]
-) -> Iterator[Imported | LeftOut]:
+    order: ImportOrder, episodes: Iterable[ForeignEpisode | NotImported]
+) -> Iterator[Imported | NotImported]:
     """Import one after another; one that cannot be, or is there already, is told of instead.
 
     Raises Conflict where the folder cannot be written.
     """
     there = _there_already(order.out)
     for episode in episodes:
-        if isinstance(episode, LeftOut):
+        if isinstance(episode, NotImported):
             yield episode
         elif (episode.source_sha256, episode.name) in there:
-            yield LeftOut(episode.name, f"it is there already: {there[episode.source_sha256, episode.name]}.")
+            yield NotImported(
+                episode.name, f"it is there already: {there[episode.source_sha256, episode.name]}."
+            )
         else:
             yield _imported(order, episode)
 
 
-def _imported(order: ImportOrder, episode: ForeignEpisode) -> Imported | LeftOut:
+def _imported(order: ImportOrder, episode: ForeignEpisode) -> Imported | NotImported:
     try:
         return _import(order, episode)
     except (InvalidInput, Corrupt, NotFound) as error:
         sentence = str(error)
-        return LeftOut(episode.name, sentence if sentence.endswith(".") else f"{sentence}.")
+        return NotImported(episode.name, sentence if sentence.endswith(".") else f"{sentence}.")
     except OSError as error:
         raise Conflict(f"{order.out} cannot be written: {error}.") from error
 

@@ -22,7 +22,7 @@ from mart.recorder.importing.foreign_episode import (
     MAX_WIDTH,
     Array,
     ForeignEpisode,
-    LeftOut,
+    NotImported,
     Setting,
 )
 from mart.recorder.importing.lerobot_info import LeRobotInfo, read_info
@@ -35,26 +35,26 @@ _FLAGS = ("source", "engaged", "recorded_tick", "next.success", "next.reward")
 _SLOT = re.compile(r"(.+)/([0-9]+)")
 
 
-def read_setting(root: Path) -> Setting:
+def read_setting(path: Path) -> Setting:
     """Read of what the data set is. Raises NotFound and Corrupt."""
-    info = read_info(root)
+    info = read_info(path)
     return setting_of_robot(info.instruction, info.features, info.fps)
 
 
-def read_episodes(root: Path) -> Iterator[ForeignEpisode | LeftOut]:
+def read_episodes(path: Path) -> Iterator[ForeignEpisode | NotImported]:
     """Iterate over the episodes in their order, one in memory at a time; one that cannot be used is told of instead.
 
     Raises NotFound, and Corrupt where nothing of the folder can be used.
     """
-    info = read_info(root)
+    info = read_info(path)
     found: set[int] = set()
-    for path in info.data_files:
+    for table in info.data_files:
         try:
-            yield from _of_file(path, info, found)
+            yield from _of_file(table, info, found)
         except Corrupt as error:
-            yield LeftOut(path.relative_to(root).as_posix(), str(error))
+            yield NotImported(table.relative_to(path).as_posix(), str(error))
     for number in sorted(info.lengths.keys() - found):
-        yield LeftOut(f"episode {number}", "its frames are missing; the folder holds half a data set.")
+        yield NotImported(f"episode {number}", "its frames are missing; the folder holds half a data set.")
 
 
 @dataclass(frozen=True)
@@ -67,20 +67,20 @@ class _Source:
     left_out: tuple[str, ...]
 
 
-def _of_file(path: Path, info: LeRobotInfo, found: set[int]) -> Iterator[ForeignEpisode | LeftOut]:
+def _of_file(path: Path, info: LeRobotInfo, found: set[int]) -> Iterator[ForeignEpisode | NotImported]:
     wanted, left_out = _columns(info.features)
     source = _Source(path, sha256_of(path), info, tuple(left_out))
     widths = {**dict.fromkeys(_INDEX, 1), **wanted}
     for number, columns in parquet.groups(path, widths, "episode_index", MAX_ROWS):
         name = f"episode {number}"
         if number in found:
-            yield LeftOut(name, "its frames are in two places.")
+            yield NotImported(name, "its frames are in two places.")
             continue
         found.add(number)
         try:
             yield _episode(number, name, columns, source)
         except Corrupt as error:
-            yield LeftOut(name, str(error))
+            yield NotImported(name, str(error))
 
 
 def _columns(features: Mapping[str, Mapping[str, Any]]) -> tuple[dict[str, int], list[str]]:

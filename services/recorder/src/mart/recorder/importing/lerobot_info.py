@@ -48,7 +48,7 @@ def read_info(root: Path) -> LeRobotInfo:
             "`python -m lerobot.datasets.v30.convert_dataset_v21_to_v30`."
         )
     features, fps = info.get("features"), info.get("fps")
-    if not _are_features(features):
+    if not isinstance(features, dict) or not _are_features(features):
         raise Corrupt(f"{root}/meta/info.json does not say what its columns are (`features`).")
     if isinstance(fps, bool) or not isinstance(fps, int | float) or not math.isfinite(fps) or fps <= 0:
         raise Corrupt(f"{root}/meta/info.json does not say how many frames a second has (`fps`).")
@@ -61,12 +61,8 @@ def read_info(root: Path) -> LeRobotInfo:
     return LeRobotInfo(root, float(fps), features, lengths, instructions, _files(root, "data"))
 
 
-def _are_features(features: Any) -> bool:
-    return (
-        isinstance(features, dict)
-        and 0 < len(features) <= _MAX_FEATURES
-        and all(isinstance(one, dict) for one in features.values())
-    )
+def _are_features(features: dict[str, Any]) -> bool:
+    return 0 < len(features) <= _MAX_FEATURES and all(isinstance(one, dict) for one in features.values())
 
 
 def _json(path: Path, root: Path) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from mart.recorder.importing.foreign_episode import (
     MAX_EPISODE_BYTES,
     Array,
     ForeignEpisode,
-    LeftOut,
+    NotImported,
     Setting,
 )
 from mart.recorder.importing.origin_reading import read_origin
@@ -37,7 +37,7 @@ def read_setting(path: Path) -> Setting:
     return from_arguments(arguments.get("env_name"), inner if isinstance(inner, dict) else {})
 
 
-def read_episodes(path: Path) -> Iterator[ForeignEpisode | LeftOut]:
+def read_episodes(path: Path) -> Iterator[ForeignEpisode | NotImported]:
     """Iterate over the demonstrations in the order of their numbers, one in memory at a time.
 
     One that cannot be used is told of instead. Raises NotFound, and Corrupt where nothing of the file can be used.
@@ -51,7 +51,7 @@ def read_episodes(path: Path) -> Iterator[ForeignEpisode | LeftOut]:
                 origin = None if origins is None else read_origin(origins, demo)
                 yield replace(_read(data, demo, path, digest), number=place, origin=origin)
             except Corrupt as error:
-                yield LeftOut(demo, str(error))
+                yield NotImported(demo, str(error))
 
 
 def _data(file: h5py.File, path: Path) -> h5py.Group:
