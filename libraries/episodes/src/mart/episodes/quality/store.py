@@ -50,6 +50,11 @@ def measured(episode: LabelledEpisode) -> MeasuredQuality:
         return MeasuredQuality(quality=measure(episode))
     except MartError as error:
         return MeasuredQuality(error=str(error))
+    except Exception as error:  # noqa: BLE001 - logged whole; one file never keeps others from being measured
+        _log.exception("%s could not be measured", episode.file_path)
+        return MeasuredQuality(
+            error=f"{episode.file_path} cannot be measured: {error}. That it is not told better is a fault of MART's."
+        )
 
 
 class QualityStore:
