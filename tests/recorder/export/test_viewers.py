@@ -20,9 +20,9 @@ from mart.episodes.reader import open_episode
 from mart.episodes.scan import ForeignFile
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput, Unavailable
 from mart.protocol.messages import OUTCOME_FAILURE
-from mart.recorder.cli import export
 from mart.recorder.export.foxglove_layout import layout
 from mart.recorder.export.rerun import write_rerun
+from mart.recorder.export_cli import export
 from mart.sim.world import World
 from tests.recorder.files import write_episode
 from tests.recorder.importing import sources

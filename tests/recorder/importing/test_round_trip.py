@@ -15,7 +15,7 @@ from mart.episodes.arrays import EpisodeData
 from mart.episodes.reader import EpisodeFile, open_episode
 from mart.protocol.recording import RoomRecord, VerificationRecord
 from mart.protocol.tasks import get_task
-from mart.recorder.cli import export
+from mart.recorder.export_cli import export
 from mart.recorder.importing.foreign_episode import NotImported
 from mart.recorder.verify.file_check import check_file
 from mart.recorder.verify.resimulation import verify
