@@ -15,13 +15,14 @@ import click
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
 from mart.protocol.vocabulary import GOOD_VERDICTS, EpisodeOutcome
+from mart.recorder.edit_cli import edit
 from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, filters, word_option
 from mart.recorder.replay_cli import replay
 from mart.recorder.replica_option import recorder_settings, replica_option, resimulation
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import Gathered, json_option, print_result
 from mart.runtime.progress import progress, tracked
-from mart.runtime.rate_option import control_hz_option
+from mart.runtime.rate_option import control_hz_option, skip_idle_option
 
 _path = click.argument("path", type=click.Path(path_type=Path))
 _paths = click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
@@ -51,6 +52,7 @@ def episodes() -> None:
     """Work on episode files or folders of them; without a path, on all that were recorded here."""
 
 
+episodes.add_command(edit)
 episodes.add_command(replay)
 
 
@@ -195,6 +197,7 @@ def label(
 @word_option("--verdict", VERDICTS, *GOOD_VERDICTS)
 @click.option("--dataset", default="", help="Only of this data set.")
 @control_hz_option
+@skip_idle_option
 @json_option
 def export(
     *,
@@ -203,6 +206,7 @@ def export(
     out: Path,
     dataset: str,
     control_hz: float | None,
+    skip_idle_s: float | None,
     as_json: bool,
     **wanted: Any,
 ) -> None:
@@ -223,7 +227,7 @@ def export(
     taken = readable(sound(asked.apply(readable(listed, paths))), paths)
     selection = choose(taken or [one for one in listed if one.error is None], asked, control_hz)
     each = partial(tracked, label="Episodes", as_json=as_json)
-    ticks = write(replace(selection, each=each), out)
+    ticks = write(replace(selection, skip_idle_s=skip_idle_s, each=each), out)
     count, task = len(selection.episodes), selection.task.name
     result = {"path": str(out), "format": file_format, "task": task, "episodes": count, "ticks": ticks}
     rate = f"{selection.control_hz:g} Hz"
