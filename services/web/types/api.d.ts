@@ -291,7 +291,7 @@ declare namespace Api {
 
   // Training
 
-  interface TrainingOrder extends Omit<Messages.Order, "model" | "task" | "score_episodes" | "control_hz"> {
+  interface TrainingOrder extends Omit<Messages.Order, "model" | "task" | "score_episodes" | "control_hz" | "skip_idle_s"> {
     models: string[];
     tasks: string[];
     score_episodes: number | undefined;

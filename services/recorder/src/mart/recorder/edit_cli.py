@@ -46,7 +46,8 @@ def edit(
     """Leave out, split or tell otherwise what episodes hold; without options, show their edits.
 
     Files never change: edits are labels, and training, exports and data sets follow them. What is said at once is
-    undone at once. Ticks are the recorded ones, the first and the one after the last; times such as 1.5s-3s become ticks.
+    undone at once. Ticks are the recorded ones, the first and the one after the last; times such as 1.5s-3s become
+    ticks.
     """
     from mart.episodes.folder import described, episode_files
     from mart.recorder import edit_formatting

@@ -12,7 +12,13 @@ from mart.recorder.catalogue.dataset_editing import DataSetEdit, take_in
 
 
 def merge(
-    root: Path, name: str, sources: Sequence[str], known: Iterable[LabelledEpisode], *, now_ns: int, by: str = ""
+    root: Path,
+    name: str,
+    sources: Sequence[str],
+    known: Iterable[LabelledEpisode],
+    *,
+    now_ns: int,
+    by: str = "",
 ) -> DataSetEdit:
     """Make every episode of `sources` part of a new data set `name`. known: all episodes that there are.
 

@@ -42,7 +42,7 @@ def as_it_is(row: LabelledEpisode, act_ns: int = 0) -> EditedEpisode:
 
 
 def check(row: LabelledEpisode, said: Sequence[Said]) -> None:
-    """Raise InvalidInput for edits that an episode cannot have beside those that it has, or that leave nothing of it."""
+    """Raise InvalidInput for edits that an episode cannot have beside those it has, or that leave nothing of it."""
     if row.error is not None:
         raise InvalidInput(row.error)
     if len(said) > MAX_EDITS:

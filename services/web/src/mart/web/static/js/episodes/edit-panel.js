@@ -96,8 +96,9 @@ export class EditPanel {
   }
 
   #subtaskTools() {
-    const done = element("button", { type: "button", on: { click: () => this.#sayDone(this.#tick) } }, "Done from here");
-    const never = element("button", { type: "button", on: { click: () => this.#sayDone("never") } }, "Never done");
+    const [onDone, onNever] = [() => this.#sayDone(this.#tick), () => this.#sayDone("never")];
+    const done = element("button", { type: "button", on: { click: onDone } }, "Done from here");
+    const never = element("button", { type: "button", on: { click: onNever } }, "Never done");
     const node = element("div", { class: "tools subtask-tools" }, this.#subtask, done, never);
     setShown(node, this.#titles.size > 0);
     return node;
