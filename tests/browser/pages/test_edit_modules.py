@@ -27,7 +27,9 @@ def test_playing_jumps_over_all_that_is_left_out(run: Run, at: float, goes_on: f
 
 
 def test_what_people_say_of_a_subtask_is_in_its_lane(run: Run) -> None:
-    lanes = [{"kind": "subtask", "name": name, "title": name, "spans": []} for name in ("grasp", "lift")]
+    lanes: list[dict[str, object]] = [
+        {"kind": "subtask", "name": name, "title": name, "spans": []} for name in ("grasp", "lift")
+    ]
     edits = {"subtasks": {"grasp": "10", "lift": "-1"}}
     told = run(
         "episodes/edits.js",

@@ -190,13 +190,13 @@ async def test_what_is_saved_without_a_word_is_found_in_the_catalogue(
 
 async def test_it_is_edited_by_name_and_taken_back(enter: Enter, root: Path) -> None:
     ana = await enter("Ana")
-    asked = {"params": {"path": PATH}}
+    asked = {"path": PATH}
     said = {"edits": [{"kind": "cut", "value": "0-5"}, {"kind": "split", "value": "20"}]}
-    edited = (await ana.post("/api/episode/edits", **asked, json=said)).json()["edited"]
+    edited = (await ana.post("/api/episode/edits", params=asked, json=said)).json()["edited"]
     assert edited["episode"]["kept_ticks"] == 25
     assert edited["edits"]["acts"][0]["by"] == "Ana"
-    assert (await ana.get("/api/episode/edits", **asked)).json()["edited"]["edits"] == edited["edits"]
-    undone = await ana.post("/api/episode/edits/undo", **asked, json={"act_ns": edited["act_ns"]})
+    assert (await ana.get("/api/episode/edits", params=asked)).json()["edited"]["edits"] == edited["edits"]
+    undone = await ana.post("/api/episode/edits/undo", params=asked, json={"act_ns": edited["act_ns"]})
     assert undone.json()["edited"]["edits"]["acts"] == []
     for bad in ({"edits": [{"kind": "cut", "value": "0-99"}]}, {"edits": [{"kind": "use", "value": "drop"}]}):
-        assert (await ana.post("/api/episode/edits", **asked, json=bad)).status_code == 400
+        assert (await ana.post("/api/episode/edits", params=asked, json=bad)).status_code == 400

@@ -69,7 +69,7 @@ class EditRequest(BaseModel):
     skip_idle_s: float = Field(0, ge=0, le=3600)
 
 
-class UndoRequest(BaseModel):
+class UndoEditRequest(BaseModel):
     """Which act is taken back; 0: the newest act of edits."""
 
     act_ns: int = Field(0, ge=0, lt=2**63)
@@ -132,7 +132,7 @@ async def edit(path: Path, body: EditRequest, app: App, user: WritingUser) -> Js
 
 
 @router.post("/episode/edits/undo")
-async def undo_edit(path: Path, body: UndoRequest, app: App, user: WritingUser) -> Json:
+async def undo_edit(path: Path, body: UndoEditRequest, app: App, user: WritingUser) -> Json:
     """Take back one act of an episode, whoever did it."""
     asked = CatalogueRequest.UndoEdit(path=path, act_ns=body.act_ns, by=user.name)
     return await _edited(app, CatalogueRequest(undo_edit=asked))
