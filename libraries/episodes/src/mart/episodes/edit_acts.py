@@ -43,8 +43,7 @@ def redoable_ns(labels: Sequence[Label]) -> int | None:
     """
     edits = {label.at_ns for label in labels if label.kind in EDITS}
     undos = [label.at_ns for label in _standing_undos(labels) if undone_ns(label) in edits]
-    newest_edit = max((act.at_ns for act in edit_acts(labels) if act.at_ns not in _redone(labels)), default=0)
-    return undos[0] if undos and undos[0] > newest_edit else None
+    return undos[0] if undos and undos[0] > max(edits) else None
 
 
 def next_stamp(labels: Iterable[Label], now_ns: int) -> int:
@@ -61,9 +60,3 @@ def _standing_undos(labels: Sequence[Label]) -> list[Label]:
             undone.add(undone_ns(label))
             found.append(label)
     return found
-
-
-def _redone(labels: Sequence[Label]) -> set[int]:
-    """Return the stamps of the acts that were undone and done again: they hold, and are no news."""
-    undos = {label.at_ns: undone_ns(label) for label in labels if label.kind is LabelKind.UNDO}
-    return {undos[undone] for undone in undos.values() if undone in undos}
