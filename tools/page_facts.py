@@ -39,6 +39,7 @@ _ENUMS = [enum.DESCRIPTOR for enum in (BarrierPhase, Cue, EpisodePhase, JobState
 _MESSAGES: tuple[type[Message], ...] = (
     CatalogueReply.Curated,
     CatalogueReply.Details,
+    CatalogueReply.Edited,
     CatalogueReply.Listing,
     CatalogueReply.QualityComparison,
     CatalogueReply.QualityDetails,

@@ -63,3 +63,13 @@ def write_episode(
 ) -> SavedEpisode:
     file, episode, facts = write_part(root, synthetic.states(ticks, number))
     return finalize(file, episode, facts, root, verify, repaired=False)
+
+
+def write_moving(root: Path, still: range, ticks: int = 30, number: int = 1) -> Path:
+    """An episode whose first arm moves by a centimetre a tick but for the ticks that are `still`."""
+    states = synthetic.states(ticks, number)
+    moved_m = 0.0
+    for tick, state in enumerate(states):
+        moved_m += 0.0 if tick in still and tick != still[0] else 0.01
+        state.arms[0].tool_in_base.x = moved_m
+    return finalize(*write_part(root, states), root, by_toy_replica, repaired=False).path

@@ -109,3 +109,30 @@ def test_a_folder_of_its_own(mart: Mart, tmp_path: Path) -> None:
     write_episode(elsewhere, ticks=5)
     mart("datasets", "create", "there", "--folder", elsewhere)
     assert len(mart.json("datasets", "list", "--folder", elsewhere)["datasets"]) == 1
+
+
+def test_several_become_one_and_back(mart: Mart, paths: list[Path]) -> None:
+    mart("datasets", "create", "one", paths[0], paths[1])
+    mart("datasets", "create", "two", paths[1], paths[2])
+    merged = mart.json("datasets", "merge", "both", "one", "two")
+    assert (merged["changed"], held(mart, "both")) == (3, ["0001", "0002", "0003"])
+    assert held(mart, "one") == ["0001", "0002"]
+    assert "There is a data set 'both' already" in mart("datasets", "merge", "both", "one", code=1)
+    assert mart.json("datasets", "undo", "both")["count"] == 0
+
+
+def test_what_does_not_belong_together_is_not_merged(mart: Mart, paths: list[Path], tmp_path: Path) -> None:
+    mart("datasets", "create", "one", paths[0])
+    assert "There is no data set" in mart("datasets", "merge", "both", "one", "gone", code=1)
+    elsewhere = mart("datasets", "merge", "both", "one", tmp_path / "other" / "two", code=1)
+    assert "only data sets of one folder" in elsewhere
+    assert [one["name"] for one in mart.json("datasets", "list")["datasets"]] == ["one"]
+
+
+def test_edits_are_told_and_change_the_digest(mart: Mart, paths: list[Path]) -> None:
+    before = mart.json("datasets", "create", "few", *paths)["sha256"]
+    mart("episodes", "edit", paths[0], "--cut", "0-4")
+    assert mart.json("datasets", "list")["datasets"][0]["sha256"] != before
+    assert "6 of 10 ticks, 1 segment" in mart("datasets", "show", "few")
+    mart("episodes", "edit", paths[0], "--undo")
+    assert mart.json("datasets", "list")["datasets"][0]["sha256"] == before

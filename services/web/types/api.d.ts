@@ -254,9 +254,21 @@ declare namespace Api {
     title: string;
   }
 
-  interface EpisodeDetails extends Omit<Messages.CatalogueReplyDetails, "episode" | "lanes"> {
+  interface EpisodeDetails extends Omit<Messages.CatalogueReplyDetails, "episode" | "lanes" | "edits" | "tick_times"> {
     episode: Episode;
+    edits: Messages.EpisodeEdits;
+    tick_times: Messages.TickTimes;
     lanes: Lane[];
+  }
+
+  interface EditedEpisode extends Omit<Messages.CatalogueReplyEdited, "episode" | "edits"> {
+    episode: Episode;
+    edits: Messages.EpisodeEdits;
+  }
+
+  interface EpisodeEditing {
+    edits?: { kind: "cut" | "skip" | "split" | "subtask"; value: string }[];
+    skip_idle_s?: number;
   }
 
   interface EpisodeLabels {
@@ -284,7 +296,7 @@ declare namespace Api {
 
   // Training
 
-  interface TrainingOrder extends Omit<Messages.Order, "model" | "task" | "score_episodes" | "control_hz"> {
+  interface TrainingOrder extends Omit<Messages.Order, "model" | "task" | "score_episodes" | "control_hz" | "skip_idle_s"> {
     models: string[];
     tasks: string[];
     score_episodes: number | undefined;

@@ -28,6 +28,8 @@ declare namespace Messages {
     verification: string;
     simulated: boolean;
     viewpoints: string[];
+    edits?: EpisodeEdits;
+    tick_times?: TickTimes;
   }
 
   interface CatalogueReplyDriverStatistics {
@@ -35,6 +37,12 @@ declare namespace Messages {
     episodes: number;
     successes: number;
     simulated_s: number;
+  }
+
+  interface CatalogueReplyEdited {
+    episode?: RecordedEpisode;
+    edits?: EpisodeEdits;
+    act_ns: string;
   }
 
   interface CatalogueReplyListing {
@@ -76,6 +84,27 @@ declare namespace Messages {
     name: string;
     left_out: number;
     sha256: string;
+  }
+
+  interface Edit {
+    kind: string;
+    value: string;
+  }
+
+  interface EditAct {
+    act_ns: string;
+    by: string;
+    edits: Edit[];
+  }
+
+  interface EpisodeEdits {
+    cuts: TickRange[];
+    skips: TickRange[];
+    splits: number[];
+    subtasks: Record<string, string>;
+    kept_ticks: number;
+    segments: number;
+    acts: EditAct[];
   }
 
   interface Evaluation {
@@ -150,6 +179,7 @@ declare namespace Messages {
     score_episodes?: number;
     dataset: string;
     control_hz: number;
+    skip_idle_s: number;
   }
 
   interface Policy {
@@ -222,6 +252,8 @@ declare namespace Messages {
     outcome_by: string;
     verification_pending: boolean;
     outliers: string[];
+    kept_ticks?: number;
+    segments: number;
   }
 
   interface RecordedView {
@@ -246,6 +278,16 @@ declare namespace Messages {
   interface SubtaskCount {
     name: string;
     episodes: number;
+  }
+
+  interface TickRange {
+    begin: number;
+    end: number;
+  }
+
+  interface TickTimes {
+    ticks: number[];
+    seconds: number[];
   }
 
   interface Trace {

@@ -265,3 +265,13 @@ def test_what_cannot_be_learned_from_is_one_sentence(
 def test_a_place_that_cannot_be_written_is_one_sentence(folder: Path) -> None:
     with pytest.raises(Conflict):
         write_robomimic(choose(list_paths([folder]), EpisodeFilter()), folder / "nowhere" / "lifting.hdf5")
+
+
+def test_idle_time_is_left_out_of_an_export(folder: Path) -> None:
+    episode = min(folder.rglob("*.mcap"))
+    last = len(open_episode(episode).arrays()) - 1
+    write(folder, folder / "all.hdf5", "--control-hz", "own")
+    write(folder, folder / "moving.hdf5", "--control-hz", "own", "--skip-idle", "0.2")
+    with h5py.File(folder / "all.hdf5") as whole, h5py.File(folder / "moving.hdf5") as moving:
+        assert len(whole["data/demo_0/actions"]) == last + 1
+        assert 0 < len(moving["data/demo_0/actions"]) < last + 1

@@ -49,12 +49,23 @@ def test_without_json_it_tells_how_far_it_is(episodes: Recorded, tmp_path: Path)
 def test_its_selection_reaches_the_run(episodes: Recorded, tmp_path: Path) -> None:
     words = ("--model", "BC", "--data", episodes.root, "--preset", "debug", "--out", tmp_path / "run")
     chosen = mart_train(
-        *words, "--outcome", "any", "--verdict", "verified", "--operator", "script", "--last", 2
+        *words,
+        "--outcome",
+        "any",
+        "--verdict",
+        "verified",
+        "--operator",
+        "script",
+        "--last",
+        2,
+        "--skip-idle",
+        1,
     )
     assert chosen.exit_code == 0, chosen.output
     assert "from 2 episodes" in chosen.stdout
     selection = RunDirectory(tmp_path / "run").spec.selection
     assert selection.outcomes == ()
+    assert selection.skip_idle_s == 1.0
     assert selection.operators == ("script",)
 
 

@@ -228,3 +228,17 @@ async def test_people_and_days_are_compared(enter: Enter, root: Path) -> None:
     assert [group["name"] for group in found["groups"]] == ["2026-09-21"]
     assert (await ana.get("/api/episodes/quality", params=asked | {"by": "shoe size"})).status_code == 400
     assert (await ana.get("/api/episodes", params={"outliers": "true"})).json()["listing"]["episodes"] == []
+
+
+async def test_it_is_edited_by_name_and_taken_back(enter: Enter, root: Path) -> None:
+    ana = await enter("Ana")
+    asked = {"path": PATH}
+    said = {"edits": [{"kind": "cut", "value": "0-5"}, {"kind": "split", "value": "20"}]}
+    edited = (await ana.post("/api/episode/edits", params=asked, json=said)).json()["edited"]
+    assert edited["episode"]["kept_ticks"] == 25
+    assert edited["edits"]["acts"][0]["by"] == "Ana"
+    assert (await ana.get("/api/episode/edits", params=asked)).json()["edited"]["edits"] == edited["edits"]
+    undone = await ana.post("/api/episode/edits/undo", params=asked, json={"act_ns": edited["act_ns"]})
+    assert undone.json()["edited"]["edits"]["acts"] == []
+    for bad in ({"edits": [{"kind": "cut", "value": "0-99"}]}, {"edits": [{"kind": "use", "value": "drop"}]}):
+        assert (await ana.post("/api/episode/edits", params=asked, json=bad)).status_code == 400

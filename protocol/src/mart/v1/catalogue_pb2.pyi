@@ -8,7 +8,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class RecordedEpisode(_message.Message):
-    __slots__ = ("path", "size_bytes", "room", "number", "task", "control_hz", "outcome", "verdict", "reason", "ticks", "simulated_s", "mode", "skill", "real_time_factor", "missing_ticks", "waited_s", "started_ns", "complete", "repaired", "interrupted", "operators", "error", "note", "dropped", "datasets", "missing_commands", "ended_by", "ended_by_name", "ended_by_arm", "subtasks_done", "subtasks", "outcome_by", "verification_pending", "outliers")
+    __slots__ = ("path", "size_bytes", "room", "number", "task", "control_hz", "outcome", "verdict", "reason", "ticks", "simulated_s", "mode", "skill", "real_time_factor", "missing_ticks", "waited_s", "started_ns", "complete", "repaired", "interrupted", "operators", "error", "note", "dropped", "datasets", "missing_commands", "ended_by", "ended_by_name", "ended_by_arm", "subtasks_done", "subtasks", "outcome_by", "verification_pending", "outliers", "kept_ticks", "segments")
     class OperatorsEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -50,6 +50,8 @@ class RecordedEpisode(_message.Message):
     OUTCOME_BY_FIELD_NUMBER: _ClassVar[int]
     VERIFICATION_PENDING_FIELD_NUMBER: _ClassVar[int]
     OUTLIERS_FIELD_NUMBER: _ClassVar[int]
+    KEPT_TICKS_FIELD_NUMBER: _ClassVar[int]
+    SEGMENTS_FIELD_NUMBER: _ClassVar[int]
     path: str
     size_bytes: int
     room: str
@@ -84,7 +86,68 @@ class RecordedEpisode(_message.Message):
     outcome_by: str
     verification_pending: bool
     outliers: _containers.RepeatedScalarFieldContainer[str]
-    def __init__(self, path: _Optional[str] = ..., size_bytes: _Optional[int] = ..., room: _Optional[str] = ..., number: _Optional[int] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., reason: _Optional[str] = ..., ticks: _Optional[int] = ..., simulated_s: _Optional[float] = ..., mode: _Optional[str] = ..., skill: _Optional[str] = ..., real_time_factor: _Optional[float] = ..., missing_ticks: _Optional[int] = ..., waited_s: _Optional[float] = ..., started_ns: _Optional[int] = ..., complete: _Optional[bool] = ..., repaired: _Optional[bool] = ..., interrupted: _Optional[bool] = ..., operators: _Optional[_Mapping[str, str]] = ..., error: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ..., datasets: _Optional[_Iterable[str]] = ..., missing_commands: _Optional[int] = ..., ended_by: _Optional[str] = ..., ended_by_name: _Optional[str] = ..., ended_by_arm: _Optional[str] = ..., subtasks_done: _Optional[int] = ..., subtasks: _Optional[int] = ..., outcome_by: _Optional[str] = ..., verification_pending: _Optional[bool] = ..., outliers: _Optional[_Iterable[str]] = ...) -> None: ...
+    kept_ticks: int
+    segments: int
+    def __init__(self, path: _Optional[str] = ..., size_bytes: _Optional[int] = ..., room: _Optional[str] = ..., number: _Optional[int] = ..., task: _Optional[str] = ..., control_hz: _Optional[float] = ..., outcome: _Optional[str] = ..., verdict: _Optional[str] = ..., reason: _Optional[str] = ..., ticks: _Optional[int] = ..., simulated_s: _Optional[float] = ..., mode: _Optional[str] = ..., skill: _Optional[str] = ..., real_time_factor: _Optional[float] = ..., missing_ticks: _Optional[int] = ..., waited_s: _Optional[float] = ..., started_ns: _Optional[int] = ..., complete: _Optional[bool] = ..., repaired: _Optional[bool] = ..., interrupted: _Optional[bool] = ..., operators: _Optional[_Mapping[str, str]] = ..., error: _Optional[str] = ..., note: _Optional[str] = ..., dropped: _Optional[bool] = ..., datasets: _Optional[_Iterable[str]] = ..., missing_commands: _Optional[int] = ..., ended_by: _Optional[str] = ..., ended_by_name: _Optional[str] = ..., ended_by_arm: _Optional[str] = ..., subtasks_done: _Optional[int] = ..., subtasks: _Optional[int] = ..., outcome_by: _Optional[str] = ..., verification_pending: _Optional[bool] = ..., outliers: _Optional[_Iterable[str]] = ..., kept_ticks: _Optional[int] = ..., segments: _Optional[int] = ...) -> None: ...
+
+class Edit(_message.Message):
+    __slots__ = ("kind", "value")
+    KIND_FIELD_NUMBER: _ClassVar[int]
+    VALUE_FIELD_NUMBER: _ClassVar[int]
+    kind: str
+    value: str
+    def __init__(self, kind: _Optional[str] = ..., value: _Optional[str] = ...) -> None: ...
+
+class EditAct(_message.Message):
+    __slots__ = ("act_ns", "by", "edits")
+    ACT_NS_FIELD_NUMBER: _ClassVar[int]
+    BY_FIELD_NUMBER: _ClassVar[int]
+    EDITS_FIELD_NUMBER: _ClassVar[int]
+    act_ns: int
+    by: str
+    edits: _containers.RepeatedCompositeFieldContainer[Edit]
+    def __init__(self, act_ns: _Optional[int] = ..., by: _Optional[str] = ..., edits: _Optional[_Iterable[_Union[Edit, _Mapping]]] = ...) -> None: ...
+
+class TickRange(_message.Message):
+    __slots__ = ("begin", "end")
+    BEGIN_FIELD_NUMBER: _ClassVar[int]
+    END_FIELD_NUMBER: _ClassVar[int]
+    begin: int
+    end: int
+    def __init__(self, begin: _Optional[int] = ..., end: _Optional[int] = ...) -> None: ...
+
+class EpisodeEdits(_message.Message):
+    __slots__ = ("cuts", "skips", "splits", "subtasks", "kept_ticks", "segments", "acts")
+    class SubtasksEntry(_message.Message):
+        __slots__ = ("key", "value")
+        KEY_FIELD_NUMBER: _ClassVar[int]
+        VALUE_FIELD_NUMBER: _ClassVar[int]
+        key: str
+        value: int
+        def __init__(self, key: _Optional[str] = ..., value: _Optional[int] = ...) -> None: ...
+    CUTS_FIELD_NUMBER: _ClassVar[int]
+    SKIPS_FIELD_NUMBER: _ClassVar[int]
+    SPLITS_FIELD_NUMBER: _ClassVar[int]
+    SUBTASKS_FIELD_NUMBER: _ClassVar[int]
+    KEPT_TICKS_FIELD_NUMBER: _ClassVar[int]
+    SEGMENTS_FIELD_NUMBER: _ClassVar[int]
+    ACTS_FIELD_NUMBER: _ClassVar[int]
+    cuts: _containers.RepeatedCompositeFieldContainer[TickRange]
+    skips: _containers.RepeatedCompositeFieldContainer[TickRange]
+    splits: _containers.RepeatedScalarFieldContainer[int]
+    subtasks: _containers.ScalarMap[str, int]
+    kept_ticks: int
+    segments: int
+    acts: _containers.RepeatedCompositeFieldContainer[EditAct]
+    def __init__(self, cuts: _Optional[_Iterable[_Union[TickRange, _Mapping]]] = ..., skips: _Optional[_Iterable[_Union[TickRange, _Mapping]]] = ..., splits: _Optional[_Iterable[int]] = ..., subtasks: _Optional[_Mapping[str, int]] = ..., kept_ticks: _Optional[int] = ..., segments: _Optional[int] = ..., acts: _Optional[_Iterable[_Union[EditAct, _Mapping]]] = ...) -> None: ...
+
+class TickTimes(_message.Message):
+    __slots__ = ("ticks", "seconds")
+    TICKS_FIELD_NUMBER: _ClassVar[int]
+    SECONDS_FIELD_NUMBER: _ClassVar[int]
+    ticks: _containers.RepeatedScalarFieldContainer[int]
+    seconds: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, ticks: _Optional[_Iterable[int]] = ..., seconds: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class Span(_message.Message):
     __slots__ = ("begin_s", "end_s", "text")
@@ -177,7 +240,7 @@ class QualityGroup(_message.Message):
     def __init__(self, name: _Optional[str] = ..., episodes: _Optional[int] = ..., successes: _Optional[int] = ..., outliers: _Optional[int] = ..., numbers: _Optional[_Iterable[_Union[QualityNumber, _Mapping]]] = ...) -> None: ...
 
 class CatalogueRequest(_message.Message):
-    __slots__ = ("list", "show", "label", "file", "video", "picture", "curate", "undo", "compare_quality", "show_quality")
+    __slots__ = ("list", "show", "label", "file", "video", "picture", "curate", "undo", "compare_quality", "show_quality", "edit", "undo_edit")
     class List(_message.Message):
         __slots__ = ("task", "outcome", "verdict", "operator", "room", "offset", "count", "skill", "dataset", "since_ns", "outliers")
         TASK_FIELD_NUMBER: _ClassVar[int]
@@ -276,6 +339,26 @@ class CatalogueRequest(_message.Message):
         act_ns: int
         by: str
         def __init__(self, dataset: _Optional[str] = ..., act_ns: _Optional[int] = ..., by: _Optional[str] = ...) -> None: ...
+    class EditEpisode(_message.Message):
+        __slots__ = ("path", "edits", "skip_idle_s", "by")
+        PATH_FIELD_NUMBER: _ClassVar[int]
+        EDITS_FIELD_NUMBER: _ClassVar[int]
+        SKIP_IDLE_S_FIELD_NUMBER: _ClassVar[int]
+        BY_FIELD_NUMBER: _ClassVar[int]
+        path: str
+        edits: _containers.RepeatedCompositeFieldContainer[Edit]
+        skip_idle_s: float
+        by: str
+        def __init__(self, path: _Optional[str] = ..., edits: _Optional[_Iterable[_Union[Edit, _Mapping]]] = ..., skip_idle_s: _Optional[float] = ..., by: _Optional[str] = ...) -> None: ...
+    class UndoEdit(_message.Message):
+        __slots__ = ("path", "act_ns", "by")
+        PATH_FIELD_NUMBER: _ClassVar[int]
+        ACT_NS_FIELD_NUMBER: _ClassVar[int]
+        BY_FIELD_NUMBER: _ClassVar[int]
+        path: str
+        act_ns: int
+        by: str
+        def __init__(self, path: _Optional[str] = ..., act_ns: _Optional[int] = ..., by: _Optional[str] = ...) -> None: ...
     LIST_FIELD_NUMBER: _ClassVar[int]
     SHOW_FIELD_NUMBER: _ClassVar[int]
     LABEL_FIELD_NUMBER: _ClassVar[int]
@@ -286,6 +369,8 @@ class CatalogueRequest(_message.Message):
     UNDO_FIELD_NUMBER: _ClassVar[int]
     COMPARE_QUALITY_FIELD_NUMBER: _ClassVar[int]
     SHOW_QUALITY_FIELD_NUMBER: _ClassVar[int]
+    EDIT_FIELD_NUMBER: _ClassVar[int]
+    UNDO_EDIT_FIELD_NUMBER: _ClassVar[int]
     list: CatalogueRequest.List
     show: CatalogueRequest.Show
     label: CatalogueRequest.Label
@@ -296,10 +381,12 @@ class CatalogueRequest(_message.Message):
     undo: CatalogueRequest.Undo
     compare_quality: CatalogueRequest.CompareQuality
     show_quality: CatalogueRequest.ShowQuality
-    def __init__(self, list: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ..., show: _Optional[_Union[CatalogueRequest.Show, _Mapping]] = ..., label: _Optional[_Union[CatalogueRequest.Label, _Mapping]] = ..., file: _Optional[_Union[CatalogueRequest.File, _Mapping]] = ..., video: _Optional[_Union[CatalogueRequest.Video, _Mapping]] = ..., picture: _Optional[_Union[CatalogueRequest.Picture, _Mapping]] = ..., curate: _Optional[_Union[CatalogueRequest.Curate, _Mapping]] = ..., undo: _Optional[_Union[CatalogueRequest.Undo, _Mapping]] = ..., compare_quality: _Optional[_Union[CatalogueRequest.CompareQuality, _Mapping]] = ..., show_quality: _Optional[_Union[CatalogueRequest.ShowQuality, _Mapping]] = ...) -> None: ...
+    edit: CatalogueRequest.EditEpisode
+    undo_edit: CatalogueRequest.UndoEdit
+    def __init__(self, list: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ..., show: _Optional[_Union[CatalogueRequest.Show, _Mapping]] = ..., label: _Optional[_Union[CatalogueRequest.Label, _Mapping]] = ..., file: _Optional[_Union[CatalogueRequest.File, _Mapping]] = ..., video: _Optional[_Union[CatalogueRequest.Video, _Mapping]] = ..., picture: _Optional[_Union[CatalogueRequest.Picture, _Mapping]] = ..., curate: _Optional[_Union[CatalogueRequest.Curate, _Mapping]] = ..., undo: _Optional[_Union[CatalogueRequest.Undo, _Mapping]] = ..., compare_quality: _Optional[_Union[CatalogueRequest.CompareQuality, _Mapping]] = ..., show_quality: _Optional[_Union[CatalogueRequest.ShowQuality, _Mapping]] = ..., edit: _Optional[_Union[CatalogueRequest.EditEpisode, _Mapping]] = ..., undo_edit: _Optional[_Union[CatalogueRequest.UndoEdit, _Mapping]] = ...) -> None: ...
 
 class CatalogueReply(_message.Message):
-    __slots__ = ("error", "listing", "details", "episode", "piece", "curated", "quality_comparison", "quality_details")
+    __slots__ = ("error", "listing", "details", "episode", "piece", "curated", "quality_comparison", "quality_details", "edited")
     class DriverStatistics(_message.Message):
         __slots__ = ("name", "episodes", "successes", "simulated_s")
         NAME_FIELD_NUMBER: _ClassVar[int]
@@ -333,7 +420,7 @@ class CatalogueReply(_message.Message):
         drivers: _containers.RepeatedCompositeFieldContainer[CatalogueReply.DriverStatistics]
         def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ..., datasets: _Optional[_Iterable[_Union[NamedDataSet, _Mapping]]] = ..., skills: _Optional[_Iterable[str]] = ..., simulated_s: _Optional[float] = ..., drivers: _Optional[_Iterable[_Union[CatalogueReply.DriverStatistics, _Mapping]]] = ...) -> None: ...
     class Details(_message.Message):
-        __slots__ = ("episode", "wall_s", "lanes", "traces", "views", "cadence", "versions", "verification", "simulated", "viewpoints")
+        __slots__ = ("episode", "wall_s", "lanes", "traces", "views", "cadence", "versions", "verification", "simulated", "viewpoints", "edits", "tick_times")
         class CadenceEntry(_message.Message):
             __slots__ = ("key", "value")
             KEY_FIELD_NUMBER: _ClassVar[int]
@@ -358,6 +445,8 @@ class CatalogueReply(_message.Message):
         VERIFICATION_FIELD_NUMBER: _ClassVar[int]
         SIMULATED_FIELD_NUMBER: _ClassVar[int]
         VIEWPOINTS_FIELD_NUMBER: _ClassVar[int]
+        EDITS_FIELD_NUMBER: _ClassVar[int]
+        TICK_TIMES_FIELD_NUMBER: _ClassVar[int]
         episode: RecordedEpisode
         wall_s: float
         lanes: _containers.RepeatedCompositeFieldContainer[Lane]
@@ -368,7 +457,9 @@ class CatalogueReply(_message.Message):
         verification: str
         simulated: bool
         viewpoints: _containers.RepeatedScalarFieldContainer[str]
-        def __init__(self, episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., wall_s: _Optional[float] = ..., lanes: _Optional[_Iterable[_Union[Lane, _Mapping]]] = ..., traces: _Optional[_Iterable[_Union[Trace, _Mapping]]] = ..., views: _Optional[_Iterable[_Union[RecordedView, _Mapping]]] = ..., cadence: _Optional[_Mapping[str, str]] = ..., versions: _Optional[_Mapping[str, str]] = ..., verification: _Optional[str] = ..., simulated: _Optional[bool] = ..., viewpoints: _Optional[_Iterable[str]] = ...) -> None: ...
+        edits: EpisodeEdits
+        tick_times: TickTimes
+        def __init__(self, episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., wall_s: _Optional[float] = ..., lanes: _Optional[_Iterable[_Union[Lane, _Mapping]]] = ..., traces: _Optional[_Iterable[_Union[Trace, _Mapping]]] = ..., views: _Optional[_Iterable[_Union[RecordedView, _Mapping]]] = ..., cadence: _Optional[_Mapping[str, str]] = ..., versions: _Optional[_Mapping[str, str]] = ..., verification: _Optional[str] = ..., simulated: _Optional[bool] = ..., viewpoints: _Optional[_Iterable[str]] = ..., edits: _Optional[_Union[EpisodeEdits, _Mapping]] = ..., tick_times: _Optional[_Union[TickTimes, _Mapping]] = ...) -> None: ...
     class Piece(_message.Message):
         __slots__ = ("piece", "size_bytes", "pending")
         PIECE_FIELD_NUMBER: _ClassVar[int]
@@ -378,6 +469,15 @@ class CatalogueReply(_message.Message):
         size_bytes: int
         pending: bool
         def __init__(self, piece: _Optional[bytes] = ..., size_bytes: _Optional[int] = ..., pending: _Optional[bool] = ...) -> None: ...
+    class Edited(_message.Message):
+        __slots__ = ("episode", "edits", "act_ns")
+        EPISODE_FIELD_NUMBER: _ClassVar[int]
+        EDITS_FIELD_NUMBER: _ClassVar[int]
+        ACT_NS_FIELD_NUMBER: _ClassVar[int]
+        episode: RecordedEpisode
+        edits: EpisodeEdits
+        act_ns: int
+        def __init__(self, episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., edits: _Optional[_Union[EpisodeEdits, _Mapping]] = ..., act_ns: _Optional[int] = ...) -> None: ...
     class Curated(_message.Message):
         __slots__ = ("dataset", "changed", "left_out", "episodes", "act_ns")
         class LeftOutEntry(_message.Message):
@@ -428,6 +528,7 @@ class CatalogueReply(_message.Message):
     CURATED_FIELD_NUMBER: _ClassVar[int]
     QUALITY_COMPARISON_FIELD_NUMBER: _ClassVar[int]
     QUALITY_DETAILS_FIELD_NUMBER: _ClassVar[int]
+    EDITED_FIELD_NUMBER: _ClassVar[int]
     error: _room_pb2.Error
     listing: CatalogueReply.Listing
     details: CatalogueReply.Details
@@ -436,4 +537,5 @@ class CatalogueReply(_message.Message):
     curated: CatalogueReply.Curated
     quality_comparison: CatalogueReply.QualityComparison
     quality_details: CatalogueReply.QualityDetails
-    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., listing: _Optional[_Union[CatalogueReply.Listing, _Mapping]] = ..., details: _Optional[_Union[CatalogueReply.Details, _Mapping]] = ..., episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., piece: _Optional[_Union[CatalogueReply.Piece, _Mapping]] = ..., curated: _Optional[_Union[CatalogueReply.Curated, _Mapping]] = ..., quality_comparison: _Optional[_Union[CatalogueReply.QualityComparison, _Mapping]] = ..., quality_details: _Optional[_Union[CatalogueReply.QualityDetails, _Mapping]] = ...) -> None: ...
+    edited: CatalogueReply.Edited
+    def __init__(self, error: _Optional[_Union[_room_pb2.Error, _Mapping]] = ..., listing: _Optional[_Union[CatalogueReply.Listing, _Mapping]] = ..., details: _Optional[_Union[CatalogueReply.Details, _Mapping]] = ..., episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., piece: _Optional[_Union[CatalogueReply.Piece, _Mapping]] = ..., curated: _Optional[_Union[CatalogueReply.Curated, _Mapping]] = ..., quality_comparison: _Optional[_Union[CatalogueReply.QualityComparison, _Mapping]] = ..., quality_details: _Optional[_Union[CatalogueReply.QualityDetails, _Mapping]] = ..., edited: _Optional[_Union[CatalogueReply.Edited, _Mapping]] = ...) -> None: ...

@@ -24,7 +24,7 @@ JOB_STATE_FAILED: JobState
 JOB_STATE_CANCELLED: JobState
 
 class Order(_message.Message):
-    __slots__ = ("model", "task", "data", "preset", "seeds", "evaluation_episodes", "score_episodes", "dataset", "control_hz")
+    __slots__ = ("model", "task", "data", "preset", "seeds", "evaluation_episodes", "score_episodes", "dataset", "control_hz", "skip_idle_s")
     MODEL_FIELD_NUMBER: _ClassVar[int]
     TASK_FIELD_NUMBER: _ClassVar[int]
     DATA_FIELD_NUMBER: _ClassVar[int]
@@ -34,6 +34,7 @@ class Order(_message.Message):
     SCORE_EPISODES_FIELD_NUMBER: _ClassVar[int]
     DATASET_FIELD_NUMBER: _ClassVar[int]
     CONTROL_HZ_FIELD_NUMBER: _ClassVar[int]
+    SKIP_IDLE_S_FIELD_NUMBER: _ClassVar[int]
     model: str
     task: str
     data: str
@@ -43,7 +44,8 @@ class Order(_message.Message):
     score_episodes: int
     dataset: str
     control_hz: float
-    def __init__(self, model: _Optional[str] = ..., task: _Optional[str] = ..., data: _Optional[str] = ..., preset: _Optional[str] = ..., seeds: _Optional[_Iterable[int]] = ..., evaluation_episodes: _Optional[int] = ..., score_episodes: _Optional[int] = ..., dataset: _Optional[str] = ..., control_hz: _Optional[float] = ...) -> None: ...
+    skip_idle_s: float
+    def __init__(self, model: _Optional[str] = ..., task: _Optional[str] = ..., data: _Optional[str] = ..., preset: _Optional[str] = ..., seeds: _Optional[_Iterable[int]] = ..., evaluation_episodes: _Optional[int] = ..., score_episodes: _Optional[int] = ..., dataset: _Optional[str] = ..., control_hz: _Optional[float] = ..., skip_idle_s: _Optional[float] = ...) -> None: ...
 
 class Job(_message.Message):
     __slots__ = ("id", "sweep", "order", "state", "executor", "submitted_ns", "started_ns", "ended_ns", "attempt", "detail", "run", "progress")

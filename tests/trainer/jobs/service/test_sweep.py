@@ -62,3 +62,11 @@ def test_a_refusal_does_not_tell_where_the_data_folder_is(settings: TrainerSetti
     with pytest.raises(NotFound) as refused:
         job_specs(submission(CUBES, data="nowhere"), settings)
     assert str(settings.data_dir) not in str(refused.value)
+
+
+def test_idle_time_is_left_out_where_it_is_asked_for(settings: TrainerSettings) -> None:
+    asked, usual = (job_specs(submission(CUBES, skip_idle_s=given), settings)[0] for given in (1.5, 0.0))
+    assert asked.training.selection.skip_idle_s == 1.5
+    assert usual.training.selection.skip_idle_s is None
+    with pytest.raises(InvalidInput):
+        job_specs(submission(CUBES, skip_idle_s=0.1), settings)

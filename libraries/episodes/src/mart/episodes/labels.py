@@ -17,7 +17,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from mart.episodes.episode_labels import EpisodeLabels, carried, fold
+from mart.episodes.episode_labels import EpisodeLabels, carried, fold, standing
 from mart.episodes.label import DROP, KEEP, MAX_NOTE_CHARACTERS, Label, LabelKind
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput
 from mart.runtime.json_lines import append_json_lines, read_json_lines
@@ -25,6 +25,7 @@ from mart.runtime.json_lines import append_json_lines, read_json_lines
 __all__ = [
     "DROP", "FILE_NAME", "KEEP", "MAX_NOTE_CHARACTERS", "EpisodeLabels", "Label", "LabelKind", "append", "carried",
     "fold", "is_root", "read", "read_folded", "resolved", "root_of", "say",
+    "standing",
 ]  # fmt: skip
 
 _log = logging.getLogger(__name__)

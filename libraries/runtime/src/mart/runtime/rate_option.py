@@ -1,4 +1,4 @@
-"""Ask on the command line at which control rate a room ticks, and at which episodes are taken."""
+"""Ask on the command line at which control rate a room ticks, and at which episodes are taken, and how much of them."""
 
 from __future__ import annotations
 
@@ -31,6 +31,14 @@ control_hz_option = click.option(
     metavar="HZ",
     callback=_rate,
     help=f"Take episodes in ticks of this rate, whatever theirs is; {OWN}: theirs, which must be one.",
+)
+
+skip_idle_option = click.option(
+    "--skip-idle",
+    "skip_idle_s",
+    type=float,
+    metavar="SECONDS",
+    help="Leave out every stretch of at least so many seconds in which no arm moves.",
 )
 
 

@@ -13,6 +13,7 @@ import click
 from mart.protocol import clock
 from mart.protocol.errors import InvalidInput
 from mart.protocol.vocabulary import GOOD_VERDICTS
+from mart.recorder.edit_cli import edit
 from mart.recorder.export_cli import export
 from mart.recorder.filter_options import LABELS, filter_of, filters
 from mart.recorder.import_cli import import_
@@ -50,6 +51,7 @@ def episodes() -> None:
     """Work on episode files or folders of them; without a path, on all that were recorded here."""
 
 
+episodes.add_command(edit)
 episodes.add_command(export)
 episodes.add_command(replay)
 episodes.add_command(import_)

@@ -146,6 +146,21 @@ def delete(name: str, folder: Path, as_json: bool) -> None:
 
 @datasets.command()
 @_name
+@click.argument("sources", nargs=-1, required=True)
+@_folder
+@json_option
+def merge(name: str, sources: tuple[str, ...], folder: Path, as_json: bool) -> None:
+    """Put the episodes of several data sets of one folder together under a new name; the others stay as they are."""
+    from mart.recorder.catalogue import dataset_merging
+    from mart.recorder.catalogue.episode_catalogue import list_folder
+
+    known = list_folder(folder)
+    done = dataset_merging.merge(folder, name, sources, known, now_ns=clock.wall_ns())
+    _say(done, f"put into it, of {', '.join(sources)}", as_json)
+
+
+@datasets.command()
+@_name
 @_folder
 @json_option
 def undo(name: str, folder: Path, as_json: bool) -> None:

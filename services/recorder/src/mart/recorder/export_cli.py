@@ -17,7 +17,7 @@ from mart.recorder.settings import given_or_recorded
 from mart.recorder.view_export_cli import VIEWS, export_views
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import tracked
-from mart.runtime.rate_option import control_hz_option
+from mart.runtime.rate_option import control_hz_option, skip_idle_option
 
 
 @click.command()
@@ -36,6 +36,7 @@ from mart.runtime.rate_option import control_hz_option
 @word_option("--verdict", VERDICTS, *GOOD_VERDICTS)
 @click.option("--dataset", default="", help="Only of this data set.")
 @control_hz_option
+@skip_idle_option
 @click.option(
     "--camera",
     "cameras",
@@ -62,6 +63,7 @@ def export(
     out: Path,
     dataset: str,
     control_hz: float | None,
+    skip_idle_s: float | None,
     cameras: tuple[str, ...],
     depth: bool,
     segmentation: bool,
@@ -103,6 +105,7 @@ def export(
         selection,
         cameras=asked_cameras,
         captured=captured_cameras(selection.episodes, asked_cameras),
+        skip_idle_s=skip_idle_s,
         depth=depth,
         segmentation=segmentation,
         with_names=with_names,

@@ -14,6 +14,7 @@ from mart.protocol.errors import Corrupt, NotFound
 from mart.protocol.recording import VerificationRecord, video_topic
 from mart.protocol.vocabulary import EpisodeEndedBy
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
+from mart.recorder.catalogue.episode_editing import kept_text
 from mart.recorder.repair.repair import RepairResult
 from mart.recorder.verify.file_check import FileCheck
 from mart.recorder.verify.resimulation import ComparedStretch
@@ -50,7 +51,7 @@ def _cells(path: str, row: LabelledEpisode) -> tuple[str, ...]:
         "dropped": row.dropped,
         "verification pending": row.verification_pending,
     }
-    remarks = [ending(row)] if ending(row) else []
+    remarks = [text for text in (ending(row), kept_text(row)) if text]
     remarks += [word for word, holds in marks.items() if holds] + ([row.note] if row.note else [])
     pace = "–" if row.real_time_factor is None else f"{row.real_time_factor:.3f}"
     drivers = ", ".join(f"{arm} {who}" for arm, who in row.operators.items())

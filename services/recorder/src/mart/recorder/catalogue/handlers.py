@@ -16,10 +16,18 @@ from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RecordedView, State
 from mart.protocol.recording import EVENT, VERSIONS, CadenceRecord, VerificationRecord, video_topic
 from mart.protocol.tasks import SHARED_VIEWPOINT
-from mart.recorder.catalogue import dataset_editing, pictures, quality_answers
+from mart.recorder.catalogue import (
+    dataset_editing,
+    edit_handlers,
+    episode_editing,
+    pictures,
+    quality_answers,
+)
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.catalogue.drawings import Drawings
+from mart.recorder.catalogue.edit_messages import edited_message, edits_message
 from mart.recorder.catalogue.episode_catalogue import list_folder
+from mart.recorder.catalogue.episode_editing import EditedEpisode
 from mart.recorder.catalogue.kept_files import KeptFiles
 from mart.recorder.catalogue.listing import episode_message, filter_of, listing
 from mart.recorder.catalogue.quality_measurer import QualityMeasurer
@@ -59,6 +67,8 @@ class CatalogueHandlers:
             "undo": lambda asked: self._edited(self._undo(asked)),
             "compare_quality": self._compare_quality,
             "show_quality": self._show_quality,
+            "edit": lambda asked: self._told(edit_handlers.edit(self._row(asked.path), asked)),
+            "undo_edit": lambda asked: self._told(edit_handlers.undo(self._row(asked.path), asked)),
         }
 
     def answer(self, request: CatalogueRequest) -> CatalogueReply:
@@ -118,7 +128,9 @@ class CatalogueHandlers:
         views = _views(file)
         events = (codec.decode(Event, message.payload) for message in file.messages(EVENT))
         details = timeline(_each_tick_once(file), events, None if views else file.room.control_hz)
-        details.episode.CopyFrom(episode_message(self._rows[path]))
+        known = episode_editing.as_it_is(self._rows[path])
+        details.episode.CopyFrom(episode_message(known.episode))
+        details.edits.CopyFrom(edits_message(known))
         details.views.extend(views)
         details.viewpoints.extend(_viewpoints(file) if details.traces else ())
         details.cadence.update(file.metadata.get(CadenceRecord.NAME, {}))
@@ -174,6 +186,10 @@ class CatalogueHandlers:
             act_ns=done.act_ns,
         )
         return CatalogueReply(curated=curated)
+
+    def _told(self, done: EditedEpisode) -> CatalogueReply:
+        self._rows[done.episode.path] = done.episode
+        return CatalogueReply(edited=edited_message(done))
 
     def _file_piece(self, asked: CatalogueRequest.File) -> CatalogueReply.Piece:
         return _file_piece(self._row(asked.path).file_path, asked.offset)

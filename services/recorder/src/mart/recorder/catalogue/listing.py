@@ -96,6 +96,8 @@ def episode_message(row: LabelledEpisode) -> RecordedEpisode:
     known = row.model_dump(exclude_none=True)
     known["operators"] = {arm: _cut(text) for arm, text in list(row.operators.items())[:_MAX_ARMS]}
     known |= {name: _cut(text) for name, text in known.items() if isinstance(text, str) and name != "path"}
+    if row.edits:
+        known |= {"kept_ticks": row.edits.kept(row.ticks), "segments": len(row.edits.runs(row.ticks))}
     return RecordedEpisode(**{name: known[name] for name in known if name in _FIELDS})
 
 

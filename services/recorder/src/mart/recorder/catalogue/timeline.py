@@ -23,6 +23,7 @@ from mart.protocol.messages import (
 )
 from mart.protocol.tasks import gripper_observation
 from mart.protocol.vocabulary import OperatorKind
+from mart.recorder.catalogue.edit_messages import tick_times
 
 MAX_POINTS = 500
 MAX_SPANS = 2000  # of a lane; what comes later is not told
@@ -50,6 +51,7 @@ def timeline(
         lanes=[*told.lanes(), *_said(events, told)],
         traces=told.traces(),
         simulated=control_hz is not None,
+        tick_times=tick_times(told.seconds),
     )
 
 
@@ -134,7 +136,7 @@ class _Timeline:
         self._start_ns, self._first_tick = first.stamps.stepped_ns, first.tick
         self._control_hz = control_hz
         self._stepped_ns = array("Q")
-        self._seconds = array("d")
+        self.seconds = array("d")
         self._subtasks = {one.name: _Runs() for one in first.progress.subtasks[:_MAX_SUBTASKS]}
         self._arms = {one.arm: _Arm(one.arm) for one in first.arms[:_MAX_ARMS]}
         self._fingerless = _fingerless(first)
@@ -142,7 +144,7 @@ class _Timeline:
 
     def add(self, state: State) -> None:
         now_s = self.now_s = self._second(state)
-        self._seconds.append(now_s)
+        self.seconds.append(now_s)
         self._stepped_ns.append(state.stamps.stepped_ns)
         done = {one.name for one in state.progress.subtasks if one.done}
         for name, found in self._subtasks.items():
@@ -165,7 +167,7 @@ class _Timeline:
         """Return when something was said; negative for what was said before."""
         if self._control_hz is None or wall_ns < self._start_ns:
             return (wall_ns - self._start_ns) / 1e9
-        return self._seconds[max(0, bisect_right(self._stepped_ns, wall_ns) - 1)]
+        return self.seconds[max(0, bisect_right(self._stepped_ns, wall_ns) - 1)]
 
     def lanes(self) -> Iterator[Lane]:
         for name, done in self._subtasks.items():
@@ -178,8 +180,8 @@ class _Timeline:
             yield Lane(kind="waiting", name=name, spans=spans)
 
     def traces(self) -> Iterator[Trace]:
-        every = -(-len(self._seconds) // MAX_POINTS)
-        at_s = self._seconds[::every]
+        every = -(-len(self.seconds) // MAX_POINTS)
+        at_s = self.seconds[::every]
         for arm in self._arms.values():
             yield Trace(arm=arm.name, quantity="height", unit="m", seconds=at_s, values=arm.height_m[::every])
             if arm.name not in self._fingerless:

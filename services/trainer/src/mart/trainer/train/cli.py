@@ -16,7 +16,7 @@ from mart.protocol.errors import InvalidInput
 from mart.protocol.vocabulary import EpisodeOutcome, OperatorKind, Verdict
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import Progress, progress
-from mart.runtime.rate_option import control_hz_option
+from mart.runtime.rate_option import control_hz_option, skip_idle_option
 from mart.trainer.data.data_spec import DataSetName, Selection
 from mart.trainer.models.architecture import model_names
 from mart.trainer.train.presets import PRESETS
@@ -80,6 +80,7 @@ _paths = click.Path(path_type=Path, exists=True)
     help="How much ticks driven by a source count, e.g. human=3.",
 )
 @control_hz_option
+@skip_idle_option
 @click.option("--device", default="cpu", show_default=True, help="cpu, cuda, cuda:N or auto.")
 @json_option
 def train(resume: Path | None, out: Path | None, as_json: bool, **options: Any) -> int:
@@ -142,6 +143,7 @@ def _spec(options: dict[str, Any]) -> TrainingSpec:
                 "names": options["name"],
                 "first": options["first"],
                 "last": options["last"],
+                "skip_idle_s": options["skip_idle_s"],
             },
             weights={name: _value(text) for name, text in _pairs(options["weight"])},
             base=options["base"].resolve() if options["base"] else None,

@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from mart.protocol.errors import Corrupt, MartError, NotFound, Unavailable
-from mart.protocol.messages import CatalogueReply, CatalogueRequest, RecordedEpisode
+from mart.protocol.messages import CatalogueReply, CatalogueRequest, Edit, RecordedEpisode
 from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import EpisodeOutcome
 from mart.web.api.app_state import AppState
@@ -56,6 +56,26 @@ class LabelRequest(BaseModel):
     dropped: bool | None = None
 
 
+class EditOfEpisode(BaseModel):
+    """One edit; ticks are the recorded ones."""
+
+    kind: Literal["cut", "skip", "split", "subtask"]
+    value: Word
+
+
+class EditRequest(BaseModel):
+    """Edits of one act, and whether idle stretches of at least so many seconds are skipped, too; 0: none are."""
+
+    edits: list[EditOfEpisode] = Field([], max_length=500)
+    skip_idle_s: float = Field(0, ge=0, le=3600)
+
+
+class UndoEditRequest(BaseModel):
+    """Which act is taken back; 0: the newest act of edits."""
+
+    act_ns: int = Field(0, ge=0, lt=2**63)
+
+
 @router.get("/episodes")
 async def episodes(asked: Annotated[EpisodeListQuery, Query()], app: App, _user: BrowsingUser) -> Json:
     """Send a page of the list of episodes.
@@ -94,6 +114,31 @@ async def label(path: Path, body: LabelRequest, app: App, user: WritingUser) -> 
     return {"episode": episode_json(labelled)}
 
 
+@router.get("/episode/edits")
+async def edits(path: Path, app: App, _user: BrowsingUser) -> Json:
+    """Send how an episode is edited now."""
+    return await _edited(app, CatalogueRequest(edit=CatalogueRequest.EditEpisode(path=path)))
+
+
+@router.post("/episode/edits")
+async def edit(path: Path, body: EditRequest, app: App, user: WritingUser) -> Json:
+    """Write down what of an episode is left out, split or told otherwise."""
+    asked = CatalogueRequest.EditEpisode(
+        path=path,
+        edits=(Edit(kind=one.kind, value=one.value) for one in body.edits),
+        skip_idle_s=body.skip_idle_s,
+        by=user.name,
+    )
+    return await _edited(app, CatalogueRequest(edit=asked))
+
+
+@router.post("/episode/edits/undo")
+async def undo_edit(path: Path, body: UndoEditRequest, app: App, user: WritingUser) -> Json:
+    """Take back one act of an episode, whoever did it."""
+    asked = CatalogueRequest.UndoEdit(path=path, act_ns=body.act_ns, by=user.name)
+    return await _edited(app, CatalogueRequest(undo_edit=asked))
+
+
 @router.get("/episode/file")
 async def file(path: Path, app: App, _user: BrowsingUser) -> Response:
     """Send the episode file itself."""
@@ -125,6 +170,11 @@ async def picture(path: Path, app: App, _user: BrowsingUser) -> Response:
     except (NotFound, Corrupt, Unavailable):
         return Response(status_code=204)
     return Response(reply.piece.piece, media_type="image/jpeg")
+
+
+async def _edited(app: AppState, request: CatalogueRequest) -> Json:
+    edited = (await app.catalogue.ask(request)).edited
+    return {"edited": as_json(edited) | {"episode": _episode_json(edited.episode)}}
 
 
 async def _whole(

@@ -9,6 +9,7 @@ import click
 from mart.protocol.control_rate import LEARNING_CONTROL_HZ
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.cli import json_option, print_result
+from mart.runtime.rate_option import skip_idle_option
 
 if TYPE_CHECKING:
     from mart.protocol.messages import TrainerReply, TrainerRequest
@@ -56,6 +57,7 @@ def jobs() -> None:
     type=float,
     help="Learn in ticks of this rate, whatever the episodes' is.",
 )
+@skip_idle_option
 @click.option("--seeds", default=1, show_default=True, type=click.IntRange(1, 64), help="How many.")
 @click.option("--seeds-per-job", default=0, type=click.IntRange(0, 64), help="0: all seeds in one job.")
 @click.option(
@@ -79,6 +81,7 @@ def submit(
     dataset: str,
     preset: str,
     control_hz: float,
+    skip_idle_s: float | None,
     seeds: int,
     seeds_per_job: int,
     episodes: int,
@@ -95,6 +98,7 @@ def submit(
         dataset=dataset,
         preset=preset,
         control_hz=control_hz,
+        skip_idle_s=skip_idle_s or 0.0,
         seeds=range(seeds),
         evaluation_episodes=episodes,
         score_episodes=score_episodes,

@@ -97,6 +97,7 @@ def _order(job: Job) -> Order:
         dataset=training.dataset.name if training.dataset else "",
         preset=training.preset,
         control_hz=training.control_hz or 0.0,
+        skip_idle_s=training.selection.skip_idle_s or 0.0,
         seeds=training.seeds,
         evaluation_episodes=job.spec.evaluation.episodes,
         score_episodes=job.spec.evaluation.score_episodes,

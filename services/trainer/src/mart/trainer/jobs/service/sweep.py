@@ -66,7 +66,7 @@ def _job_spec(
             model=ModelSpec.parse(model).name,
             data=files,
             dataset=named,
-            selection=WHOLE if named else Selection(),
+            selection=_selection(order, whole=named is not None),
             seeds=tuple(seeds),
             preset=order.preset or DEFAULT_PRESET,
             device=settings.device,
@@ -82,6 +82,12 @@ def _job_spec(
         replicas=settings.replica_names,
     )
     return JobSpec(training=training, evaluation=evaluation)
+
+
+def _selection(order: Order, *, whole: bool) -> Selection:
+    """Return what is learned from. Raises ValidationError for idle stretches that cannot be."""
+    usual = WHOLE if whole else Selection()
+    return Selection(**{**dict(usual), "skip_idle_s": order.skip_idle_s or None})
 
 
 def _data_by_task(tasks: Sequence[str], folder: Path, order: Order) -> dict[str, _Data]:

@@ -226,6 +226,17 @@ export const comparedQuality = (task, by) => request("GET", `/episodes/quality?$
  */
 export const labelEpisode = (path, labels) => request("POST", episodePath(path), labels);
 
+/** @typedef {Promise<{ edited: Api.EditedEpisode }>} EditAnswer */
+
+/** How an episode is edited now. @type {(path: string) => EditAnswer} */
+export const episodeEdits = (path) => request("GET", episodePath(path, "/edits"));
+
+/** Edits an episode, in one act. @type {(path: string, edits: Api.EpisodeEditing) => EditAnswer} */
+export const editEpisode = (path, edits) => request("POST", episodePath(path, "/edits"), edits);
+
+/** Takes back one act; 0: the newest. @type {(path: string, actNs: string) => EditAnswer} */
+export const undoEdit = (path, actNs) => request("POST", episodePath(path, "/edits/undo"), { act_ns: actNs });
+
 /**
  * Puts episodes into a data set, or takes them out of it.
  * @type {(dataset: string, curation: Api.Curation) => CurationAnswer}

@@ -4,6 +4,9 @@ import * as api from "../api.js";
 import { byId, element, setText } from "../dom.js";
 import { fileSize } from "../formatting.js";
 import { drawing } from "./drawing.js";
+import { editMarks } from "./edit-marks.js";
+import { EditPanel } from "./edit-panel.js";
+import { editedLanes } from "./edits.js";
 import { factsCard } from "./episode-facts.js";
 import { dateText, remarks } from "./formatting.js";
 import { LabelForm } from "./label-form.js";
@@ -19,6 +22,8 @@ export class EpisodeView {
   #onBack;
   /** @type {Player | null} */
   #player = null;
+  /** @type {EditPanel | null} */
+  #edits = null;
   #path = "";
   /** As it was last told. @type {Api.Episode | null} */
   #known = null;
@@ -60,6 +65,8 @@ export class EpisodeView {
     this.#path = "";
     this.#player?.close();
     this.#player = null;
+    this.#edits?.close();
+    this.#edits = null;
     byId("one").replaceChildren();
   }
 
@@ -115,9 +122,26 @@ export class EpisodeView {
     player.onMove = (share) => cursor.style.setProperty("--at", String(share));
     player.ready.catch((error) => this.#attempt(() => Promise.reject(error)));
     this.#player = player;
-    const lanes = element("div", { class: "lanes" }, ...laneRows(details), ...traceRows(details), cursor);
+    const marks = element("div", { class: "marks" });
+    const lanes = element("div", { class: "lanes" });
+    /** @param {Messages.EpisodeEdits} edits */
+    const showLanes = (edits) => {
+      const told = { ...details, lanes: editedLanes(details.lanes, edits, details.tick_times) };
+      lanes.replaceChildren(...laneRows(told), ...traceRows(details), marks, cursor);
+    };
+    showLanes(details.edits);
+    this.#edits = new EditPanel(details, player, {
+      attempt: this.#attempt,
+      onSpans: (spans) => marks.replaceChildren(...editMarks(spans, wallS)),
+      onEdited: (edits, now) => {
+        if (this.#path !== episode.path) return;
+        showLanes(edits);
+        this.#known = now;
+        this.#update(now);
+      },
+    });
     if (views.length === 0) card.append(drawing(viewpoints, player));
-    card.append(player.videos, player.controls, lanes);
+    card.append(player.videos, player.controls, lanes, this.#edits.node);
     return card;
   }
 
@@ -145,7 +169,8 @@ export class EpisodeView {
   /** @param {KeyboardEvent} event */
   #onKey(event) {
     const { ctrlKey, metaKey, altKey, target } = event;
-    if (!this.isOpen || ctrlKey || metaKey || altKey || !(target instanceof Element)) return;
+    const isCommand = (ctrlKey || metaKey || altKey) && !event.getModifierState("AltGraph"); // with AltGr, [ is typed
+    if (!this.isOpen || isCommand || !(target instanceof Element)) return;
     if (target.matches("input:not([type=range], [type=radio], [type=checkbox]), select")) return;
     const action = this.#actionOf(event.key, target);
     if (!action) return;
@@ -163,6 +188,8 @@ export class EpisodeView {
     if (outcome) return () => this.#say({ outcome });
     if (key === "Escape") return () => this.#onBack();
     if (key === " " && !target.matches("button, input, a")) return () => this.#player?.toggle();
+    const edit = this.#edits?.actionOf(key);
+    if (edit) return edit;
     const step = STEP_KEYS.get(key);
     return step && !target.matches("input") ? () => this.#player?.step(step) : null;
   }

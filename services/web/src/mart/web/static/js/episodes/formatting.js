@@ -117,10 +117,12 @@ export function saidText(episode) {
 /** What is unusual about an episode, in a few words each. @type {(episode: Api.Episode) => string[]} */
 export function remarks(episode) {
   const { complete, repaired, interrupted, missing_ticks: missing, dropped, datasets, outliers, error } = episode;
+  const { kept_ticks: kept, segments, ticks } = episode;
   if (error) return ["cannot be read"];
   return [
     saidText(episode),
     datasets.length > 0 ? `in ${datasets.join(", ")}` : "",
+    kept === undefined ? "" : `edited: ${kept} of ${ticks} ticks, ${plural(segments, "segment")}`,
     dropped ? "left out of data sets" : "",
     interrupted ? "was paused" : "",
     complete ? "" : "incomplete",

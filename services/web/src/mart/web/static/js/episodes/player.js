@@ -15,6 +15,8 @@ const STEP_S = 1;
 export class Player {
   /** Called with where it is, as a share of 1. @type {(share: number) => void} */
   onMove = () => {};
+  /** Where playing goes on at a moment: later where something is left out. @type {(seconds: number) => number} */
+  skipTo = (seconds) => seconds;
   #atS = 0;
   #playing = false;
   #sinceMs = 0;
@@ -49,6 +51,11 @@ export class Player {
     );
     this.#show();
     this.ready = Promise.all(views.map((view) => this.add(view)));
+  }
+
+  /** Where it is, in seconds. */
+  get atS() {
+    return this.#atS;
   }
 
   /** Plays, or pauses. */
@@ -124,6 +131,8 @@ export class Player {
   #advance(nowMs) {
     if (!this.#playing) return;
     this.#atS = Math.min(this.#wallS, (nowMs - this.#sinceMs) / 1000);
+    const goesOn = this.skipTo(this.#atS);
+    if (goesOn > this.#atS) this.seek(goesOn);
     for (const view of this.#views) keepUp(view.video, this.#atS - view.start_s);
     this.#show();
     if (this.#atS >= this.#wallS) this.pause();
