@@ -174,7 +174,7 @@ async def picture(path: Path, app: App, _user: BrowsingUser) -> Response:
 
 async def _edited(app: AppState, request: CatalogueRequest) -> Json:
     edited = (await app.catalogue.ask(request)).edited
-    return {"edited": as_json(edited) | {"episode": _episode_json(edited.episode)}}
+    return {"edited": as_json(edited) | {"episode": episode_json(edited.episode)}}
 
 
 async def _whole(
