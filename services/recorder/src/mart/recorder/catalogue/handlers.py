@@ -20,6 +20,7 @@ from mart.recorder.catalogue import dataset_editing, pictures
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.catalogue.drawings import Drawings
 from mart.recorder.catalogue.episode_catalogue import list_folder
+from mart.recorder.catalogue.episode_scenes import EpisodeScenes
 from mart.recorder.catalogue.kept_files import KeptFiles
 from mart.recorder.catalogue.listing import episode_message, filter_of, listing
 from mart.recorder.catalogue.timeline import timeline
@@ -43,6 +44,7 @@ class CatalogueHandlers:
         self._read_s = float("-inf")
         self._pictures: OrderedDict[str, bytes] = OrderedDict()
         self._videos = KeptFiles(root)
+        self._scenes = EpisodeScenes(root)
         self._handlers: dict[str, Callable[[Any], CatalogueReply]] = {
             "list": self._list,
             "show": lambda asked: CatalogueReply(details=self._details(asked.path)),
@@ -52,6 +54,8 @@ class CatalogueHandlers:
             "picture": lambda asked: CatalogueReply(piece=_piece(self._picture(asked.path), 0)),
             "curate": lambda asked: self._edited(self._edit(asked)),
             "undo": lambda asked: self._edited(self._undo(asked)),
+            "scene": lambda asked: CatalogueReply(piece=self._scenes.scene(self._file(asked.path), asked)),
+            "motion": lambda asked: CatalogueReply(piece=self._scenes.motion(self._file(asked.path), asked)),
         }
 
     def answer(self, request: CatalogueRequest) -> CatalogueReply:

@@ -8,6 +8,7 @@ import { factsCard } from "./episode-facts.js";
 import { dateText, remarks } from "./formatting.js";
 import { LabelForm } from "./label-form.js";
 import { Player } from "./player.js";
+import { ScenePanel } from "./scene-panel.js";
 import { laneRows, traceRows } from "./timeline.js";
 
 /** @typedef {(action: () => Promise<void>) => Promise<void>} AttemptChange runs a change and shows its failure */
@@ -18,6 +19,8 @@ export class EpisodeView {
   #onBack;
   /** @type {Player | null} */
   #player = null;
+  /** @type {ScenePanel | null} */
+  #space = null;
   #path = "";
   /** As it was last told. @type {Api.Episode | null} */
   #known = null;
@@ -59,6 +62,8 @@ export class EpisodeView {
     this.#path = "";
     this.#player?.close();
     this.#player = null;
+    this.#space?.close();
+    this.#space = null;
     byId("one").replaceChildren();
   }
 
@@ -110,12 +115,17 @@ export class EpisodeView {
     }
     const player = new Player(episode.path, views, wallS);
     const cursor = element("span", { class: "cursor" });
-    player.onMove = (share) => cursor.style.setProperty("--at", String(share));
+    const space = new ScenePanel(details, player.videos);
+    player.onMove = (share) => {
+      cursor.style.setProperty("--at", String(share));
+      space.show(share * wallS);
+    };
     player.ready.catch((error) => this.#attempt(() => Promise.reject(error)));
     this.#player = player;
+    this.#space = space;
     const lanes = element("div", { class: "lanes" }, ...laneRows(details), ...traceRows(details), cursor);
     if (views.length === 0) card.append(drawing(viewpoints, player));
-    card.append(player.videos, player.controls, lanes);
+    card.append(space.node, player.videos, player.controls, lanes);
     return card;
   }
 
