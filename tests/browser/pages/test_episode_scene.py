@@ -21,10 +21,15 @@ from tests.support.processes import running_router, running_service
 ARCHIVE = Path("tests/fixtures/episodes_0_1_0/episodes.tar.xz")
 PATH, OTHER = "2026-11-29/lockstep.mcap", "2026-11-29/lockstep-again.mcap"
 
+LOSE = """() => {
+  const context = document.querySelector(".space canvas").getContext("webgl2");
+  context.getExtension("WEBGL_lose_context").loseContext();
+}"""
+
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str, str]]:
-    """Where it is, its join code, and an episode without a model."""
+    """Where it is, its join code, and an episode whose model is none."""
     port, data_dir = free_port(), tmp_path_factory.mktemp("data")
     folder = data_dir / "episodes"
     with tarfile.open(ARCHIVE) as archive:
@@ -51,7 +56,7 @@ def test_it_is_seen_from_any_side_at_any_moment_and_with_another_over_it(
     url, code, _ = site
     with joined(browser, url, code, f"episodes?path={quote(PATH)}", size="wide", scheme="light") as page:
         space = page.locator(".space")
-        expect(page.get_by_label("Lay over it").locator("option")).to_have_count(2)
+        expect(page.get_by_label("Lay over it").locator("option")).to_have_count(3)
         begin = picture(page)
         assert picture(page) == begin
         slider = page.get_by_label("Where in the episode")
@@ -74,20 +79,18 @@ def test_it_is_seen_from_any_side_at_any_moment_and_with_another_over_it(
         page.get_by_label("Lay over it").select_option("Nothing")
         expect(page.locator(".legend li")).to_have_count(0)
         assert picture(page) == later
-        page.evaluate(
-            "() => document.querySelector('.space canvas').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()"
-        )
-        expect(page.locator(".seen [role=status]")).to_contain_text("The graphics card was lost")
+        page.evaluate(LOSE)
+        expect(page.locator(".drawing [role=status]").last).to_contain_text("The graphics card was lost")
         page.get_by_role("button", name="Show in 3D").click()
         assert picture(page) == later
 
 
-def test_without_a_model_a_sentence_says_so(browser: Browser, site: tuple[str, str, str]) -> None:
+def test_of_a_spoilt_model_a_sentence_says_so(browser: Browser, site: tuple[str, str, str]) -> None:
     url, code, toy = site
     page_path = f"episodes?path={quote(toy)}"
     with joined(browser, url, code, page_path, size="wide", scheme="light", refused=True) as page:
         page.get_by_role("button", name="Show in 3D").click()
-        expect(page.locator(".seen [role=status]")).to_contain_text("cannot be shown in 3D")
+        expect(page.locator(".seen [role=status]")).to_contain_text("refuses it. It is not used.")
         expect(page.get_by_role("button", name="Show in 3D")).to_be_hidden()
 
 

@@ -129,7 +129,7 @@ export class ScenePanel {
   async #motionOver(path) {
     const { sha256 } = await api.episodeScene(path);
     if (sha256 !== this.#sha256) {
-      throw new Error("That episode is of another model and cannot be laid over this one; choose one of the same arms.");
+      throw new Error("That episode is of another model and cannot be laid over this one; choose another.");
     }
     return new Motion(await api.episodeMotion(path, this.#details.simulated));
   }
