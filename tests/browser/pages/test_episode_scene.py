@@ -82,6 +82,7 @@ def test_it_is_seen_from_any_side_at_any_moment_and_with_another_over_it(
         page.evaluate(LOSE)
         expect(page.locator(".drawing [role=status]").last).to_contain_text("The graphics card was lost")
         page.get_by_role("button", name="Show in 3D").click()
+        expect(space).to_be_visible()
         assert picture(page) == later
 
 

@@ -50,9 +50,7 @@ def model(file: EpisodeFile) -> mujoco.MjModel:
 
 
 def scene_of(asked: CatalogueHandlers, path: str = PATH, known: tuple[str, ...] = ()) -> CatalogueReply.Piece:
-    return asked.answer(
-        CatalogueRequest(scene=CatalogueRequest.Scene(path=path, known_sha256=known))
-    ).piece
+    return asked.answer(CatalogueRequest(scene=CatalogueRequest.Scene(path=path, known_sha256=known))).piece
 
 
 def whole_motion(asked: CatalogueHandlers) -> bytes:

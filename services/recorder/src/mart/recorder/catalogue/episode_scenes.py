@@ -90,5 +90,8 @@ class EpisodeScenes:
                     "This episode's file holds no model, so it cannot be shown in 3D; its videos can be watched."
                 ) from error
             version = file.room.mujoco_version or "an unknown version"
-            self._model = sha256, load_model(mjb, sha256=sha256, mujoco_version=version, source=file.path.name)
+            self._model = (
+                sha256,
+                load_model(mjb, sha256=sha256, mujoco_version=version, source=file.path.name),
+            )
         return self._model[1]

@@ -2,6 +2,8 @@
 
 import { BufferAttribute, BufferGeometry, Group, Line, LineBasicMaterial } from "../../vendor/three.mjs";
 
+const LAST_DRAWN = 4;
+
 /** The ways of one episode: `root` is what to add to a scene. */
 export class ToolPaths {
   root = new Group();
@@ -15,8 +17,9 @@ export class ToolPaths {
   constructor(paths, colorOf) {
     this.#lines = [...paths].map(([arm, points]) => {
       const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(points, 3));
-      const material = new LineBasicMaterial({ color: colorOf(arm) });
+      const material = new LineBasicMaterial({ color: colorOf(arm), depthTest: false, transparent: true });
       const line = new Line(geometry, material);
+      line.renderOrder = LAST_DRAWN; // a tool comes down its own way, which its hand would hide
       line.frustumCulled = false; // its bounds are those of the whole way
       this.root.add(line);
       return { geometry, material };
