@@ -43,17 +43,18 @@ export class SceneFigure {
     this.#view = new SceneView(this.#canvas, scene);
     this.node = element("figure", {}, this.#surface, element("figcaption", {}, "In 3D"));
     this.#paths = this.#added(motion);
-    this.#view.setPoses(motion.poses(0));
     this.#camera = new FreeCamera(this.#surface, () => this.#drawSoon());
-    this.#camera.isOn = true;
+    this.home();
     this.#surface.addEventListener("keydown", (event) => event.defaultPrevented && event.stopPropagation());
     this.#canvas.addEventListener("webglcontextlost", onLost);
     this.#sizes.observe(this.#surface);
   }
 
-  /** Looks from where it did at first. */
+  /** Looks from where it did at first: at the middle of the tools as they began. */
   home() {
+    this.#view.setPoses(this.#motion.poses(0));
     this.#camera.isOn = true;
+    this.#camera.place(this.#view, FIRST_VIEWPOINT);
   }
 
   /** Shows a moment. @param {number} seconds */
