@@ -79,10 +79,11 @@ export class SceneFigure {
   dispose() {
     cancelAnimationFrame(this.#frame);
     this.#sizes.disconnect();
+    this.node.remove();
+    if (this.#view.context.isContextLost()) return; // it gives nothing back
     this.lay(null);
     cancelAnimationFrame(this.#frame);
     this.#paths.dispose();
-    this.node.remove();
     this.#view.dispose();
   }
 
