@@ -56,7 +56,18 @@ async def test_without_a_catalogue_the_page_waits(enter: Enter) -> None:
     assert "`mart catalogue`" in refused.json()["error"]["message"]
 
 
-@pytest.mark.parametrize("path", ["episodes", "episode", "episode/file", "episode/picture", "episode/video"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        "episodes",
+        "episode",
+        "episode/file",
+        "episode/picture",
+        "episode/video",
+        "episode/scene",
+        "episode/motion",
+    ],
+)
 async def test_only_who_has_joined_sees_episodes(enter: Enter, root: Path, path: str) -> None:
     asked = await (await enter()).get(f"/api/{path}", params={"path": PATH, "camera": "arm0"})
     assert asked.status_code == 401
