@@ -8,6 +8,8 @@ export {
   ColorManagement,
   DataTexture,
   Group,
+  Line,
+  LineBasicMaterial,
   LinearFilter,
   LinearMipmapNearestFilter,
   LinearSRGBColorSpace,

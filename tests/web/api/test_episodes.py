@@ -71,6 +71,8 @@ async def test_without_a_catalogue_the_page_waits(enter: Enter) -> None:
         "episode/picture",
         "episode/quality",
         "episode/video",
+        "episode/scene",
+        "episode/motion",
     ],
 )
 async def test_only_who_has_joined_sees_episodes(enter: Enter, root: Path, path: str) -> None:

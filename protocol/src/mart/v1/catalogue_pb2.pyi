@@ -240,7 +240,7 @@ class QualityGroup(_message.Message):
     def __init__(self, name: _Optional[str] = ..., episodes: _Optional[int] = ..., successes: _Optional[int] = ..., outliers: _Optional[int] = ..., numbers: _Optional[_Iterable[_Union[QualityNumber, _Mapping]]] = ...) -> None: ...
 
 class CatalogueRequest(_message.Message):
-    __slots__ = ("list", "show", "label", "file", "video", "picture", "curate", "undo", "compare_quality", "show_quality", "edit", "undo_edit")
+    __slots__ = ("list", "show", "label", "file", "video", "picture", "curate", "undo", "compare_quality", "show_quality", "edit", "undo_edit", "scene", "motion")
     class List(_message.Message):
         __slots__ = ("task", "outcome", "verdict", "operator", "room", "offset", "count", "skill", "dataset", "since_ns", "outliers")
         TASK_FIELD_NUMBER: _ClassVar[int]
@@ -359,6 +359,24 @@ class CatalogueRequest(_message.Message):
         act_ns: int
         by: str
         def __init__(self, path: _Optional[str] = ..., act_ns: _Optional[int] = ..., by: _Optional[str] = ...) -> None: ...
+    class Scene(_message.Message):
+        __slots__ = ("path", "offset", "known_sha256")
+        PATH_FIELD_NUMBER: _ClassVar[int]
+        OFFSET_FIELD_NUMBER: _ClassVar[int]
+        KNOWN_SHA256_FIELD_NUMBER: _ClassVar[int]
+        path: str
+        offset: int
+        known_sha256: _containers.RepeatedScalarFieldContainer[str]
+        def __init__(self, path: _Optional[str] = ..., offset: _Optional[int] = ..., known_sha256: _Optional[_Iterable[str]] = ...) -> None: ...
+    class Motion(_message.Message):
+        __slots__ = ("path", "offset", "simulated")
+        PATH_FIELD_NUMBER: _ClassVar[int]
+        OFFSET_FIELD_NUMBER: _ClassVar[int]
+        SIMULATED_FIELD_NUMBER: _ClassVar[int]
+        path: str
+        offset: int
+        simulated: bool
+        def __init__(self, path: _Optional[str] = ..., offset: _Optional[int] = ..., simulated: _Optional[bool] = ...) -> None: ...
     LIST_FIELD_NUMBER: _ClassVar[int]
     SHOW_FIELD_NUMBER: _ClassVar[int]
     LABEL_FIELD_NUMBER: _ClassVar[int]
@@ -371,6 +389,8 @@ class CatalogueRequest(_message.Message):
     SHOW_QUALITY_FIELD_NUMBER: _ClassVar[int]
     EDIT_FIELD_NUMBER: _ClassVar[int]
     UNDO_EDIT_FIELD_NUMBER: _ClassVar[int]
+    SCENE_FIELD_NUMBER: _ClassVar[int]
+    MOTION_FIELD_NUMBER: _ClassVar[int]
     list: CatalogueRequest.List
     show: CatalogueRequest.Show
     label: CatalogueRequest.Label
@@ -383,7 +403,9 @@ class CatalogueRequest(_message.Message):
     show_quality: CatalogueRequest.ShowQuality
     edit: CatalogueRequest.EditEpisode
     undo_edit: CatalogueRequest.UndoEdit
-    def __init__(self, list: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ..., show: _Optional[_Union[CatalogueRequest.Show, _Mapping]] = ..., label: _Optional[_Union[CatalogueRequest.Label, _Mapping]] = ..., file: _Optional[_Union[CatalogueRequest.File, _Mapping]] = ..., video: _Optional[_Union[CatalogueRequest.Video, _Mapping]] = ..., picture: _Optional[_Union[CatalogueRequest.Picture, _Mapping]] = ..., curate: _Optional[_Union[CatalogueRequest.Curate, _Mapping]] = ..., undo: _Optional[_Union[CatalogueRequest.Undo, _Mapping]] = ..., compare_quality: _Optional[_Union[CatalogueRequest.CompareQuality, _Mapping]] = ..., show_quality: _Optional[_Union[CatalogueRequest.ShowQuality, _Mapping]] = ..., edit: _Optional[_Union[CatalogueRequest.EditEpisode, _Mapping]] = ..., undo_edit: _Optional[_Union[CatalogueRequest.UndoEdit, _Mapping]] = ...) -> None: ...
+    scene: CatalogueRequest.Scene
+    motion: CatalogueRequest.Motion
+    def __init__(self, list: _Optional[_Union[CatalogueRequest.List, _Mapping]] = ..., show: _Optional[_Union[CatalogueRequest.Show, _Mapping]] = ..., label: _Optional[_Union[CatalogueRequest.Label, _Mapping]] = ..., file: _Optional[_Union[CatalogueRequest.File, _Mapping]] = ..., video: _Optional[_Union[CatalogueRequest.Video, _Mapping]] = ..., picture: _Optional[_Union[CatalogueRequest.Picture, _Mapping]] = ..., curate: _Optional[_Union[CatalogueRequest.Curate, _Mapping]] = ..., undo: _Optional[_Union[CatalogueRequest.Undo, _Mapping]] = ..., compare_quality: _Optional[_Union[CatalogueRequest.CompareQuality, _Mapping]] = ..., show_quality: _Optional[_Union[CatalogueRequest.ShowQuality, _Mapping]] = ..., edit: _Optional[_Union[CatalogueRequest.EditEpisode, _Mapping]] = ..., undo_edit: _Optional[_Union[CatalogueRequest.UndoEdit, _Mapping]] = ..., scene: _Optional[_Union[CatalogueRequest.Scene, _Mapping]] = ..., motion: _Optional[_Union[CatalogueRequest.Motion, _Mapping]] = ...) -> None: ...
 
 class CatalogueReply(_message.Message):
     __slots__ = ("error", "listing", "details", "episode", "piece", "curated", "quality_comparison", "quality_details", "edited")
@@ -461,14 +483,16 @@ class CatalogueReply(_message.Message):
         tick_times: TickTimes
         def __init__(self, episode: _Optional[_Union[RecordedEpisode, _Mapping]] = ..., wall_s: _Optional[float] = ..., lanes: _Optional[_Iterable[_Union[Lane, _Mapping]]] = ..., traces: _Optional[_Iterable[_Union[Trace, _Mapping]]] = ..., views: _Optional[_Iterable[_Union[RecordedView, _Mapping]]] = ..., cadence: _Optional[_Mapping[str, str]] = ..., versions: _Optional[_Mapping[str, str]] = ..., verification: _Optional[str] = ..., simulated: _Optional[bool] = ..., viewpoints: _Optional[_Iterable[str]] = ..., edits: _Optional[_Union[EpisodeEdits, _Mapping]] = ..., tick_times: _Optional[_Union[TickTimes, _Mapping]] = ...) -> None: ...
     class Piece(_message.Message):
-        __slots__ = ("piece", "size_bytes", "pending")
+        __slots__ = ("piece", "size_bytes", "pending", "sha256")
         PIECE_FIELD_NUMBER: _ClassVar[int]
         SIZE_BYTES_FIELD_NUMBER: _ClassVar[int]
         PENDING_FIELD_NUMBER: _ClassVar[int]
+        SHA256_FIELD_NUMBER: _ClassVar[int]
         piece: bytes
         size_bytes: int
         pending: bool
-        def __init__(self, piece: _Optional[bytes] = ..., size_bytes: _Optional[int] = ..., pending: _Optional[bool] = ...) -> None: ...
+        sha256: str
+        def __init__(self, piece: _Optional[bytes] = ..., size_bytes: _Optional[int] = ..., pending: _Optional[bool] = ..., sha256: _Optional[str] = ...) -> None: ...
     class Edited(_message.Message):
         __slots__ = ("episode", "edits", "act_ns")
         EPISODE_FIELD_NUMBER: _ClassVar[int]

@@ -28,6 +28,7 @@ from mart.recorder.catalogue.drawings import Drawings
 from mart.recorder.catalogue.edit_messages import edited_message, edits_message
 from mart.recorder.catalogue.episode_catalogue import list_folder
 from mart.recorder.catalogue.episode_editing import EditedEpisode
+from mart.recorder.catalogue.episode_scenes import EpisodeScenes
 from mart.recorder.catalogue.kept_files import KeptFiles
 from mart.recorder.catalogue.listing import episode_message, filter_of, listing
 from mart.recorder.catalogue.quality_measurer import QualityMeasurer
@@ -56,6 +57,7 @@ class CatalogueHandlers:
         self._read_s = float("-inf")
         self._pictures: OrderedDict[str, bytes] = OrderedDict()
         self._videos = KeptFiles(root)
+        self._scenes = EpisodeScenes(root)
         self._handlers: dict[str, Callable[[Any], CatalogueReply]] = {
             "list": self._list,
             "show": lambda asked: CatalogueReply(details=self._details(asked.path)),
@@ -69,6 +71,8 @@ class CatalogueHandlers:
             "show_quality": self._show_quality,
             "edit": lambda asked: self._told(edit_handlers.edit(self._row(asked.path), asked)),
             "undo_edit": lambda asked: self._told(edit_handlers.undo(self._row(asked.path), asked)),
+            "scene": lambda asked: CatalogueReply(piece=self._scenes.scene(self._file(asked.path), asked)),
+            "motion": lambda asked: CatalogueReply(piece=self._scenes.motion(self._file(asked.path), asked)),
         }
 
     def answer(self, request: CatalogueRequest) -> CatalogueReply:

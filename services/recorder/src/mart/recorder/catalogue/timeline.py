@@ -63,6 +63,13 @@ def runs(seconds: Iterable[float], values: Iterable[str]) -> list[Span]:
     return found.spans
 
 
+def second_of(state: State, first_tick: int, start_ns: int, control_hz: float | None) -> float:
+    """Return when a state was, since the first one: simulated where `control_hz` is given, else on the wall's clock."""
+    if control_hz is not None:
+        return (state.tick - first_tick) / control_hz
+    return (state.stamps.stepped_ns - start_ns) / 1e9
+
+
 class _Runs:
     """Gather where a value stays the same."""
 
@@ -159,9 +166,7 @@ class _Timeline:
                 spans.append(Span(begin_s=begin_s, end_s=now_s))
 
     def _second(self, state: State) -> float:
-        if self._control_hz is not None:
-            return (state.tick - self._first_tick) / self._control_hz
-        return (state.stamps.stepped_ns - self._start_ns) / 1e9
+        return second_of(state, self._first_tick, self._start_ns, self._control_hz)
 
     def second_of(self, wall_ns: int) -> float:
         """Return when something was said; negative for what was said before."""

@@ -158,7 +158,11 @@ export const offer = (room, arm, sdp) => request("POST", `${seatPath(room, arm)}
  * @param {string} arm
  */
 export async function fetchScene(room, arm) {
-  const { sha256 } = await /** @type {Promise<{ sha256: string }>} */ (request("GET", `${seatPath(room, arm)}/scene`));
+  return sceneNamed(await request("GET", `${seatPath(room, arm)}/scene`));
+}
+
+/** @param {{ sha256: string }} named */
+async function sceneNamed({ sha256 }) {
   const response = await fetch(`/api/scenes/${sha256}`);
   if (!response.ok) throw new ApiError(response.status, "", `The scene could not be had (${response.status}).`);
   return { sha256, bytes: await response.arrayBuffer() };
@@ -248,6 +252,21 @@ export const undoCuration = (dataset, actNs) => request("POST", `${datasetPath(d
 
 /** The address of an episode file. @type {(path: string) => string} */
 export const fileOf = (path) => `/api${episodePath(path, "/file")}`;
+
+/** The scene that an episode was recorded in. @param {string} path */
+export const episodeScene = async (path) => sceneNamed(await request("GET", episodePath(path, "/scene")));
+
+/**
+ * Where an episode's bodies are in every tick.
+ * @param {string} path
+ * @param {boolean} simulated its seconds are, else the wall's
+ */
+export async function episodeMotion(path, simulated) {
+  const response = await fetch(`/api${episodePath(path, "/motion")}&simulated=${simulated}`);
+  if (response.ok) return response.arrayBuffer();
+  const { error } = await response.json().catch(() => ({}));
+  throw new ApiError(response.status, "", error?.message ?? "The episode's motion could not be had; try again.");
+}
 
 /** The address of an episode's last recorded picture. @type {(path: string) => string} */
 export const pictureOf = (path) => `/api${episodePath(path, "/picture")}`;

@@ -12,6 +12,7 @@ import { dateText, remarks } from "./formatting.js";
 import { LabelForm } from "./label-form.js";
 import { Player } from "./player.js";
 import { qualityCard } from "./quality-card.js";
+import { ScenePanel } from "./scene-panel.js";
 import { laneRows, traceRows } from "./timeline.js";
 
 /** @typedef {(action: () => Promise<void>) => Promise<void>} AttemptChange runs a change and shows its failure */
@@ -24,6 +25,8 @@ export class EpisodeView {
   #player = null;
   /** @type {EditPanel | null} */
   #edits = null;
+  /** @type {ScenePanel | null} */
+  #space = null;
   #path = "";
   /** As it was last told. @type {Api.Episode | null} */
   #known = null;
@@ -67,6 +70,8 @@ export class EpisodeView {
     this.#player = null;
     this.#edits?.close();
     this.#edits = null;
+    this.#space?.close();
+    this.#space = null;
     byId("one").replaceChildren();
   }
 
@@ -119,9 +124,14 @@ export class EpisodeView {
     }
     const player = new Player(episode.path, views, wallS);
     const cursor = element("span", { class: "cursor" });
-    player.onMove = (share) => cursor.style.setProperty("--at", String(share));
+    const space = new ScenePanel(details, player.videos);
+    player.onMove = (share) => {
+      cursor.style.setProperty("--at", String(share));
+      space.show(share * wallS);
+    };
     player.ready.catch((error) => this.#attempt(() => Promise.reject(error)));
     this.#player = player;
+    this.#space = space;
     const marks = element("div", { class: "marks" });
     const lanes = element("div", { class: "lanes" });
     /** @param {Messages.EpisodeEdits} edits */
@@ -141,7 +151,7 @@ export class EpisodeView {
       },
     });
     if (views.length === 0) card.append(drawing(viewpoints, player));
-    card.append(player.videos, player.controls, lanes, this.#edits.node);
+    card.append(space.node, player.videos, player.controls, lanes, this.#edits.node);
     return card;
   }
 
