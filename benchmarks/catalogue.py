@@ -17,6 +17,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from report import Bar, report
@@ -73,25 +74,25 @@ def requests(root: Path, asked: CatalogueHandlers) -> dict[str, Callable[[int], 
     """Return each kind of request by name; every call is one that changes, or follows a change of, something."""
     rows = [row.path for row in list_folder(root)]
 
-    def listed(**wanted: object) -> object:
+    def listed(**wanted: Any) -> object:
         return asked.answer(CatalogueRequest(list=CatalogueRequest.List(**wanted))).listing.matching
 
     def label(number: int) -> object:
         said = CatalogueRequest.Label(path=rows[number], note=f"note {number}")
         return asked.answer(CatalogueRequest(label=said))
 
-    def curate(number: int, **which: object) -> int:
-        wanted = CatalogueRequest.Curate(dataset=f"set-{number % 3}", **which)
+    def curate(dataset: str, **which: Any) -> int:
+        wanted = CatalogueRequest.Curate(dataset=dataset, **which)
         return asked.answer(CatalogueRequest(curate=wanted)).curated.act_ns
 
     acts: list[int] = []
 
     def curate_all(number: int) -> object:
-        acts.append(curate(number, all=CatalogueRequest.List()))
+        acts.append(curate(f"all-{number}", all=CatalogueRequest.List()))
         return None
 
     def undo(number: int) -> object:
-        undone = CatalogueRequest.Undo(dataset=f"set-{number % 3}", act_ns=acts[number])
+        undone = CatalogueRequest.Undo(dataset=f"all-{number}", act_ns=acts[number])
         return asked.answer(CatalogueRequest(undo=undone))
 
     return {
@@ -99,8 +100,8 @@ def requests(root: Path, asked: CatalogueHandlers) -> dict[str, Callable[[int], 
         "list_filtered": lambda number: listed(room=f"room-{number % ROOMS}", outcome="success"),
         "label": label,
         "list_after_label": lambda number: (label(number), listed()),
-        "curate_200": lambda number: curate(number, paths=[rows[(number * 200 + i) % len(rows)] for i in range(200)]),
-        "list_of_data_set": lambda number: listed(dataset=f"set-{number % 3}"),
+        "curate_200": lambda number: curate(f"set-{number}", paths=[rows[(number * 200 + i) % len(rows)] for i in range(200)]),
+        "list_of_data_set": lambda number: listed(dataset=f"set-{number}"),
         "curate_all": curate_all,
         "undo_all": undo,
     }

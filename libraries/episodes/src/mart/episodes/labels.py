@@ -22,11 +22,11 @@ from mart.episodes.episode_labels import EpisodeLabels, carried, fold
 from mart.episodes.followed_labels import FollowedLabels
 from mart.episodes.label import DROP, KEEP, MAX_NOTE_CHARACTERS, Label, LabelKind
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput
-from mart.runtime.json_lines import append_json_lines
+from mart.runtime.json_lines import append_json_lines, json_line, json_object
 
 __all__ = [
     "DROP", "FILE_NAME", "KEEP", "MAX_NOTE_CHARACTERS", "EpisodeLabels", "Label", "LabelKind", "append", "carried",
-    "fold", "is_root", "read", "read_folded", "resolved", "root_of", "say",
+    "fold", "is_root", "label_of", "line_of", "read", "read_folded", "resolved", "root_of", "say",
 ]  # fmt: skip
 
 _log = logging.getLogger(__name__)
@@ -57,6 +57,19 @@ def append(root: Path, labels: Iterable[Label]) -> None:
         append_json_lines(path, map(_fields, labels))
     except OSError as error:
         raise Conflict(f"{path} could not be written: {error.strerror}.") from error
+
+
+def line_of(label: Label) -> bytes:
+    """Return the line, without its end, that a label is written as."""
+    return json_line(_fields(label))
+
+
+def label_of(line: bytes) -> Label | None:
+    """Return what a line says; None where it is no label that this version knows."""
+    try:
+        return _parse(json_object(line))
+    except (ValueError, KeyError, InvalidInput):
+        return None
 
 
 def root_of(episode: Path) -> Path:

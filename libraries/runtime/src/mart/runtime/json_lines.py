@@ -20,7 +20,7 @@ def append_json_line(path: Path, row: Mapping[str, Any]) -> None:
 def append_json_lines(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
     """Append `rows`, a line each, in one write; like `append_json_line`, but synced once for all."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    lines = [json.dumps(row, ensure_ascii=False, separators=(",", ":")).encode() + b"\n" for row in rows]
+    lines = [json_line(row) + b"\n" for row in rows]
     with path.open("ab+") as file:
         if file.seek(0, os.SEEK_END) > 0:
             file.seek(-1, os.SEEK_END)
@@ -29,6 +29,11 @@ def append_json_lines(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
         file.write(b"".join(lines))
         file.flush()
         os.fsync(file.fileno())
+
+
+def json_line(row: Mapping[str, Any]) -> bytes:
+    """Return `row` as one line, without its end."""
+    return json.dumps(row, ensure_ascii=False, separators=(",", ":")).encode()
 
 
 def read_json_lines(path: Path) -> Iterator[tuple[int, dict[str, Any] | None]]:

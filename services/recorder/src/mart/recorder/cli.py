@@ -19,6 +19,7 @@ from mart.recorder.filter_options import LABELS, OUTCOMES, VERDICTS, filter_of, 
 from mart.recorder.replay_cli import replay
 from mart.recorder.replica_option import recorder_settings, replica_option, resimulation
 from mart.recorder.settings import RecorderSettings
+from mart.recorder.storage_cli import pull, push
 from mart.runtime.cli import Gathered, json_option, print_result
 from mart.runtime.progress import progress, tracked
 from mart.runtime.rate_option import control_hz_option
@@ -51,7 +52,8 @@ def episodes() -> None:
     """Work on episode files or folders of them; without a path, on all that were recorded here."""
 
 
-episodes.add_command(replay)
+for _command in (replay, push, pull):
+    episodes.add_command(_command)
 
 
 @episodes.command("list")
