@@ -100,7 +100,9 @@ def requests(root: Path, asked: CatalogueHandlers) -> dict[str, Callable[[int], 
         "list_filtered": lambda number: listed(room=f"room-{number % ROOMS}", outcome="success"),
         "label": label,
         "list_after_label": lambda number: (label(number), listed()),
-        "curate_200": lambda number: curate(f"set-{number}", paths=[rows[(number * 200 + i) % len(rows)] for i in range(200)]),
+        "curate_200": lambda number: curate(
+            f"set-{number}", paths=[rows[(number * 200 + i) % len(rows)] for i in range(200)]
+        ),
         "list_of_data_set": lambda number: listed(dataset=f"set-{number}"),
         "curate_all": curate_all,
         "undo_all": undo,

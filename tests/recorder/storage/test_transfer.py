@@ -32,7 +32,9 @@ def test_episodes_and_what_was_said_come_back(mart: Mart, path: Path, url: str, 
     assert (again["files"], again["there"], again["labels"]) == ([], 1, 0)
 
 
-def test_what_two_people_said_is_put_together_by_its_time(mart: Mart, path: Path, url: str, tmp_path: Path) -> None:
+def test_what_two_people_said_is_put_together_by_its_time(
+    mart: Mart, path: Path, url: str, tmp_path: Path
+) -> None:
     mart.json("episodes", "push", url)
     out = tmp_path / "elsewhere"
     (name,) = mart.json("episodes", "pull", url, "--out", out)["files"]

@@ -62,7 +62,9 @@ def fold(labels: Iterable[Label]) -> dict[str, EpisodeLabels]:
     for label in labels:
         by_path.setdefault(label.path, []).append(label)
     return {
-        path: reduce(EpisodeLabels.with_label, standing(sorted(said, key=attrgetter("at_ns"))), EpisodeLabels())
+        path: reduce(
+            EpisodeLabels.with_label, standing(sorted(said, key=attrgetter("at_ns"))), EpisodeLabels()
+        )
         for path, said in by_path.items()
     }
 

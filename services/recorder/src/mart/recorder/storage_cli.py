@@ -7,12 +7,16 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import progress
+
+if TYPE_CHECKING:
+    from mart.recorder.storage.transfer import Transferred
 
 _endpoint_url = click.option(
     "--endpoint-url", default="", help="Of an S3-compatible store that is not Amazon's, such as MinIO."
@@ -38,7 +42,7 @@ def push(paths: tuple[Path, ...], url: str, endpoint_url: str, as_json: bool) ->
     store = Store.open(url, endpoint_url)
     with progress("Pushed", len(files), as_json=as_json) as shown:
         done = push_files(files, store, shown.advance)
-    text = f"{url}: {len(done.files)} new files ({done.bytes / 1e6:.1f} MB), {done.there} were there, {done.labels} new labels."
+    text = f"{url}: {_counted(done)}."
     print_result({"url": url, **asdict(done)}, text, as_json)
 
 
@@ -60,5 +64,10 @@ def pull(url: str, out: Path, endpoint_url: str, as_json: bool) -> None:
     sizes = to_pull(store)
     with progress("Pulled", len(sizes), as_json=as_json) as shown:
         done = pull_files(sizes, store, out, shown.advance)
-    text = f"{out}: {len(done.files)} new files ({done.bytes / 1e6:.1f} MB), {done.there} were there, {done.labels} new labels."
+    text = f"{out}: {_counted(done)}."
     print_result({"out": str(out), **asdict(done)}, text, as_json)
+
+
+def _counted(done: Transferred) -> str:
+    size = f"{done.bytes / 1e6:.1f} MB"
+    return f"{len(done.files)} new files ({size}), {done.there} were there, {done.labels} new labels"

@@ -84,7 +84,9 @@ class EpisodeCatalogue:
         changed = [name for name, stamp in stamps.items() if stamp is None or known.get(name) != stamp]
         for start in range(0, len(changed), _AT_ONCE):
             some = changed[start : start + _AT_ONCE]
-            with self._database:  # some at a time: nobody waits long for the file, and a kill keeps what was read
+            with (
+                self._database
+            ):  # some at a time: nobody waits long for the file, and a kill keeps what was read
                 for name in some:
                     self._read(name, Path(found[name]), stamps[name] or _Stamp(0, 0))
             if after_some is not None:

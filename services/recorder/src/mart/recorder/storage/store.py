@@ -77,7 +77,9 @@ class Store:
         with reaching(self.name), self.files.open(self.key(name), "rb") as file:
             data: bytes = file.read(most_bytes + 1)
         if len(data) > most_bytes:
-            raise Corrupt(f"{name} in {self.name} has more than {most_bytes} bytes, which nothing of MART's has.")
+            raise Corrupt(
+                f"{name} in {self.name} has more than {most_bytes} bytes, which nothing of MART's has."
+            )
         return data
 
     def digest(self, name: str) -> str:
@@ -105,16 +107,24 @@ class Store:
             try:
                 self._create(source, name, digest)
             except FileExistsError as error:
-                raise Conflict(f"{name} is in {self.name} by now, from somebody else; push again.") from error
+                # The same file: a request whose answer was lost is sent again, and finds what it made itself.
+                if self.digest(name) != digest:
+                    raise Conflict(
+                        f"{name} is in {self.name} by now, from somebody else; push again."
+                    ) from error
         if self.digest(name) != digest:
-            raise Corrupt(f"{name} in {self.name} is not what {source} holds; delete it there and push again.")
+            raise Corrupt(
+                f"{name} in {self.name} is not what {source} holds; delete it there and push again."
+            )
         self.say_digest(name, digest)
         return digest
 
     def say_digest(self, name: str, digest: str) -> None:
         """Write the digest of a file beside it: that it is whole."""
         with reaching(self.name):
-            self.files.pipe_file(self.key(name + DIGEST_SUFFIX), f"{digest}  {name.rpartition('/')[2]}\n".encode())
+            self.files.pipe_file(
+                self.key(name + DIGEST_SUFFIX), f"{digest}  {name.rpartition('/')[2]}\n".encode()
+            )
 
     def _create(self, source: Path, name: str, digest: str) -> None:
         if not isinstance(self.files, LocalFileSystem):

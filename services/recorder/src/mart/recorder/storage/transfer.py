@@ -44,7 +44,9 @@ def to_push(paths: list[Path]) -> dict[str, Path]:
         for name, file in _named(path):
             other = found.setdefault(name, file)
             if labels.resolved(other) != labels.resolved(file):
-                raise Conflict(f"{other} and {file} would both be {name} in the store; push them to two URLs.")
+                raise Conflict(
+                    f"{other} and {file} would both be {name} in the store; push them to two URLs."
+                )
     if not found:
         raise NotFound("There are no finished episodes to push; name files or folders.")
     return found
@@ -98,7 +100,8 @@ def to_pull(store: Store) -> dict[str, int]:
 def pull(sizes: Mapping[str, int], store: Store, out: Path, after_each: Callable[[], None]) -> Transferred:
     """Fetch files into the folder `out`, and what is said about the episodes among them.
 
-    Each is checked before it gets its name. Raises Corrupt where one is not whole, and Conflict where `out` has another.
+    Each is checked before it gets its name. Raises Corrupt where one is not whole, and Conflict where `out` has
+    another.
     """
     done = Transferred()
     for name, size in sizes.items():
@@ -134,7 +137,9 @@ def _require_same(store: Store, name: str, here: Path, size: int, taken: str) ->
         if said is None and store.digest(name) == digest:  # whoever pushed it was stopped before saying so
             store.say_digest(name, digest)
             return
-    raise Conflict(f"{taken} is there and differs from the other ({here}, {store.name}); rename one. Both stay.")
+    raise Conflict(
+        f"{taken} is there and differs from the other ({here}, {store.name}); rename one. Both stay."
+    )
 
 
 def _fetch(store: Store, name: str, size: int, target: Path) -> None:
@@ -142,18 +147,26 @@ def _fetch(store: Store, name: str, size: int, target: Path) -> None:
     draft = target.with_name(f".{target.name[:100]}.{uuid.uuid4().hex}")
     try:
         digest, got = hashlib.sha256(), 0
-        with reaching(store.name), store.files.open(store.key(name), "rb") as source, draft.open("xb") as file:
+        with (
+            reaching(store.name),
+            store.files.open(store.key(name), "rb") as source,
+            draft.open("xb") as file,
+        ):
             while got <= size and (piece := source.read(PIECE_BYTES)):
                 got += len(piece)
                 digest.update(piece)
                 file.write(piece)
         said = store.said_digest(name)
         if got != size or (said is not None and said != digest.hexdigest()):
-            raise Corrupt(f"{name} in {store.name} is not whole, so it was not kept; push it again from where it is.")
+            raise Corrupt(
+                f"{name} in {store.name} is not whole, so it was not kept; push it again from where it is."
+            )
         if name.endswith(SUFFIX):
             EpisodeFile.open(draft).check()
         elif said is None:
-            raise Corrupt(f"{name} in {store.name} has no digest beside it; push it again to say that it is whole.")
+            raise Corrupt(
+                f"{name} in {store.name} has no digest beside it; push it again to say that it is whole."
+            )
         with draft.open("rb") as file:
             os.fsync(file.fileno())
         rename_to_new(draft, target)
