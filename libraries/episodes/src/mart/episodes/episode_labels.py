@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import reduce
+from operator import attrgetter
 from typing import Any
 
 from mart.episodes.edits import EpisodeEdits
@@ -53,12 +54,17 @@ class EpisodeLabels:
 
 
 def fold(labels: Iterable[Label]) -> dict[str, EpisodeLabels]:
-    """Return by path what holds about each file, out of labels in the order they were given."""
+    """Return by path what holds about each file, out of labels in the order they were given.
+
+    What was said later holds, also where labels of several folders were put together; of one moment, what stands later.
+    """
     by_path: dict[str, list[Label]] = {}
     for label in labels:
         by_path.setdefault(label.path, []).append(label)
     return {
-        path: reduce(EpisodeLabels.with_label, standing(said), EpisodeLabels())
+        path: reduce(
+            EpisodeLabels.with_label, standing(sorted(said, key=attrgetter("at_ns"))), EpisodeLabels()
+        )
         for path, said in by_path.items()
     }
 

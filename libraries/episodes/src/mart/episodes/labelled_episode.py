@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+from functools import lru_cache
 from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -89,8 +90,7 @@ class LabelledEpisode(BaseModel):
     @property
     def shifts(self) -> tuple[Shift, ...]:
         """Who drove, arm after arm, with changes."""
-        by_arm = OperatorsRecord.from_strings(self.operators).shifts
-        return tuple(shift for shifts in by_arm.values() for shift in shifts)
+        return _shifts_of(tuple(self.operators.items()))
 
     def open(self) -> EpisodeFile:
         """Open the file. Raises Corrupt where it cannot be used and NotFound where it is gone."""
@@ -141,6 +141,12 @@ class LabelledEpisode(BaseModel):
             "edits": said.edits,
         }
         return self.model_copy(update=changes)
+
+
+@lru_cache(maxsize=16384)  # asked of every episode of a folder with every listing
+def _shifts_of(operators: tuple[tuple[str, str], ...]) -> tuple[Shift, ...]:
+    by_arm = OperatorsRecord.from_strings(dict(operators)).shifts
+    return tuple(shift for shifts in by_arm.values() for shift in shifts)
 
 
 def describe(file_path: Path, path: str) -> LabelledEpisode:

@@ -14,24 +14,25 @@ from __future__ import annotations
 import logging
 import re
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from mart.episodes.episode_labels import EpisodeLabels, carried, fold, standing
+from mart.episodes.followed_labels import FollowedLabels
 from mart.episodes.label import DROP, KEEP, MAX_NOTE_CHARACTERS, Label, LabelKind
 from mart.protocol.errors import Conflict, Corrupt, InvalidInput
-from mart.runtime.json_lines import append_json_lines, read_json_lines
+from mart.runtime.json_lines import append_json_lines, json_line, json_object
 
 __all__ = [
     "DROP", "FILE_NAME", "KEEP", "MAX_NOTE_CHARACTERS", "EpisodeLabels", "Label", "LabelKind", "append", "carried",
-    "fold", "is_root", "read", "read_folded", "resolved", "root_of", "say",
-    "standing",
+    "fold", "is_root", "label_of", "line_of", "read", "read_folded", "resolved", "root_of", "say", "standing",
 ]  # fmt: skip
 
 _log = logging.getLogger(__name__)
 
 FILE_NAME = "labels.jsonl"
-_MAX_REASON_CHARACTERS = 200
+_MAX_FOLLOWED = 4  # folders whose labels stay in memory
 _DAY = re.compile(r"\d{4}-\d{2}-\d{2}")
 
 
@@ -41,22 +42,12 @@ def read(root: Path) -> list[Label]:
     Lines that are none (torn by a power cut, or of a kind that another version knows) are left out, and a warning says
     which, once as long as they stay the same. Raises Corrupt where the file cannot be read: who knows what it says.
     """
-    found, unknown = [], dict[int, str]()
-    try:
-        for number, fields in read_json_lines(root / FILE_NAME):
-            try:
-                found.append(_parse(fields))
-            except (ValueError, KeyError, InvalidInput) as error:
-                unknown[number] = str(error)[:_MAX_REASON_CHARACTERS]
-    except OSError as error:
-        raise Corrupt(f"The labels {root / FILE_NAME} cannot be read: {error.strerror}.") from error
-    _warn_once(root / FILE_NAME, unknown)
-    return found
+    return _read(root)[0]
 
 
 def read_folded(root: Path) -> dict[str, EpisodeLabels]:
-    """Return by path, below `root`, what holds about each file of a folder of episodes."""
-    return fold(read(root))
+    """Return by path, below `root`, what holds about each file of a folder of episodes. Raises Corrupt as `read`."""
+    return _read(root)[1]
 
 
 def append(root: Path, labels: Iterable[Label]) -> None:
@@ -66,6 +57,19 @@ def append(root: Path, labels: Iterable[Label]) -> None:
         append_json_lines(path, map(_fields, labels))
     except OSError as error:
         raise Conflict(f"{path} could not be written: {error.strerror}.") from error
+
+
+def line_of(label: Label) -> bytes:
+    """Return the line, without its end, that a label is written as."""
+    return json_line(_fields(label))
+
+
+def label_of(line: bytes) -> Label | None:
+    """Return what a line says; None where it is no label that this version knows."""
+    try:
+        return _parse(json_object(line))
+    except (ValueError, KeyError, InvalidInput):
+        return None
 
 
 def root_of(episode: Path) -> Path:
@@ -106,6 +110,21 @@ def _parse(fields: Mapping[str, Any] | None) -> Label:
     if not isinstance(at_ns, int) or not all(isinstance(text, str) for text in said):
         raise ValueError("its time is no whole number, or what it says no text")
     return Label(fields["path"], LabelKind(fields["kind"]), fields["value"], at_ns, detail, by)
+
+
+def _read(root: Path) -> tuple[list[Label], dict[str, EpisodeLabels]]:
+    path = root / FILE_NAME
+    try:
+        found, folded, unknown = _followed(path).read()
+    except OSError as error:
+        raise Corrupt(f"The labels {path} cannot be read: {error.strerror}.") from error
+    _warn_once(path, unknown)
+    return found, folded
+
+
+@lru_cache(maxsize=_MAX_FOLLOWED)
+def _followed(path: Path) -> FollowedLabels:
+    return FollowedLabels(path, _parse)
 
 
 _warned: dict[Path, frozenset[int]] = {}  # file → lines; a catalogue reads its labels every second

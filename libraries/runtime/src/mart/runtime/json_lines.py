@@ -20,7 +20,7 @@ def append_json_line(path: Path, row: Mapping[str, Any]) -> None:
 def append_json_lines(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
     """Append `rows`, a line each, in one write; like `append_json_line`, but synced once for all."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    lines = [json.dumps(row, ensure_ascii=False, separators=(",", ":")).encode() + b"\n" for row in rows]
+    lines = [json_line(row) + b"\n" for row in rows]
     with path.open("ab+") as file:
         if file.seek(0, os.SEEK_END) > 0:
             file.seek(-1, os.SEEK_END)
@@ -29,6 +29,11 @@ def append_json_lines(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
         file.write(b"".join(lines))
         file.flush()
         os.fsync(file.fileno())
+
+
+def json_line(row: Mapping[str, Any]) -> bytes:
+    """Return `row` as one line, without its end."""
+    return json.dumps(row, ensure_ascii=False, separators=(",", ":")).encode()
 
 
 def read_json_lines(path: Path) -> Iterator[tuple[int, dict[str, Any] | None]]:
@@ -41,7 +46,7 @@ def read_json_lines(path: Path) -> Iterator[tuple[int, dict[str, Any] | None]]:
     with path.open("rb") as file:
         for number, line in enumerate(_lines(file), start=1):
             if line.strip():
-                yield number, _object(line)
+                yield number, json_object(line)
 
 
 def read_last_json_line(path: Path) -> dict[str, Any] | None:
@@ -51,7 +56,7 @@ def read_last_json_line(path: Path) -> dict[str, Any] | None:
     with path.open("rb") as file:
         file.seek(max(0, file.seek(0, os.SEEK_END) - _TAIL_BYTES))
         lines = file.read().split(b"\n")
-    return next((row for line in reversed(lines) if (row := _object(line)) is not None), None)
+    return next((row for line in reversed(lines) if (row := json_object(line)) is not None), None)
 
 
 def _lines(file: BinaryIO) -> Iterator[bytes]:
@@ -62,7 +67,10 @@ def _lines(file: BinaryIO) -> Iterator[bytes]:
             pass
 
 
-def _object(line: bytes) -> dict[str, Any] | None:
+def json_object(line: bytes) -> dict[str, Any] | None:
+    """Return the JSON object of one line; None where it is none (torn, foreign, too long)."""
+    if len(line) > _MAX_LINE_BYTES:
+        return None
     try:
         row = json.loads(line.decode())
     except (ValueError, RecursionError):

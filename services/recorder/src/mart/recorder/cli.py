@@ -20,6 +20,7 @@ from mart.recorder.import_cli import import_
 from mart.recorder.replay_cli import replay
 from mart.recorder.replica_option import recorder_settings, replica_option, resimulation
 from mart.recorder.settings import RecorderSettings, given_or_recorded
+from mart.recorder.storage_cli import pull, push
 from mart.runtime.cli import Gathered, json_option, print_result
 from mart.runtime.progress import progress, tracked
 
@@ -51,10 +52,8 @@ def episodes() -> None:
     """Work on episode files or folders of them; without a path, on all that were recorded here."""
 
 
-episodes.add_command(edit)
-episodes.add_command(export)
-episodes.add_command(replay)
-episodes.add_command(import_)
+for _command in (edit, export, import_, pull, push, replay):
+    episodes.add_command(_command)
 
 
 @episodes.command("list")

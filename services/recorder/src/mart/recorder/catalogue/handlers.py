@@ -26,16 +26,15 @@ from mart.recorder.catalogue import (
 from mart.recorder.catalogue.dataset_editing import DataSetEdit
 from mart.recorder.catalogue.drawings import Drawings
 from mart.recorder.catalogue.edit_messages import edited_message, edits_message
-from mart.recorder.catalogue.episode_catalogue import list_folder
 from mart.recorder.catalogue.episode_editing import EditedEpisode
 from mart.recorder.catalogue.episode_scenes import EpisodeScenes
 from mart.recorder.catalogue.kept_files import KeptFiles
 from mart.recorder.catalogue.listing import episode_message, filter_of, listing
+from mart.recorder.catalogue.live_listing import LiveListing
 from mart.recorder.catalogue.quality_measurer import QualityMeasurer
 from mart.recorder.catalogue.timeline import timeline
 
 PIECE_BYTES = 1024 * 1024
-_FRESH_S = 1.0
 _MAX_PICTURES = 64  # of some 20 kB
 _CLOCKS_DIFFER_NS = 1_000_000_000
 
@@ -54,7 +53,7 @@ class CatalogueHandlers:
         self._quality = quality or QualityMeasurer()
         self._drawings = Drawings(render_log or root.parent / "logs" / "render.log")
         self._rows: dict[str, LabelledEpisode] = {}
-        self._read_s = float("-inf")
+        self._listing = LiveListing(root)
         self._pictures: OrderedDict[str, bytes] = OrderedDict()
         self._videos = KeptFiles(root)
         self._scenes = EpisodeScenes(root)
@@ -84,6 +83,7 @@ class CatalogueHandlers:
 
     def close(self) -> None:
         """End what is being drawn, and forget what was."""
+        self._listing.close()
         self._drawings.close()
 
     def _list(self, asked: CatalogueRequest.List) -> CatalogueReply:
@@ -108,18 +108,13 @@ class CatalogueHandlers:
         return CatalogueReply(quality_details=found)
 
     def _refresh(self) -> None:
-        now_s = clock.monotonic_s()
-        if now_s - self._read_s >= _FRESH_S:
-            rows = list_folder(self._root) if self._root.is_dir() else []
-            self._rows = {row.path: row for row in rows}
-            self._read_s = now_s
-            self._quality.see(rows)
+        self._rows = self._listing.rows()
+        self._quality.see(list(self._rows.values()))
 
     def _row(self, path: str) -> LabelledEpisode:
         """Return the episode at a path that is listed; no other can be asked for, so none leads out of the folder."""
         if path not in self._rows:
-            self._read_s = float("-inf")
-            self._refresh()
+            self._rows = self._listing.rows(anew=True)
         if path not in self._rows:
             raise NotFound(f"There is no episode {path[:200]!r}; the list shows those that there are.")
         return self._rows[path]
@@ -181,7 +176,6 @@ class CatalogueHandlers:
         return dataset_editing.undo(self._root, asked.dataset, asked.act_ns, clock.wall_ns(), asked.by)
 
     def _edited(self, done: DataSetEdit) -> CatalogueReply:
-        self._read_s = float("-inf")  # the rows say what they are part of
         curated = CatalogueReply.Curated(
             dataset=done.dataset.name,
             changed=done.changed,

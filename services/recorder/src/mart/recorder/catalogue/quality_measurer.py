@@ -10,6 +10,7 @@ import sqlite3
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from operator import is_
 
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.quality.comparison import JudgedEpisode, judge
@@ -58,8 +59,9 @@ class QualityMeasurer:
 
     def see(self, rows: Sequence[LabelledEpisode]) -> None:
         """Take which episodes there are now, the oldest first."""
-        self._wanted = rows
-        self._news.set()
+        if len(rows) != len(self._wanted) or not all(map(is_, rows, self._wanted)):
+            self._wanted = rows
+            self._news.set()
 
     def measure_wanted(self) -> None:
         """Measure what has been seen and is not known yet; what is known by then is told every two seconds."""
@@ -101,5 +103,6 @@ class QualityMeasurer:
             try:
                 self.measure_wanted()
             except (OSError, sqlite3.Error) as error:  # the next look makes up for it
+                self._wanted = ()
                 _log.warning("The quality of episodes could not be measured: %s", error)
             self._stop.wait(_PAUSE_S)

@@ -1,8 +1,9 @@
 // The page that compares how people and days have recorded the episodes of one task.
 
-import * as api from "./api.js";
+import { messageOf, statusOf } from "./api.js";
 import { theArm } from "./arms.js";
 import { byId, element, setShown, setText } from "./dom.js";
+import * as api from "./episodes/episodes-api.js";
 import { dateText } from "./episodes/formatting.js";
 import { isMember, toLobby } from "./member.js";
 import { groupText, numberText, progressText } from "./quality/formatting.js";
@@ -39,8 +40,8 @@ async function refresh() {
     if (listing) await compare(listing);
     setText(byId("page-message"), "");
   } catch (error) {
-    if (api.statusOf(error) === NOT_JOINED) toLobby();
-    setText(byId("page-message"), api.messageOf(error));
+    if (statusOf(error) === NOT_JOINED) toLobby();
+    setText(byId("page-message"), messageOf(error));
   }
 }
 

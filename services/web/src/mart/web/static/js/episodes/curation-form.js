@@ -1,9 +1,9 @@
 // Puts episodes into a data set: those that were ticked, or all that the filters let through.
 
-import * as api from "../api.js";
 import { byId, element, setShown, setText } from "../dom.js";
 import { plural } from "../formatting.js";
 import { finalName, nameFrom } from "../names.js";
+import * as api from "./episodes-api.js";
 import { allText, curatedText } from "./formatting.js";
 
 /** Knows which episodes are ticked, and what can be done with them. */

@@ -1,9 +1,9 @@
 // Edits an episode: marks at the playhead, cuts, idle time, splits, subtasks; each act is undone.
 
-import * as api from "../api.js";
 import { element, setShown, setText } from "../dom.js";
 import { plural } from "../formatting.js";
 import { actText, editSpans, goesOnAt, keptText, tickAt } from "./edits.js";
+import * as api from "./episodes-api.js";
 import { lengthText } from "./formatting.js";
 
 /** @import { Player } from "./player.js" */

@@ -1,8 +1,8 @@
 // The list of episodes: filters, one line each, pages.
 
-import * as api from "../api.js";
 import { byId, element, setShown, setText } from "../dom.js";
 import { episodeRow } from "./episode-row.js";
+import * as api from "./episodes-api.js";
 import { countText, OUTCOME_FILTERS, VERDICT_FILTERS } from "./formatting.js";
 
 /** @import { CurationForm } from "./curation-form.js" */

@@ -1,8 +1,8 @@
 // One episode in one line of the list.
 
-import * as api from "../api.js";
 import { badge } from "../arms.js";
 import { element } from "../dom.js";
+import * as api from "./episodes-api.js";
 import { dateText, drivers, lengthText, outcomeText, rateText, remarks, verdictText } from "./formatting.js";
 
 /**

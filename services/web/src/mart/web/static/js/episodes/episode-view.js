@@ -1,6 +1,5 @@
 // One episode: what was seen, what happened when, how it ended, and what to do with it.
 
-import * as api from "../api.js";
 import { byId, element, setText } from "../dom.js";
 import { fileSize } from "../formatting.js";
 import { drawing } from "./drawing.js";
@@ -8,6 +7,7 @@ import { editMarks } from "./edit-marks.js";
 import { EditPanel } from "./edit-panel.js";
 import { editedLanes } from "./edits.js";
 import { factsCard } from "./episode-facts.js";
+import * as api from "./episodes-api.js";
 import { dateText, remarks } from "./formatting.js";
 import { LabelForm } from "./label-form.js";
 import { Player } from "./player.js";

@@ -1,9 +1,9 @@
 // The recorded videos of one episode, played together, and where in its time they are.
 
-import * as api from "../api.js";
 import { badge, isArm } from "../arms.js";
 import { drawnVideo } from "../drawn-video.js";
 import { element, setText } from "../dom.js";
+import * as api from "./episodes-api.js";
 import { cameraText, lengthText } from "./formatting.js";
 
 /** @typedef {Messages.RecordedView & { video: HTMLVideoElement }} View */

@@ -1,10 +1,11 @@
 // How well one episode was recorded and driven, beside what is usual for its task.
 
-import * as api from "../api.js";
+import { messageOf } from "../api.js";
 import { armName, badge } from "../arms.js";
 import { element } from "../dom.js";
 import { plural } from "../formatting.js";
 import { numberText, usualText } from "../quality/formatting.js";
+import * as api from "./episodes-api.js";
 
 const AGAIN_MS = 2000;
 
@@ -31,7 +32,7 @@ export function qualityCard(path) {
 
   const attempt = () =>
     load().catch((error) => {
-      text.textContent = api.messageOf(error);
+      text.textContent = messageOf(error);
     });
   attempt();
   return card;

@@ -1,9 +1,10 @@
 // Shows an episode in 3D when somebody asks for it, at once where no picture was recorded, and another one over it.
 
-import * as api from "../api.js";
+import { messageOf, statusOf } from "../api.js";
 import { element, setShown, setText } from "../dom.js";
 import { parseScene } from "../scene/scene-file.js";
 import { webglRenderer } from "../scene/webgl.js";
+import * as api from "./episodes-api.js";
 import { dateText, outcomeText } from "./formatting.js";
 import { Motion } from "./motion.js";
 
@@ -69,7 +70,7 @@ export class ScenePanel {
       await this.#show();
       this.#tell("");
     } catch (error) {
-      if (!this.#isClosed) this.#away(api.messageOf(error), api.statusOf(error) === 0);
+      if (!this.#isClosed) this.#away(messageOf(error), statusOf(error) === 0);
       return;
     }
     await this.#offer();
@@ -121,7 +122,7 @@ export class ScenePanel {
       this.#legend.replaceChildren(entry("own", nameOf(this.#details.episode)), entry("over", name));
       this.#tell("");
     } catch (error) {
-      if (mine === this.#asked) this.#tell(api.messageOf(error));
+      if (mine === this.#asked) this.#tell(messageOf(error));
     }
   }
 

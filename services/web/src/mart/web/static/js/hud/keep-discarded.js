@@ -1,6 +1,6 @@
 // The last episode was discarded, and is to be there all the same.
 
-import { labelEpisode } from "../api.js";
+import { labelEpisode } from "../episodes/episodes-api.js";
 
 /** Labels its file as failed. @param {Api.Room | null} room */
 export async function keepDiscarded(room) {

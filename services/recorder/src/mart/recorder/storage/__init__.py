@@ -1,0 +1,1 @@
+"""Episodes and exports to and from any store that fsspec knows."""
