@@ -60,7 +60,7 @@ def test_of_two_who_push_at_once_one_hears_of_the_other(endpoint: str, tmp_path:
     ready, refused = threading.Barrier(2), list[MartError]()
 
     def push_at_once(root: Path) -> None:
-        store, files = Store.open(URL, endpoint), to_push([root])
+        store, files = Store.open("s3://lab/at-once", endpoint), to_push([root])
         ready.wait()
         try:
             push(files, store, lambda: None)

@@ -76,7 +76,7 @@ class LiveListing:
         try:
             by_catalogue(self._root, self._read_by)
             self._is_known = True
-        except Exception:
+        except Exception:  # noqa: BLE001 - logged whole; the next request tries again
             _log.exception("%s could not be listed; what was known of it is answered", self._root)
 
     def _read_by(self, database: Path | str) -> None:

@@ -37,8 +37,9 @@ class Store:
 
     @classmethod
     def open(cls, url: str, endpoint_url: str = "") -> Store:
-        """Reach the store of a URL; who one is there, the environment says. endpoint_url: of an S3 that is not Amazon's.
+        """Reach the store of a URL; who one is there, the environment says.
 
+        endpoint_url: of an S3 that is not Amazon's.
         Raises InvalidInput for a URL that cannot be used, or one that holds a password.
         """
         scheme, _, rest = url.partition("://")
