@@ -6,7 +6,7 @@ import os
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -18,6 +18,10 @@ from mart.recorder.view_export_cli import VIEWS, export_views
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import tracked
 from mart.runtime.rate_option import control_hz_option, skip_idle_option
+
+
+if TYPE_CHECKING:
+    from mart.recorder.export.selection import ExportSelection
 
 
 @click.command()
@@ -84,11 +88,7 @@ def export(
         return
     if layout is not None:
         raise InvalidInput("--layout is for --format foxglove; leave it out.")
-    from mart.episodes.filter import EpisodeFilter
-    from mart.episodes.folder import readable
-    from mart.recorder.catalogue.episode_catalogue import list_paths
     from mart.recorder.export.cameras import captured_cameras, parse_cameras
-    from mart.recorder.export.selection import choose, sound
 
     if file_format == "robomimic":
         from mart.recorder.export.robomimic import write_robomimic as write
@@ -96,11 +96,7 @@ def export(
         from mart.recorder.export.lerobot import write_lerobot as write
 
     asked_cameras = parse_cameras(cameras)
-    of_dataset = EpisodeFilter(datasets=(dataset,) if dataset else (), unusable=True)
-    listed = of_dataset.apply(list_paths(given_or_recorded(paths)))
-    asked = filter_of(wanted, unusable=False)
-    taken = readable(sound(asked.apply(readable(listed, paths))), paths)
-    selection = choose(taken or [one for one in listed if one.error is None], asked, control_hz)
+    selection, listed = _chosen(paths, dataset, control_hz, wanted)
     selection = replace(
         selection,
         cameras=asked_cameras,
@@ -119,6 +115,22 @@ def export(
     rate = f"{selection.control_hz:g} Hz"
     print_result(
         result | {"control_hz": selection.control_hz, "cameras": [*map(str, asked_cameras)]},
-        f"{out}: {count} of {len(listed)} episodes of {task}, {ticks} ticks of {rate}.",
+        f"{out}: {count} of {listed} episodes of {task}, {ticks} ticks of {rate}.",
         as_json,
     )
+
+
+def _chosen(
+    paths: tuple[Path, ...], dataset: str, control_hz: float | None, wanted: dict[str, Any]
+) -> tuple[ExportSelection, int]:
+    """Choose what is written, every byte of it read; returns it, and how many episodes there were to choose from."""
+    from mart.episodes.filter import EpisodeFilter
+    from mart.episodes.folder import readable
+    from mart.recorder.catalogue.episode_catalogue import list_paths
+    from mart.recorder.export.selection import choose, sound
+
+    of_dataset = EpisodeFilter(datasets=(dataset,) if dataset else (), unusable=True)
+    listed = of_dataset.apply(list_paths(given_or_recorded(paths)))
+    asked = filter_of(wanted, unusable=False)
+    taken = readable(sound(asked.apply(readable(listed, paths))), paths)
+    return choose(taken or [one for one in listed if one.error is None], asked, control_hz), len(listed)
