@@ -19,7 +19,6 @@ from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import tracked
 from mart.runtime.rate_option import control_hz_option, skip_idle_option
 
-
 if TYPE_CHECKING:
     from mart.recorder.export.selection import ExportSelection
 
