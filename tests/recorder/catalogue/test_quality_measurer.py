@@ -10,7 +10,7 @@ import pytest
 from mart.episodes import LabelKind, labels
 from mart.protocol.errors import InvalidInput, NotFound
 from mart.protocol.messages import CatalogueReply, CatalogueRequest, RecordedEpisode
-from mart.recorder.catalogue import handlers
+from mart.recorder.catalogue import live_listing
 from mart.recorder.catalogue.handlers import CatalogueHandlers
 from mart.recorder.catalogue.quality_measurer import QualityMeasurer
 from tests.recorder import synthetic
@@ -35,7 +35,7 @@ def quality() -> QualityMeasurer:
 
 @pytest.fixture
 def asked(root: Path, quality: QualityMeasurer, monkeypatch: pytest.MonkeyPatch) -> CatalogueHandlers:
-    monkeypatch.setattr(handlers, "_FRESH_S", 0.0)
+    monkeypatch.setattr(live_listing, "_FRESH_S", 0.0)
     found = CatalogueHandlers(root, quality=quality)
     listed(found)
     return found
