@@ -8,6 +8,7 @@ import io
 import struct
 import tarfile
 from pathlib import Path
+from typing import BinaryIO
 
 import mujoco
 import numpy as np
@@ -119,7 +120,36 @@ def test_a_world_that_flew_apart_has_no_row(file: EpisodeFile, model: mujoco.MjM
     assert len(out.getvalue()) == HEADER_BYTES + 2 * row_bytes
 
 
-def test_a_long_episode_is_refused(
+def test_of_a_long_episode_every_so_many_ticks_are_told_and_the_last(
+    file: EpisodeFile, model: mujoco.MjModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    states = list(file.states())
+    monkeypatch.setattr(motion, "MAX_MOTION_BYTES", 8000)
+    out = io.BytesIO()
+    write_motion(states, BodyPoses(model, 64 * "0"), HZ, out, len(states))
+    got = out.getvalue()
+    _, row_bytes = struct.unpack_from("<4sI", got)
+    seconds = [struct.unpack_from("<d", got, at)[0] for at in range(HEADER_BYTES, len(got), row_bytes)]
+    assert len(got) <= 8000
+    assert (seconds[0], seconds[-1]) == (0.0, (states[-1].tick - states[0].tick) / HZ)
+    assert len(seconds) > 8000 // row_bytes // 2
+    assert len(set(np.diff(seconds[:-1]).round(6))) == 1
+
+
+def test_scenes_of_many_models_are_kept_apart(root: Path, file: EpisodeFile) -> None:
+    scenes = episode_scenes.EpisodeScenes(root)
+    asked = CatalogueRequest.Scene(path=PATH)
+    sent = scenes.scene(file, asked)
+
+    def fill(out: BinaryIO) -> None:
+        out.write(b"x")
+
+    for number in range(80):  # more than are kept as files
+        scenes._kept.piece(("scene", str(number)), fill, 0, 1)
+    assert scenes.scene(file, asked) == sent
+
+
+def test_an_episode_that_is_longer_than_it_says_is_refused(
     file: EpisodeFile, model: mujoco.MjModel, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(motion, "MAX_MOTION_BYTES", 2000)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gzip
-from collections import OrderedDict
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
     import mujoco
 
 PIECE_BYTES = 1024 * 1024
-_MAX_DIGESTS = 64
 
 
 class EpisodeScenes:
@@ -28,7 +26,7 @@ class EpisodeScenes:
 
     def __init__(self, folder: Path) -> None:
         self._kept = KeptFiles(folder)
-        self._digests: OrderedDict[str, str] = OrderedDict()  # model → scene, both SHA-256
+        self._digests: dict[str, str] = {}  # model → scene, both SHA-256: one for each model of the folder
         self._model: tuple[str, mujoco.MjModel] | None = None  # the newest: most episodes share it
 
     def scene(self, file: EpisodeFile, asked: CatalogueRequest.Scene) -> CatalogueReply.Piece:
@@ -51,7 +49,8 @@ class EpisodeScenes:
 
         def make(out: BinaryIO) -> None:
             poses = BodyPoses(self._model_of(file), sha256)
-            write_motion(file.states(), poses, file.room.control_hz if asked.simulated else None, out)
+            control_hz = file.room.control_hz if asked.simulated else None
+            write_motion(file.states(), poses, control_hz, out, file.episode.ticks or 0)
 
         key = ("motion", asked.path, str(asked.simulated))
         piece, size_bytes = self._kept.piece(key, make, asked.offset, PIECE_BYTES)
@@ -72,8 +71,6 @@ class EpisodeScenes:
             scene = export_scene(self._model_of(file))
             out.write(gzip.compress(scene.data, compresslevel=6, mtime=0))
             self._digests[model_sha256] = scene.sha256
-            while len(self._digests) > _MAX_DIGESTS:
-                self._digests.popitem(last=False)
 
         return self._kept.piece(("scene", model_sha256), make, offset, PIECE_BYTES)
 

@@ -27,26 +27,55 @@ class Poses(Protocol):
         """Return them, as many bytes each time; raises InvalidInput for a state of another model."""
 
 
-def write_motion(states: Iterable[State], poses: Poses, control_hz: float | None, out: BinaryIO) -> None:
+def write_motion(
+    states: Iterable[State], poses: Poses, control_hz: float | None, out: BinaryIO, ticks: int = 0
+) -> None:
     """Write a row for each tick, one state in memory at a time; a state that is not finite has none.
 
     control_hz: seconds are simulated where it is given, else those of the wall's clock, as the timeline's are.
-    Raises Corrupt for a state of another model and InvalidInput for an episode beyond 16 MiB.
+    ticks: how many there are, as the file says; where their rows were beyond 16 MiB, every second, third, … is written,
+    and the last one.
+    Raises Corrupt for a state of another model and InvalidInput where it comes to more than 16 MiB all the same.
     """
     first: State | None = None
-    newest_tick, size_bytes = -1, 0
+    left_out: State | None = None
+    newest_tick, rows = -1, _Rows(out, poses, control_hz, ticks)
     for state in states:
         if state.tick <= newest_tick:  # written twice
             continue
         first, newest_tick = first or state, state.tick
-        message = _message(state, poses)
-        if size_bytes == 0:
-            size_bytes = out.write(_HEADER.pack(MAGIC, _SECOND.size + len(message)))
+        left_out = None if rows.take(state, first) else state
+    if left_out is not None and first is not None:
+        rows.write(left_out, first)
+
+
+class _Rows:
+    """Write rows, as far apart as it takes for so many ticks."""
+
+    def __init__(self, out: BinaryIO, poses: Poses, control_hz: float | None, ticks: int) -> None:
+        self._out, self._poses, self._control_hz, self._ticks = out, poses, control_hz, ticks
+        self._seen, self._every, self._size_bytes = 0, 1, 0
+
+    def take(self, state: State, first: State) -> bool:
+        """Write the row of a tick where it is its turn; returns whether it was."""
+        self._seen += 1
+        is_its_turn = (self._seen - 1) % self._every == 0
+        if is_its_turn:
+            self.write(state, first)
+        return is_its_turn
+
+    def write(self, state: State, first: State) -> None:
+        """Write the row of a tick."""
+        message = _message(state, self._poses)
+        row_bytes = _SECOND.size + len(message)
+        if self._size_bytes == 0:
+            self._size_bytes = self._out.write(_HEADER.pack(MAGIC, row_bytes))
+            self._every = max(1, math.ceil((self._ticks + 2) * row_bytes / (MAX_MOTION_BYTES - _HEADER.size)))
         if not math.isfinite(*_STEP_M.unpack_from(message)):
-            continue
-        now_s = second_of(state, first.tick, first.stamps.stepped_ns, control_hz)
-        size_bytes += out.write(_SECOND.pack(now_s) + message)
-        if size_bytes > MAX_MOTION_BYTES:
+            return
+        now_s = second_of(state, first.tick, first.stamps.stepped_ns, self._control_hz)
+        self._size_bytes += self._out.write(_SECOND.pack(now_s) + message)
+        if self._size_bytes > MAX_MOTION_BYTES:
             raise InvalidInput("This episode is too long to be shown in 3D here; draw it as a video.")
 
 

@@ -70,7 +70,7 @@ export class ScenePanel {
       await this.#show();
       this.#tell("");
     } catch (error) {
-      if (!this.#isClosed) this.#away(messageOf(error), statusOf(error) === 0);
+      if (!this.#isClosed) this.#away(messageOf(error), isPassing(statusOf(error)));
       return;
     }
     await this.#offer();
@@ -159,6 +159,9 @@ export class ScenePanel {
     setText(this.#told, text);
   }
 }
+
+/** Whether it may go another time: no answer, or a fault of the server's. @param {number} status */
+const isPassing = (status) => status === 0 || status >= 500;
 
 /** Which episode the address lays over. */
 const overInAddress = () => new URLSearchParams(location.search).get(OVER) ?? "";
