@@ -34,6 +34,7 @@ REQUEST = {
         "names": [],
         "first": None,
         "last": None,
+        "skip_idle_s": None,
     },
     "weights": {"human": 2.0},
     "base": None,
