@@ -91,7 +91,7 @@ def test_of_a_spoilt_model_a_sentence_says_so(browser: Browser, site: tuple[str,
     page_path = f"episodes?path={quote(toy)}"
     with joined(browser, url, code, page_path, size="wide", scheme="light", refused=True) as page:
         page.get_by_role("button", name="Show in 3D").click()
-        expect(page.locator(".seen [role=status]")).to_contain_text("refuses it. It is not used.")
+        expect(page.locator(".seen span[role=status]")).to_contain_text("refuses it. It is not used.")
         expect(page.get_by_role("button", name="Show in 3D")).to_be_hidden()
 
 

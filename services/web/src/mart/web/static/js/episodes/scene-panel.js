@@ -160,8 +160,8 @@ export class ScenePanel {
   }
 }
 
-/** Whether it may go another time: no answer, or a fault of the server's. @param {number} status */
-const isPassing = (status) => status === 0 || status >= 500;
+/** Whether it may go another time: nobody answered, or not yet. @param {number} status */
+const isPassing = (status) => [0, 502, 503, 504].includes(status);
 
 /** Which episode the address lays over. */
 const overInAddress = () => new URLSearchParams(location.search).get(OVER) ?? "";
