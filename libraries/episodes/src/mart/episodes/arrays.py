@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -55,6 +55,25 @@ class EpisodeData:
 
     def __len__(self) -> int:
         return len(self.actions)
+
+    def rows(self, states: NDArray[np.int64], moves: NDArray[np.int64]) -> EpisodeData:
+        """Return these rows: int64[K + 1] of what is of states, int64[K] of what is of the transitions between them."""
+        return replace(
+            self,
+            ticks=self.ticks[states],
+            observations={name: values[states] for name, values in self.observations.items()},
+            actions=self.actions[moves],
+            sources=self.sources[moves],
+            engaged=self.engaged[moves],
+            held=self.held[moves],
+            subtasks={name: done[states] for name, done in self.subtasks.items()},
+            success=self.success[states],
+            sim_time_s=self.sim_time_s[states],
+            sent_ns=self.sent_ns[states],
+            integration_states=self.integration_states[states],
+            tool_positions_in_base=self.tool_positions_in_base[states],
+            tool_quaternions_in_base=self.tool_quaternions_in_base[states],
+        )
 
 
 def arrays_for_task(states: Sequence[State], task: Task) -> EpisodeData:

@@ -28,22 +28,7 @@ def edited(data: EpisodeData, edits: EpisodeEdits) -> list[EpisodeData]:
 def _segment(data: EpisodeData, ranges: list[Range]) -> EpisodeData:
     moves = np.concatenate([np.arange(*one) for one in ranges])
     seen = np.append(moves, ranges[-1][1])
-    return replace(
-        data,
-        ticks=data.ticks[seen],
-        observations={name: values[seen] for name, values in data.observations.items()},
-        actions=data.actions[moves],
-        sources=data.sources[moves],
-        engaged=data.engaged[moves],
-        held=data.held[moves],
-        subtasks={name: done[seen] for name, done in data.subtasks.items()},
-        success=data.success[seen],
-        sim_time_s=data.sim_time_s[seen],
-        sent_ns=data.sent_ns[seen],
-        integration_states=data.integration_states[seen],
-        tool_positions_in_base=data.tool_positions_in_base[seen],
-        tool_quaternions_in_base=data.tool_quaternions_in_base[seen],
-    )
+    return data.rows(seen, moves)
 
 
 def _subtasks(data: EpisodeData, edits: EpisodeEdits) -> dict[str, NDArray[np.bool_]]:

@@ -46,22 +46,8 @@ def at_control_hz(
         return data
     ticks = coarse_ticks(len(data), recorded_hz, control_hz)
     last = ticks[1:] - 1  # rows of the last action of each transition
-    return replace(
-        data,
-        ticks=data.ticks[ticks],
-        observations={name: values[ticks] for name, values in data.observations.items()},
-        actions=_actions(data, ticks, [limits] * len(data.arms) if isinstance(limits, Limits) else limits),
-        sources=data.sources[last],
-        engaged=data.engaged[last],
-        held=data.held[last],
-        subtasks={name: done[ticks] for name, done in data.subtasks.items()},
-        success=data.success[ticks],
-        sim_time_s=data.sim_time_s[ticks],
-        sent_ns=data.sent_ns[ticks],
-        integration_states=data.integration_states[ticks],
-        tool_positions_in_base=data.tool_positions_in_base[ticks],
-        tool_quaternions_in_base=data.tool_quaternions_in_base[ticks],
-    )
+    each = [limits] * len(data.arms) if isinstance(limits, Limits) else limits
+    return replace(data.rows(ticks, last), actions=_actions(data, ticks, each))
 
 
 def coarse_ticks(ticks: int, recorded_hz: float, control_hz: float) -> NDArray[np.int64]:
