@@ -10,9 +10,10 @@ import pytest
 from mart.protocol import clock
 from mart.protocol.errors import Forbidden, Unavailable
 from mart.runtime.bus.zenoh_bus import ZenohBus
-from mart.runtime.bus_secret import known_secrets, noted
+from mart.runtime.bus_secret import known_secrets
 from mart.runtime.ports import free_port
 from mart.runtime.router import admitting_router
+from mart.runtime.router_notes import noted
 
 pytestmark = pytest.mark.system  # real peers
 

@@ -61,6 +61,9 @@ _CONTROL_HZ_OPTION = click.option(
     "--driver", "drivers", multiple=True, metavar="ARM", help="A real arm, driven by `mart driver`."
 )
 @cameras_option
+@click.option(
+    "--secure", is_flag=True, help="Certificates between the services, each with the rights of its kind."
+)
 @json_option
 def run(
     *,
@@ -77,6 +80,7 @@ def run(
     turn: bool,
     drivers: tuple[str, ...],
     cameras: Mapping[str, str],
+    secure: bool,
     as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
@@ -94,7 +98,7 @@ def run(
     run_dir = settings.data_dir / "run"
     options = PlatformOptions(
         settings.data_dir,
-        settings.router,
+        settings.router.replace("tcp/", "tls/", 1) if secure else settings.router,
         host,
         port,
         public_host,

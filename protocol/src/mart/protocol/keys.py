@@ -202,12 +202,36 @@ def alive_of(kind: ServiceKind) -> str:
     return f"{ROOT}/@live/{_segment('kind', kind)}/*"
 
 
+def admission() -> Topic:
+    """Queryable: AdmissionRequest → the wire version, answered by the router itself to whom it admits."""
+    return Topic(f"{ROOT}/@router/admission", Priority.NORMAL, must_arrive=True)
+
+
 EVERY_STATE = f"{ROOT}/*/state"
 EVERY_STATUS = f"{ROOT}/*/status"
 EVERY_EVENT = f"{ROOT}/*/event"
 EVERY_COMMAND = f"{ROOT}/*/arm/*/command"
+EVERY_INTENT = f"{ROOT}/*/arm/*/intent"
+EVERY_RECORDING = f"{ROOT}/*/recording"
 EVERY_VIDEO = f"{ROOT}/*/view/*/video"
 EVERY_STILL = f"{ROOT}/*/view/*/still"
+EVERY_CAMERA_FRAME = f"{ROOT}/*/view/*/frame"
+EVERY_CAMERA_REPORT = f"{ROOT}/*/view/*/report"
+EVERY_VOICE = f"{ROOT}/*/arm/*/voice"
+EVERY_ARM_TARGET = f"{ROOT}/*/arm/*/target"
+EVERY_ARM_MEASURED = f"{ROOT}/*/arm/*/measured"
+EVERY_MODEL = f"{ROOT}/*/model"
+EVERY_SEAT = f"{ROOT}/*/seat"
+EVERY_EPISODE = f"{ROOT}/*/episode"
+EVERY_DRIVER = f"{ROOT}/*/driver"
+EVERY_ROLLOUT = f"{ROOT}/*/rollout"
+EVERY_SIGNAL = f"{ROOT}/*/signal/*/*"
+EVERY_SCENE = f"{ROOT}/*/arm/*/scene"
+EVERY_OPEN_SEAT = f"{ROOT}/@gateway/*/open"
+EVERY_CONNECTION_CHECK = f"{ROOT}/@gateway/*/check"
+EVERY_TRAINING = f"{ROOT}/@trainer/*/jobs"
+EVERY_CATALOGUE = f"{ROOT}/@catalogue/*/episodes"
+EVERY_ROOMS = f"{ROOT}/@platform/*/rooms"
 EVERY_ALIVE = f"{ROOT}/@live/*/*"
 
 

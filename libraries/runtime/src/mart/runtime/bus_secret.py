@@ -8,15 +8,12 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import os
-import re
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
 
 from mart.protocol import clock
 from mart.protocol.errors import Forbidden, InvalidInput, Unavailable
-from mart.runtime.atomic_file import write_atomically
 from mart.runtime.ports import is_listening
+from mart.runtime.router_notes import note_path
 from mart.runtime.secret_file import load_secret
 from mart.runtime.settings import Settings
 
@@ -69,7 +66,7 @@ def known_secrets(endpoint: str) -> dict[str, bytes]:
     """Return the secrets that the router at `endpoint` may have, by where each was found, the likeliest first."""
     settings = Settings()
     found: dict[str, bytes] = {}
-    for path in (_note_path(endpoint), settings.bus_secret_path):
+    for path in (note_path(endpoint), settings.bus_secret_path):
         with contextlib.suppress(OSError, InvalidInput):  # told where no other one is right
             found.setdefault(str(path), load_secret(path))
     return found
@@ -94,25 +91,3 @@ def why_refused(endpoint: str) -> str:
             f"The router at {endpoint} is another platform's: it does not know the secret in {path}. {mend}"
         )
     return f"The router at {endpoint} admits only who has its secret, and {what}. {mend}"
-
-
-@contextlib.contextmanager
-def noted(endpoint: str, secret: bytes) -> Iterator[None]:
-    """Note the secret for this user's other programs while the block runs; where it cannot be, they look elsewhere."""
-    path = _note_path(endpoint)
-    try:
-        path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        write_atomically(path, secret)
-    except OSError as error:
-        _log.debug("The router is not noted in %s: %s", path, error)
-    try:
-        yield
-    finally:
-        with contextlib.suppress(OSError):
-            if path.read_bytes() == secret:  # else another platform's router is at this address by now
-                path.unlink()
-
-
-def _note_path(endpoint: str) -> Path:
-    state = os.environ.get("XDG_STATE_HOME") or "~/.local/state"
-    return Path(state).expanduser() / "mart" / "routers" / re.sub(r"[^A-Za-z0-9.]+", "-", endpoint)

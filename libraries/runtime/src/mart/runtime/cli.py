@@ -35,7 +35,7 @@ _PURPOSES = {
     "Policies": ("train", "eval", "report", "jobs", "operate"),
     "Services, which `mart run` starts": (
         *("router", "sim", "replica", "experts", "gateway", "phone", "recorder", "catalogue", "web"),
-        *("trainer", "policies", "camera", "alive"),
+        *("trainer", "policies", "camera", "alive", "certificates"),
     ),
 }
 _HELP_WIDTH = 64

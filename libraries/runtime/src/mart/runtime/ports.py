@@ -15,11 +15,11 @@ def free_port() -> int:
 
 
 def is_listening(endpoint: str, timeout_s: float = 1.0) -> bool:
-    """Tell whether somebody takes connections at a Zenoh endpoint over TCP, such as "tcp/127.0.0.1:7447"."""
+    """Tell whether somebody takes connections at a Zenoh endpoint over TCP or TLS, such as "tcp/127.0.0.1:7447"."""
     scheme, _, address = endpoint.partition("/")
     host, _, port = address.rpartition(":")
     with contextlib.suppress(OSError, ValueError):
-        if scheme == "tcp":
+        if scheme in ("tcp", "tls"):
             with socket.create_connection((host.strip("[]"), int(port)), timeout_s):
                 return True
     return False

@@ -11,6 +11,8 @@ from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
 
 from mart.protocol.errors import InvalidInput
 
+CERTIFICATES_FOLDER = Path("secrets") / "bus-certificates"
+
 _TCP = re.compile(r"(?:tcp|tls|quic|ws)/(?P<host>.+):(?P<port>\d{1,5})")
 _LOCAL = ("unixsock-stream/", "unixpipe/")
 
@@ -24,6 +26,9 @@ class Settings(BaseSettings):
     data_dir: Path = Field(Path("data"), description="Where episodes, secrets and certificates are kept.")
     bus_secret_file: Path | None = Field(
         None, description="The secret of the router; without it, secrets/bus below the data folder."
+    )
+    bus_identity_dir: Path | None = Field(
+        None, description="The folder of the certificate to show to a router at tls/HOST:PORT."
     )
     log_level: str = Field("INFO", description="DEBUG, INFO, WARNING or ERROR.")
 
@@ -54,6 +59,10 @@ class Settings(BaseSettings):
     @property
     def bus_secret_path(self) -> Path:
         return self.bus_secret_file or self.data_dir / "secrets" / "bus"
+
+    @property
+    def bus_certificates_dir(self) -> Path:
+        return self.data_dir / CERTIFICATES_FOLDER
 
     @property
     def secret_path(self) -> Path:

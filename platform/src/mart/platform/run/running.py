@@ -21,6 +21,7 @@ from pathlib import Path
 from uuid import uuid4
 
 from mart.platform.run.folder_claim import ClaimHolder, claimed
+from mart.platform.run.identities import identity_dir, issue_identities
 from mart.platform.run.plan import (
     PlatformOptions,
     Process,
@@ -93,6 +94,7 @@ def running_platform(options: PlatformOptions, plan: tuple[Process, ...] | None 
     supervisor dies; the block is interrupted then.
     """
     keep_private(options.data_dir)
+    issue_identities(options)
     plan = plan or processes(options)
     mark = uuid4().hex
     url = options.url if any(process.kind == ServiceKind.WEB for process in plan) else ""
@@ -107,7 +109,7 @@ def running_platform(options: PlatformOptions, plan: tuple[Process, ...] | None 
         supervisor = Supervisor(options, plan, Path(private) / "supervisor")
         with (
             _supervised(options, supervisor, mark) as supervisord,
-            _connected(options.router, supervisord) as bus,
+            _connected(options, supervisord) as bus,
         ):
             _await_alive(bus, options, plan, supervisor)
             yield Platform(options, bus, supervisor)
@@ -186,12 +188,12 @@ def _who_listens(port: int) -> str:
 
 
 @contextlib.contextmanager
-def _connected(endpoint: str, supervisord: subprocess.Popen[bytes]) -> Iterator[Bus]:
+def _connected(options: PlatformOptions, supervisord: subprocess.Popen[bytes]) -> Iterator[Bus]:
     deadline_s = clock.monotonic_s() + _START_TIMEOUT_S
     bus: Bus | None = None
     while bus is None:
         try:
-            bus = ZenohBus.connect(endpoint, wait_for_router=False)
+            bus = ZenohBus.connect(options.router, False, identity_dir(options, ServiceKind.PLATFORM))
         except Unavailable:
             if supervisord.poll() is not None or clock.monotonic_s() > deadline_s:
                 raise

@@ -14,6 +14,7 @@ from xmlrpc.client import Error, Fault, ServerProxy
 from supervisor.states import RUNNING_STATES, ProcessStates
 from supervisor.xmlrpc import SupervisorTransport
 
+from mart.platform.run.identities import identity_dir
 from mart.platform.run.plan import (
     PlatformOptions,
     Process,
@@ -183,7 +184,12 @@ redirect_stderr=true
 stdout_logfile={_escaped(_log_path(options, process.name))}
 stdout_logfile_maxbytes=10MB
 stdout_logfile_backups=2
-"""
+{_environment(options, process)}"""
+
+
+def _environment(options: PlatformOptions, process: Process) -> str:
+    folder = identity_dir(options, process.kind)
+    return "" if folder is None else f'environment=MART_BUS_IDENTITY_DIR="{_escaped(folder)}"\n'
 
 
 def _escaped(value: Path | str) -> str:

@@ -7,27 +7,27 @@ from __future__ import annotations
 
 import contextlib
 import json
-import logging
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from functools import partial
+from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
 import zenoh
 import zenoh.ext
 
-from mart.protocol import clock
-from mart.protocol.errors import Unavailable
+from mart.protocol import clock, keys
+from mart.protocol.errors import MartError, Unavailable
 from mart.protocol.keys import Priority, Topic
 from mart.runtime.bus import zenoh_settings
+from mart.runtime.bus.admission import admitted_settings, confirm_rights, require_rights
 from mart.runtime.bus.base import AliveHandler, Bus, Closable, Handler, Publisher, RequestHandler, Sample
+from mart.runtime.bus.log_failures import log_failures
 from mart.runtime.bus.repetitions import Repetitions
 from mart.runtime.bus.zenoh_settings import Settings
-from mart.runtime.bus_secret import admitted_with
-
-_log = logging.getLogger(__name__)
+from mart.runtime.certificates.identity import BusIdentity
 
 _HEARTBEAT_S = 0.5  # how soon a subscriber learns that it missed the newest, where nothing follows it
 _ASKED_BACK_S = 120.0  # by a subscriber that is new
@@ -49,15 +49,26 @@ class ZenohBus(Bus):
         self._declared: set[_Declared] = set()  # a handle that nobody holds would undeclare itself
 
     @classmethod
-    def connect(cls, endpoint: str, wait_for_router: bool = True) -> ZenohBus:
+    def connect(
+        cls, endpoint: str, wait_for_router: bool = True, identity_dir: Path | None = None
+    ) -> ZenohBus:
         """A client of the router at `endpoint` ("tcp/127.0.0.1:7447"), with the secret that `bus_secret` finds for it.
 
         Raises Unavailable where no router answers and `wait_for_router` is False, else keeps trying; Forbidden where
-        the router admits only who knows its secret, and none that is known here is that.
+        the router admits only who knows its secret, or shows a certificate of its own, and none here is that.
+
+        identity_dir: the folder of the certificate to show, where it is not the one of `identity_for`.
         """
-        secret = admitted_with(endpoint, partial(_opens, endpoint), wait_for_router=wait_for_router)
-        settings = zenoh_settings.client(endpoint, wait_for_router) | zenoh_settings.identity(secret)
-        return cls(_open(settings, endpoint))
+        shown = admitted_settings(
+            endpoint, partial(_opens, endpoint), identity_dir, wait_for_router=wait_for_router
+        )
+        bus = cls(_open(zenoh_settings.client(endpoint, wait_for_router) | shown, endpoint))
+        try:
+            require_rights(endpoint, bus)
+        except MartError:
+            bus.close()
+            raise
+        return bus
 
     @classmethod
     def route(cls, endpoint: str, secret: bytes | None = None) -> ZenohBus:
@@ -71,6 +82,16 @@ class ZenohBus(Bus):
             users.write(zenoh_settings.users(secret))
             users.flush()
             return cls(_open(zenoh_settings.router(endpoint, users.name), endpoint), routes=True)
+
+    @classmethod
+    def route_secured(cls, endpoint: str, identity: BusIdentity, access: dict[str, Any]) -> ZenohBus:
+        """A router that lets in who shows a certificate of the same authority, and gives each the rights in `access`.
+
+        access: Zenoh's access control, see `access_control`. Raises Unavailable where the address is taken.
+        """
+        bus = cls(_open(zenoh_settings.secured_router(endpoint, identity, access), endpoint), routes=True)
+        bus.serve(keys.admission(), confirm_rights)
+        return bus
 
     def publisher(self, topic: Topic) -> Publisher:
         control = zenoh.CongestionControl.BLOCK if topic.must_arrive else zenoh.CongestionControl.DROP
@@ -103,10 +124,10 @@ class ZenohBus(Bus):
             history = zenoh.ext.HistoryConfig(max_age=_ASKED_BACK_S)
             return self._keep(
                 zenoh.ext.declare_advanced_subscriber(
-                    self._session, key_expression, _logged(deliver), recovery=recovery, history=history
+                    self._session, key_expression, log_failures(deliver), recovery=recovery, history=history
                 )
             )
-        return self._keep(self._session.declare_subscriber(key_expression, _logged(deliver)))
+        return self._keep(self._session.declare_subscriber(key_expression, log_failures(deliver)))
 
     def serve(self, topic: Topic, handler: RequestHandler) -> Closable:
         repetitions = Repetitions()
@@ -118,7 +139,7 @@ class ZenohBus(Bus):
             if request is not None:
                 handler(request)
 
-        return self._keep(self._session.declare_queryable(topic.key, _logged(deliver)))
+        return self._keep(self._session.declare_queryable(topic.key, log_failures(deliver)))
 
     def query(self, topic: Topic, payload: bytes, timeout_s: float) -> bytes:
         until_s = clock.monotonic_s() + timeout_s
@@ -177,7 +198,9 @@ class ZenohBus(Bus):
             handler(key, alive)
 
         watch = self._keep(
-            self._session.liveliness().declare_subscriber(alive_expression, _logged(deliver), history=True)
+            self._session.liveliness().declare_subscriber(
+                alive_expression, log_failures(deliver), history=True
+            )
         )
         self._watched[watch] = present
         return watch
@@ -256,10 +279,10 @@ class _Declared:
             self._handle.undeclare()
 
 
-def _opens(endpoint: str, secret: bytes | None) -> bool:
-    """Try once to open a session with this secret, and close it."""
+def _opens(endpoint: str, shown: Settings) -> bool:
+    """Try once to open a session with this secret or certificate, and close it."""
     try:
-        _open(zenoh_settings.one_try(endpoint) | zenoh_settings.identity(secret), endpoint).close()
+        _open(zenoh_settings.one_try(endpoint) | shown, endpoint).close()
     except Unavailable:
         return False
     return True
@@ -281,15 +304,3 @@ def _open(settings: Settings, endpoint: str) -> zenoh.Session:
 
 def _bytes(sent: zenoh.ZBytes | None) -> bytes:
     return b"" if sent is None else sent.to_bytes()
-
-
-def _logged(deliver: Callable[[Any], None]) -> Callable[[Any], None]:
-    """Zenoh drops what a callback raises; a handler's failure belongs in the log."""
-
-    def deliver_logged(item: Any) -> None:
-        try:
-            deliver(item)
-        except Exception:  # noqa: BLE001 - logged whole; the next sample must still be delivered
-            _log.exception("A bus handler failed")
-
-    return deliver_logged

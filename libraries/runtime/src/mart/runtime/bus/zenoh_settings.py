@@ -20,6 +20,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from mart.runtime.certificates.identity import BusIdentity
+
 Settings = dict[str, Any]  # path in Zenoh's configuration → value
 
 _LEASE_MS = 4_000
@@ -77,3 +79,28 @@ def identity(secret: bytes | None) -> Settings:
     if secret is None:
         return {}
     return {f"{_AUTHENTICATION}/user": _USER, f"{_AUTHENTICATION}/password": secret.decode()}
+
+
+def shown(identity: BusIdentity) -> Settings:
+    """Return what a client has besides that shows its certificate, and believes routers of its own authority alone."""
+    return {"transport/link/tls": {**_tls(identity), **_certificate("connect", identity)}}
+
+
+def secured_router(endpoint: str, identity: BusIdentity, access: dict[str, Any]) -> Settings:
+    """Return what a router at `endpoint` has besides that knows its parts by certificates; `access`: their rights."""
+    tls = {**_tls(identity), **_certificate("listen", identity), **_certificate("connect", identity)}
+    return {**router(endpoint), "transport/link/tls": tls, "access_control": access}
+
+
+def _tls(identity: BusIdentity) -> dict[str, Any]:
+    return {
+        "root_ca_certificate": str(identity.authority_path),
+        "enable_mtls": True,
+        "verify_name_on_connect": True,
+        "close_link_on_expiration": True,
+    }
+
+
+def _certificate(word: str, identity: BusIdentity) -> dict[str, str]:
+    """One file holds both, so that a renewal replaces them in one step."""
+    return {f"{word}_private_key": str(identity.path), f"{word}_certificate": str(identity.path)}
