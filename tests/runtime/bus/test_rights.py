@@ -121,7 +121,7 @@ def test_a_part_announces_itself_alone(parts: dict[BusPart, ZenohBus]) -> None:
 
 
 def _asked_back(bus: ZenohBus, key: str, within_s: float) -> list[bytes]:
-    """Return what subscriptions get of what was said before; the publisher's own news may reach the router after them."""
+    """Return what subscriptions get of what was said before; that it is kept may reach the router after them."""
     heard: list[bytes] = []
     deadline_s = clock.monotonic_s() + within_s
     while not heard and clock.monotonic_s() < deadline_s:

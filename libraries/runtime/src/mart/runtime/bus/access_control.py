@@ -2,8 +2,8 @@
 
 Tried with Zenoh 1.10.2. A router filters what comes in from a part (ingress) and what goes out to it (egress), and both
 need rules: a publisher that is not told of subscribers sends nothing, a querier that is not told of services asks
-nobody. What an advanced publisher keeps for those who missed it is below `@adv` of its key. Of a session's own messages
-to itself the router knows nothing.
+nobody. What an advanced publisher keeps for those who missed it is asked for below `@adv` of its key, and replied under
+the key itself. Of a session's own messages to itself the router knows nothing.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ def _rules(part: str, rights: Rights) -> list[Rule]:
     said, heard = list(rights.says), list(rights.hears)
     said_before, heard_before = ([f"{key}/@adv/**" for key in named] for named in (said, heard))
     found = [
-        _rule("in", said, "put", "delete"),
+        _rule("in", said, "put", "delete", "reply"),
         _rule("out", said, "declare_subscriber"),
         _rule("in", said_before, "put", "declare_queryable", "reply", "liveliness_token"),
         _rule("out", said_before, "declare_subscriber", "query"),
         _rule("in", heard, "declare_subscriber"),
-        _rule("out", heard, "put", "delete"),
+        _rule("out", heard, "put", "delete", "reply"),
         _rule("in", heard_before, "declare_subscriber", "query", *_WATCH),
         _rule("out", heard_before, "put", "declare_queryable", "reply", "liveliness_token"),
         _rule("in", list(rights.serves), "declare_queryable", "reply"),
