@@ -58,7 +58,7 @@ _DRIVE = Rights((keys.EVERY_COMMAND,), _ROOM, (), (keys.EVERY_SEAT, keys.EVERY_E
 
 RIGHTS: dict[BusPart, Rights] = {
     BusPart.PLATFORM: Rights(
-        hears=(keys.EVERY_STATUS, keys.EVERY_EVENT),
+        hears=_ROOM,
         serves=(keys.EVERY_ROOMS,),
         asks=(keys.EVERY_SEAT, keys.EVERY_EPISODE),
         announces=(ServiceKind.PLATFORM,),

@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING
 from mart.operators.room_watch import RoomWatch
 from mart.platform.collect.browser import open_operator_page
 from mart.platform.collect.web_client import WebClient
-from mart.platform.run.plan import environment
+from mart.platform.run.identities import environment_of_kind
 from mart.platform.run.running import Platform
 from mart.protocol import clock
 from mart.protocol.errors import Forbidden, Unavailable
 from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
+from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.child_process import MART, start_child, stop_child
 
 if TYPE_CHECKING:
@@ -128,7 +129,8 @@ def _last_line(log: Path) -> str:
 @contextlib.contextmanager
 def _running(platform: Platform, command: Sequence[str], name: str) -> Iterator[subprocess.Popen[bytes]]:
     with (platform.logs_dir / f"{name}.log").open("ab") as log:
-        process = start_child([MART, *command], log, environment(platform.options))
+        kind = ServiceKind(command[0])
+        process = start_child([MART, *command], log, environment_of_kind(platform.options, kind))
     try:
         yield process
     finally:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mart.platform.run.plan import PlatformOptions
+from mart.platform.run.plan import PlatformOptions, environment
 from mart.protocol.rights import part_of
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.certificates.identity import is_secured
@@ -24,6 +24,12 @@ def identity_dir(options: PlatformOptions, kind: ServiceKind) -> Path | None:
     """Return the folder of the certificate that a process of this kind shows; None where it shows none."""
     part = part_of(kind)
     return _folder(options) / part if part and is_secured(options.router) else None
+
+
+def environment_of_kind(options: PlatformOptions, kind: ServiceKind) -> dict[str, str]:
+    """Return what a process of this kind is started with, its certificate included."""
+    folder = identity_dir(options, kind)
+    return environment(options) | ({} if folder is None else {"MART_BUS_IDENTITY_DIR": str(folder)})
 
 
 def _folder(options: PlatformOptions) -> Path:

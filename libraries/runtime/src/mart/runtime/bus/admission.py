@@ -41,15 +41,17 @@ def admitted_settings(
 def require_rights(endpoint: str, bus: Bus) -> None:
     """Ask a router that knows its parts by certificates whether it gives this one its rights: without, all is silent.
 
-    Raises Forbidden where it does not, and Conflict where it speaks another version of the wire.
+    Closes the bus, and raises Forbidden where it does not, and Conflict where it speaks another version of the wire.
     """
     if not is_secured(endpoint):
         return
     try:
         version = bus.query(keys.admission(), b"", _ADMITTED_WITHIN_S)
     except Unavailable as error:
+        bus.close()
         raise Forbidden(not_admitted(endpoint)) from error
     if version != _VERSION:
+        bus.close()
         raise Conflict(other_version(endpoint, version, BUS_WIRE_VERSION))
 
 

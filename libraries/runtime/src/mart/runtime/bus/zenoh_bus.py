@@ -19,7 +19,7 @@ import zenoh
 import zenoh.ext
 
 from mart.protocol import clock, keys
-from mart.protocol.errors import MartError, Unavailable
+from mart.protocol.errors import Unavailable
 from mart.protocol.keys import Priority, Topic
 from mart.runtime.bus import zenoh_settings
 from mart.runtime.bus.admission import admitted_settings, confirm_rights, require_rights
@@ -63,11 +63,7 @@ class ZenohBus(Bus):
             endpoint, partial(_opens, endpoint), identity_dir, wait_for_router=wait_for_router
         )
         bus = cls(_open(zenoh_settings.client(endpoint, wait_for_router) | shown, endpoint))
-        try:
-            require_rights(endpoint, bus)
-        except MartError:
-            bus.close()
-            raise
+        require_rights(endpoint, bus)
         return bus
 
     @classmethod
@@ -85,10 +81,7 @@ class ZenohBus(Bus):
 
     @classmethod
     def route_secured(cls, endpoint: str, identity: BusIdentity, access: dict[str, Any]) -> ZenohBus:
-        """A router that lets in who shows a certificate of the same authority, and gives each the rights in `access`.
-
-        access: Zenoh's access control, see `access_control`. Raises Unavailable where the address is taken.
-        """
+        """The same that lets in who shows a certificate of its authority, with the rights in `access` (see there)."""
         bus = cls(_open(zenoh_settings.secured_router(endpoint, identity, access), endpoint), routes=True)
         bus.serve(keys.admission(), confirm_rights)
         return bus
