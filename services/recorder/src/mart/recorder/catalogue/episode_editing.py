@@ -120,9 +120,7 @@ def redo(row: LabelledEpisode, now_ns: int, by: str = "") -> EditedEpisode:
 def _act(row: LabelledEpisode, said: Iterable[Said], now_ns: int, by: str) -> EditedEpisode:
     stamp = next_stamp(_labels_of(row), now_ns)
     act = [Label(row.path, kind, value, stamp, by=by) for kind, value in dict.fromkeys(said)]
-    if act:
-        labels.append(labels.root_of(row.file_path), act)
-    return as_it_is(row, stamp if act else 0)
+    return as_it_is(row, labels.append(labels.root_of(row.file_path), act))
 
 
 def _labels_of(row: LabelledEpisode) -> list[Label]:

@@ -6,6 +6,7 @@ rows so far are answered.
 
 from __future__ import annotations
 
+import gc
 import logging
 import threading
 from contextlib import closing
@@ -75,6 +76,8 @@ class LiveListing:
     def _read(self) -> None:
         try:
             by_catalogue(self._root, self._read_by)
+            if not self._is_known:
+                gc.freeze()  # rows stay: without it the collector goes through all of them, in the middle of requests
             self._is_known = True
         except Exception:  # noqa: BLE001 - logged whole; the next request tries again
             _log.exception("%s could not be listed; what was known of it is answered", self._root)
