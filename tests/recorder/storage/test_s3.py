@@ -79,7 +79,7 @@ def test_two_who_pull_at_once_into_one_folder_get_each_file_and_each_word_once(
     endpoint: str, tmp_path: Path
 ) -> None:
     source, out = tmp_path / "source", tmp_path / "out"
-    episodes = [write_episode(source, ticks=10, room=f"room-{number}").path for number in range(4)]
+    episodes = [write_episode(source, ticks=10, number=number + 1).path for number in range(4)]
     for number, episode in enumerate(episodes):
         labels.say(episode, LabelKind.NOTE, f"note {number}", at_ns=100 - number)
     push(to_push([source]), Store.open("s3://lab/pulled", endpoint), lambda: None)
