@@ -99,16 +99,21 @@ class LabelledEpisode(BaseModel):
         return EpisodeFile.open(self.file_path)
 
     def segments(
-        self, task: Task | None = None, control_hz: float | None = None, skip_idle_s: float | None = None
+        self,
+        task: Task | None = None,
+        control_hz: float | None = None,
+        skip_idle_s: float | None = None,
+        *,
+        with_integration_states: bool = True,
     ) -> list[EpisodeData]:
         """Read the episode into arrays as people have edited it: a segment for each motion that is left, in order.
 
-        task, control_hz: as for `EpisodeFile.arrays`. skip_idle_s: leave out, too, every stretch of at least so many
+        task, control_hz, with_integration_states: as for `EpisodeFile.arrays`. skip_idle_s: leave out, too, every stretch of at least so many
         seconds in which no arm moves; None leaves out what people did alone.
         Raises what `EpisodeFile.arrays` raises, and InvalidInput, naming it, where nothing is left of it.
         """
         file = self.open()
-        whole = file.arrays(task)
+        whole = file.arrays(task, with_integration_states=with_integration_states)
         skips = () if skip_idle_s is None else idle_ranges(whole, skip_idle_s)
         found = edited(whole, self.edits.with_skips(skips))
         if not found:

@@ -11,7 +11,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TypeVar
 
-from mart.episodes.arrays import EpisodeData, arrays_for_task, arrays_from_states
+from mart.episodes.arrays import EpisodeData, arrays_of
 from mart.episodes.contents import read_attachments, read_messages, read_metadata, require_intact_data
 from mart.episodes.foreign import foreign_kind
 from mart.episodes.resampling import at_control_hz
@@ -119,20 +119,27 @@ class EpisodeFile:
             except InvalidInput as error:
                 raise Corrupt(f"{self.path} holds a state that cannot be read: {error}") from error
 
-    def arrays(self, task: Task | None = None, control_hz: float | None = None) -> EpisodeData:
+    def arrays(
+        self,
+        task: Task | None = None,
+        control_hz: float | None = None,
+        *,
+        with_integration_states: bool = True,
+    ) -> EpisodeData:
         """Read the whole episode into numpy arrays.
 
         task: whose observations and shapes are wanted; None takes the one that the file names, or, where the catalogue
         has no such task, every observation of the file as it is.
         control_hz: ticks a second that are wanted, at most those of the recording (`mart.episodes.resampling`); None
         takes every tick.
+        with_integration_states: whether MuJoCo's states are wanted, too, which are nine tenths of all: of an hour of
+        three arms 343 MB.
         Raises Corrupt where the file is damaged and InvalidInput, naming it, where ticks, arms or observations are
         missing, a number is NaN, or the rate cannot be had.
         """
         known = self._known_task() if task is None else task
-        states = list(self.states())
         try:
-            data = arrays_from_states(states) if known is None else arrays_for_task(states, known)
+            data = arrays_of(self.states(), known, with_integration_states=with_integration_states)
         except InvalidInput as error:
             raise InvalidInput(f"{self.path} cannot be read into arrays: {error}") from error
         return self.resampled(data, control_hz, known)

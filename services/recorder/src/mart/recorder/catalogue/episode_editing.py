@@ -76,7 +76,8 @@ def idle_skips(row: LabelledEpisode, min_s: float) -> list[Said]:
     Raises InvalidInput for less seconds than idle time can have, and where ticks or poses are missing.
     """
     edits = as_it_is(row).episode.edits
-    found = idle_ranges(arrays_from_states([*row.open().states()]), min_s)
+    states = row.open().states()
+    found = idle_ranges(arrays_from_states(states, with_integration_states=False), min_s)
     left = edits.kept(row.ticks)
     return [
         (LabelKind.SKIP, range_text(one)) for one in found if edits.with_skips([one]).kept(row.ticks) < left
