@@ -126,7 +126,7 @@ def _write_tick(file: EpisodeWriter, episode: EpisodeAccumulator, state: State, 
         head = b"\x00\x00\x00\x01" + (b"\x41" if tick % _KEY_EVERY else b"\x67")
         video = synthetic.video(tick, is_key=False, data=head + packets.of(tick, index))
         file.add(video_entry(arm, video, codec.encode(video), at_ns))
-    episode.add_state(state)
+    episode.add_state(state, at_ns)
     for entry in state_entries(state, codec.encode(state), at_ns, synthetic.TASK):
         file.add(entry)
     if tick % _FLUSH_EVERY == 0:

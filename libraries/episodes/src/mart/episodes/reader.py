@@ -16,6 +16,7 @@ from mart.episodes.contents import read_attachments, read_messages, read_metadat
 from mart.episodes.foreign import foreign_kind
 from mart.episodes.resampling import at_control_hz
 from mart.episodes.scan import BoundedFile, ForeignFile, corruption
+from mart.episodes.steady_time import SteadyTime
 from mart.episodes.summary import read_summary
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
@@ -113,11 +114,23 @@ class EpisodeFile:
 
     def states(self) -> Iterator[State]:
         """Iterate over the states in the order of the file, the one after the reset first. Raises Corrupt."""
+        return (state for state, _ in self._states())
+
+    def _states(self) -> Iterator[tuple[State, int]]:
+        """Iterate over the states, each with when it came (Unix time)."""
         for message in self.messages(STATE):
             try:
-                yield codec.decode(State, message.payload)
+                yield codec.decode(State, message.payload), message.arrived_ns
             except InvalidInput as error:
                 raise Corrupt(f"{self.path} holds a state that cannot be read: {error}") from error
+
+    def steady_states(self) -> Iterator[State]:
+        """Iterate as `states` does, with `fired_ns` and `stepped_ns` as if the room's clock had not been set meanwhile."""
+        fired, stepped = SteadyTime(), SteadyTime()
+        for state, arrived_ns in self._states():
+            state.stamps.fired_ns = max(0, fired.steady_ns(state.stamps.fired_ns, arrived_ns))
+            state.stamps.stepped_ns = max(0, stepped.steady_ns(state.stamps.stepped_ns, arrived_ns))
+            yield state
 
     def arrays(
         self,

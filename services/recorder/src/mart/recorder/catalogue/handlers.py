@@ -230,7 +230,7 @@ class CatalogueHandlers:
 
 def _each_tick_once(file: EpisodeFile) -> Iterator[State]:
     newest = -1
-    for state in file.states():
+    for state in file.steady_states():
         if state.tick > newest:
             newest = state.tick
             yield state
