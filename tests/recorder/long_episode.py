@@ -11,9 +11,19 @@ import numpy as np
 from mart.episodes.mcap_entries import command_entry, event_entry, state_entries, video_entry
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol import codec
-from mart.protocol.messages import OPERATOR_HUMAN, ArmState, Model, Numerics, PoseMessage, RolloutReply, State
-from mart.protocol.messages import RolloutRequest as Request
-from mart.protocol.messages import Seat
+from mart.protocol.messages import (
+    OPERATOR_HUMAN,
+    ArmState,
+    Command,
+    Event,
+    Model,
+    Numerics,
+    PoseMessage,
+    RolloutReply,
+    RolloutRequest,
+    Seat,
+    State,
+)
 from mart.protocol.state_digest import state_digest
 from mart.protocol.tasks import get_task
 from mart.recorder.record.episode_accumulator import EpisodeAccumulator
@@ -37,12 +47,10 @@ MODEL = Model(
 
 def write_long_episode(root: Path, minutes: float) -> SavedEpisode:
     """Write an episode as a recorder does, verified and complete; memory must not grow with its length."""
-    states = _states(round(minutes * 60 * HZ))
+    states = long_states(round(minutes * 60 * HZ))
     first = next(states)
     facts = RoomFacts(synthetic.ROOM)
-    beginning = synthetic.started()
-    del beginning.episode_started.seats[:]
-    beginning.episode_started.seats.extend(Seat(arm=arm, operator=OPERATOR_HUMAN, epoch=3) for arm in ARMS)
+    beginning = beginning_of(synthetic.ROOM)
     facts.learn_event(beginning)
     facts.learn_model(MODEL)
     episode = EpisodeAccumulator(first)
@@ -51,7 +59,7 @@ def write_long_episode(root: Path, minutes: float) -> SavedEpisode:
     file.describe(facts.record())
     file.attach_model(MODEL, synthetic.wall_ns(0))
     file.add(event_entry(beginning, codec.encode(beginning), beginning.wall_ns))
-    packets = _Packets()
+    packets = Packets()
     last = first
     _write_tick(file, episode, first, packets)
     for state in states:
@@ -63,7 +71,22 @@ def write_long_episode(root: Path, minutes: float) -> SavedEpisode:
     return finalize(file, episode, facts, root, lambda one, room: verify(one, room, replica), repaired=False)
 
 
-def replica(request: Request) -> RolloutReply:
+def beginning_of(room: str) -> Event:
+    """The event by which such an episode begins."""
+    event = synthetic.started()
+    event.room = room
+    del event.episode_started.seats[:]
+    event.episode_started.seats.extend(Seat(arm=arm, operator=OPERATOR_HUMAN, epoch=3) for arm in ARMS)
+    return event
+
+
+def commands_before(tick: int, arm: str) -> list[Command]:
+    """The commands of one arm that come before a tick."""
+    begin = max(0, tick - 1) * COMMANDS_A_TICK
+    return [synthetic.command(begin + number + 1, arm) for number in range(COMMANDS_A_TICK if tick else 0)]
+
+
+def replica(request: RolloutRequest) -> RolloutReply:
     """Step the toy world of this size again."""
     asked = request.resimulate
     actions = np.frombuffer(asked.actions, "<f8").reshape(-1, asked.arms, 7)
@@ -74,14 +97,15 @@ def replica(request: Request) -> RolloutReply:
     return RolloutReply(state_digests=digests, numerics=Numerics(processor="toy", fingerprint="aa"))
 
 
-def _states(ticks: int) -> Iterator[State]:
+def long_states(ticks: int, room: str = synthetic.ROOM) -> Iterator[State]:
+    """The states of an episode of three arms, with observations and integration states of real size."""
     observations = {one.name: int(np.prod(one.shape)) for one in get_task(synthetic.TASK, len(ARMS)).observations}
     world = synthetic.RESET
     for tick in range(ticks + 1):
         actions = [synthetic.action(tick, arm) for arm in range(len(ARMS))]
         if tick:
             world = synthetic.step(world, np.array(actions))
-        state = synthetic.states(0, first_tick=tick)[0]
+        state = synthetic.states(0, first_tick=tick, room=room)[0]
         state.episode_tick, state.sim_time_s = tick, tick / HZ
         state.integration_state = world * _STATE_REPEATS
         del state.arms[:]
@@ -104,27 +128,27 @@ def _arm(tick: int, index: int, arm: str, action: list[float]) -> ArmState:
     )
 
 
-class _Packets:
-    """Bytes that nothing packs smaller, as those of encoded video are."""
+class Packets:
+    """Hold bytes that nothing packs smaller, as those of encoded video are."""
 
     def __init__(self) -> None:
         self._bytes = random.Random(1).randbytes(1 << 20)
 
     def of(self, tick: int, arm: int) -> bytes:
+        """The packet of a picture; its units have the right types."""
+        head = b"\x00\x00\x00\x01" + (b"\x41" if tick % _KEY_EVERY else b"\x67")
         size = _PACKET_BYTES[tick % _KEY_EVERY > 0]
         at = (tick * 7919 + arm * 104729) % (len(self._bytes) - size)
-        return self._bytes[at : at + size]
+        return head + self._bytes[at : at + size]
 
 
-def _write_tick(file: EpisodeWriter, episode: EpisodeAccumulator, state: State, packets: _Packets) -> None:
+def _write_tick(file: EpisodeWriter, episode: EpisodeAccumulator, state: State, packets: Packets) -> None:
     at_ns, tick = synthetic.wall_ns(state.tick), state.episode_tick
     for index, arm in enumerate(ARMS):
-        for number in range(COMMANDS_A_TICK):
-            command = synthetic.command(max(0, (tick - 1) * COMMANDS_A_TICK) + number + 1, arm)
+        for command in commands_before(tick, arm):
             episode.add_command(arm, command)
             file.add(command_entry(arm, command, codec.encode(command), at_ns))
-        head = b"\x00\x00\x00\x01" + (b"\x41" if tick % _KEY_EVERY else b"\x67")
-        video = synthetic.video(tick, is_key=False, data=head + packets.of(tick, index))
+        video = synthetic.video(tick, is_key=False, data=packets.of(tick, index))
         file.add(video_entry(arm, video, codec.encode(video), at_ns))
     episode.add_state(state, at_ns)
     for entry in state_entries(state, codec.encode(state), at_ns, synthetic.TASK):
