@@ -19,12 +19,12 @@ import time
 from pathlib import Path
 
 import numpy as np
+from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 from report import Bar, report, spread
 from support.bus_processes import await_alive, child
 from support.peers import running as peer
 from support.played_rooms import PlayedRoom, play
 
-from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 from mart.episodes.mcap_entries import McapEntry
 from mart.episodes.reader import EpisodeFile
 from mart.episodes.writer import EpisodeWriter
@@ -78,7 +78,7 @@ def record(seconds: float) -> dict[str, float]:
         late_s = play(rooms, seconds, watch.look)
         saved.wait(ROOMS)
         watch.look()
-        lost = {kind: 0 for kind in rooms[0].sent}
+        lost = dict.fromkeys(rooms[0].sent, 0)
         for room in rooms:
             for kind, count in lost_of(room, folder).items():
                 lost[kind] += count
@@ -86,7 +86,7 @@ def record(seconds: float) -> dict[str, float]:
         lags_s = [lag_s for room in rooms for lag_s in room.lag_s]
         return {
             "seconds": seconds,
-            "messages_a_second": sum(sum(room.sent.values()) for room in rooms) / seconds,
+            "messages_a_second": sum(room.messages for room in rooms) / seconds,
             **{f"lost_{kind}": count for kind, count in lost.items()},
             "cores_first_third": watch.cores(0, third),
             "cores_last_third": watch.cores(2 * third, 3 * third),
@@ -121,19 +121,23 @@ class Saved:
 
 def lost_of(room: PlayedRoom, folder: Path) -> dict[str, int]:
     """Return of each kind how many messages that were sent are in no file."""
-    found: dict[str, set[tuple[str, int]]] = {kind: set() for kind in room.sent}
+    found = set[tuple[str, int]]()
     kinds = {STATE: "states"}
     kinds |= {command_topic(arm): "commands" for arm in ARMS} | {video_topic(arm): "pictures" for arm in ARMS}
     for path in folder.rglob(f"{room.name}-*.mcap"):
         for message in EpisodeFile.open(path).messages(*kinds):
             number = message.sent_ns if kinds[message.topic] == "pictures" else message.sequence
-            found[kinds[message.topic]].add((message.topic, number))
-    return {kind: count - len(found[kind]) for kind, count in room.sent.items()}
+            found.add((message.topic, number))
+    return {kind: len(sent - found) for kind, sent in room.sent.items()}
 
 
 def write_beside(seconds: float) -> tuple[dict[str, float], dict[str, float]]:
     """Write the messages of one room by turns with `mcap` and with foxglove-sdk; returns ours, and the peer's."""
-    schemas = {"mart.v1.State": State, "mart.v1.Command": Command, "foxglove.CompressedVideo": CompressedVideo}
+    schemas = {
+        "mart.v1.State": State,
+        "mart.v1.Command": Command,
+        "foxglove.CompressedVideo": CompressedVideo,
+    }
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         source = write_long_episode(folder / "source", seconds / 60).path
@@ -173,7 +177,8 @@ def main() -> None:
     written, theirs = write_beside(seconds)
     grown_mb = metrics["memory_at_the_end_mb"] - metrics["memory_after_a_third_mb"]
     bars = [
-        Bar.at_most("lost messages", sum(metrics[f"lost_{kind}"] for kind in ("states", "commands", "pictures")), 0),
+        Bar.at_most("lost states and commands", metrics["lost_states"] + metrics["lost_commands"], 0),
+        Bar.at_most("lost pictures", metrics["lost_pictures"], 0),
         Bar.at_most("memory grown after the first third, MB", grown_mb, MOST_GROWTH_MB),
         Bar.at_most("worst stall, s", metrics["worst_stall_ms"] / 1e3, MOST_LAG_S),
     ]

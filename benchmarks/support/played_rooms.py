@@ -8,6 +8,7 @@ from itertools import islice
 
 from mart.protocol import clock, codec, keys
 from mart.protocol.messages import OUTCOME_SUCCESS, Event, RecordingReport
+from mart.protocol.recording import STATE, command_topic, video_topic
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus import Bus, Sample
 from tests.recorder import synthetic
@@ -17,11 +18,19 @@ _AHEAD = 40  # states that are made beforehand
 
 
 class PlayedRoom:
-    """Play one room of three arms. `lag_s`: of each report of the recorder, how old the oldest state was that it lacked."""
+    """Play one room of three arms.
+
+    lag_s: of each report of the recorder, how old the oldest state was that it lacked.
+    sent: by kind each message from the first second of the episode on, as its topic in the file and its number; what
+    came before, a recorder may have heard before it knew that the room was alive. messages: how many there were in all.
+    """
 
     def __init__(self, name: str, bus: Bus, video_bus: Bus) -> None:
         self.name, self.lag_s = name, list[float]()
-        self.sent = {"states": 0, "commands": 0, "pictures": 0}
+        self.sent: dict[str, set[tuple[str, int]]] = {
+            kind: set() for kind in ("states", "commands", "pictures")
+        }
+        self.messages = 0
         self._bus, self._packets = bus, Packets()
         self._state, self._event = bus.publisher(keys.state(name)), bus.publisher(keys.event(name))
         self._commands = {arm: bus.publisher(keys.command(name, arm)) for arm in ARMS}
@@ -45,24 +54,29 @@ class PlayedRoom:
             for command in commands_before(tick, arm):
                 command.stamps.sent_ns = now_ns
                 self._commands[arm].put(codec.encode(command))
-                self.sent["commands"] += 1
+                self._note("commands", tick, command_topic(arm), command.sequence)
             video = synthetic.video(0, is_key=False, data=self._packets.of(tick, index))
             video.frame_id = arm
             video.timestamp.FromNanoseconds(now_ns)
             self._videos[arm].put(codec.encode(video))
-            self.sent["pictures"] += 1
+            self._note("pictures", tick, video_topic(arm), now_ns)
         for name in ("due_ns", "fired_ns", "stepped_ns", "sent_ns"):
             setattr(state.stamps, name, now_ns)
         self._sent_s.append(time.monotonic())
         self._state.put(codec.encode(state))
-        self.sent["states"] += 1
+        self._note("states", tick, STATE, state.tick)
         self._ready += islice(self._states, 1)
 
     def end(self) -> None:
         """Say that the episode is over."""
-        event = synthetic.ended(self.sent["states"] - 1, outcome=OUTCOME_SUCCESS)
+        event = synthetic.ended(len(self._sent_s) - 1, outcome=OUTCOME_SUCCESS)
         event.room = self.name
         self._tell(event)
+
+    def _note(self, kind: str, tick: int, topic: str, number: int) -> None:
+        self.messages += 1
+        if tick >= HZ:
+            self.sent[kind].add((topic, number))
 
     def _tell(self, event: Event) -> None:
         event.wall_ns = clock.wall_ns()

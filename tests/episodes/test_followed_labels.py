@@ -17,8 +17,10 @@ _ABOUT_SEVERAL = [Label(path, LabelKind.JOIN, "good", 2) for path in "acb"]
 LINES = [
     line + b"\n"
     for said in (
-        *([Label(path, LabelKind.NOTE, note, at_ns)] for path, note, at_ns in
-          (("a", "one", 1), ("a", "two", 2), ("b", "six", 3), ("b", "old", 1))),
+        *(
+            [Label(path, LabelKind.NOTE, note, at_ns)]
+            for path, note, at_ns in (("a", "one", 1), ("a", "two", 2), ("b", "six", 3), ("b", "old", 1))
+        ),
         _ABOUT_SEVERAL,
         [Label(path, LabelKind.LEAVE, "good", 4) for path in "ab"],
         [Label("a", LabelKind.UNDO, "2", 5)],

@@ -1,4 +1,4 @@
-"""Two processes say things of one folder at once: nothing is lost, nothing torn, and each act has a stamp of its own."""
+"""Two processes say things of one folder at once: nothing is lost or torn, and each act has a stamp of its own."""
 
 from __future__ import annotations
 

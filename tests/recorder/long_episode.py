@@ -99,7 +99,9 @@ def replica(request: RolloutRequest) -> RolloutReply:
 
 def long_states(ticks: int, room: str = synthetic.ROOM) -> Iterator[State]:
     """The states of an episode of three arms, with observations and integration states of real size."""
-    observations = {one.name: int(np.prod(one.shape)) for one in get_task(synthetic.TASK, len(ARMS)).observations}
+    observations = {
+        one.name: int(np.prod(one.shape)) for one in get_task(synthetic.TASK, len(ARMS)).observations
+    }
     world = synthetic.RESET
     for tick in range(ticks + 1):
         actions = [synthetic.action(tick, arm) for arm in range(len(ARMS))]

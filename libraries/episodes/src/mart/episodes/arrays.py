@@ -87,7 +87,8 @@ class _Columns:
         self._flags, self._success = array("B"), array("B")  # flags: source, engaged, held
         self._sent_ns = array("Q")
         self._done: dict[str, array[int]] = {}
-        self._state_bytes = len(first.integration_state) if with_integration_states else None
+        self._state_bytes = len(first.integration_state)
+        self._keeps_states = with_integration_states
         self._integration_states = bytearray()
         self._last_tick = 0
 
@@ -102,9 +103,9 @@ class _Columns:
         self._add_progress(state)
         self._sim_time_s.append(state.sim_time_s)
         self._sent_ns.append(state.stamps.sent_ns)
-        if self._state_bytes is not None:
-            if len(state.integration_state) != self._state_bytes or self._state_bytes % 8:
-                raise InvalidInput("its integration states are not all of one size.")
+        if len(state.integration_state) != self._state_bytes or self._state_bytes % 8:
+            raise InvalidInput("its integration states are not all of one size.")
+        if self._keeps_states:
             self._integration_states += state.integration_state
         self.count += 1
 
@@ -191,7 +192,5 @@ class _Columns:
         """Return float64[T + 1, *shape]."""
         values = np.frombuffer(self._observations[name])
         if not np.isfinite(values).all():
-            raise InvalidInput(
-                f"the observation {name} holds NaN or infinity; every number must be finite."
-            )
+            raise InvalidInput(f"the observation {name} holds NaN or infinity; every number must be finite.")
         return values.reshape(self.count, *self._shapes[name])

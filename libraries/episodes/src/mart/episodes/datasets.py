@@ -67,7 +67,9 @@ def find(said: Mapping[str, EpisodeLabels], name: str) -> NamedDataSet:
     return known[name]
 
 
-def join(said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int, by: str = "") -> list[Label]:
+def join(
+    said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int, by: str = ""
+) -> list[Label]:
     """Return the labels by which these episodes join; none for those that are in it.
 
     by: who says so, as others see them. Raises InvalidInput for a name that no data set can have.
@@ -79,7 +81,9 @@ def join(said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_
     ]
 
 
-def leave(said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int, by: str = "") -> list[Label]:
+def leave(
+    said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int, by: str = ""
+) -> list[Label]:
     """Return the labels by which these episodes leave; none for those that are not in it."""
     return [
         Label(path, LabelKind.LEAVE, name, at_ns, by=by)

@@ -1,4 +1,4 @@
-"""One episode as numpy arrays: what was seen, what was done then, what came of it (docs/protocol.md, section 3). Pure."""
+"""One episode as numpy arrays: what was seen, what was done then, what came of it (docs/protocol.md, section 3)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-
 
 Rows = NDArray[np.int64] | slice
 

@@ -11,7 +11,6 @@ from typing import Any
 from mart.episodes.edits import EpisodeEdits
 from mart.episodes.label import DROP, EDITS, Label, LabelKind, undone_ns
 
-
 _NO_EDITS = EpisodeEdits()
 
 
@@ -68,9 +67,7 @@ def fold(labels: Iterable[Label]) -> dict[str, EpisodeLabels]:
     for label in labels:
         by_path.setdefault(label.path, []).append(label)
     return {
-        path: reduce(
-            EpisodeLabels.with_label, standing(sorted(said, key=attrgetter("at_ns"))), NOTHING_SAID
-        )
+        path: reduce(EpisodeLabels.with_label, standing(sorted(said, key=attrgetter("at_ns"))), NOTHING_SAID)
         for path, said in by_path.items()
     }
 

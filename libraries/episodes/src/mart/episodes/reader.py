@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import functools
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from mart.episodes.arrays import EpisodeData, arrays_of
 from mart.episodes.contents import read_attachments, read_messages, read_metadata, require_intact_data
@@ -125,7 +128,7 @@ class EpisodeFile:
                 raise Corrupt(f"{self.path} holds a state that cannot be read: {error}") from error
 
     def steady_states(self) -> Iterator[State]:
-        """Iterate as `states` does, with `fired_ns` and `stepped_ns` as if the room's clock had not been set meanwhile."""
+        """Iterate as `states` does, with `fired_ns` and `stepped_ns` as if no clock had been set meanwhile."""
         fired, stepped = SteadyTime(), SteadyTime()
         for state, arrived_ns in self._states():
             state.stamps.fired_ns = max(0, fired.steady_ns(state.stamps.fired_ns, arrived_ns))
@@ -174,6 +177,20 @@ class EpisodeFile:
             return at_control_hz(data, recorded_hz, control_hz, [arm.kind.limits for arm in known.arms])
         except InvalidInput as error:
             raise InvalidInput(f"{self.path} cannot be read into arrays: {error}") from error
+
+    def with_integration_states(self, segments: Sequence[EpisodeData]) -> list[EpisodeData]:
+        """Return parts of this episode that were read without MuJoCo's states with them: those of their ticks alone."""
+        places: dict[int, list[tuple[int, int]]] = {}
+        for number, segment in enumerate(segments):
+            for row, tick in enumerate(segment.ticks.tolist()):
+                places.setdefault(tick, []).append((number, row))
+        filled: list[NDArray[np.float64]] = []
+        for tick, state in enumerate(self.states()):
+            values = np.frombuffer(state.integration_state, "<f8")
+            filled = filled or [np.zeros((len(one.ticks), len(values))) for one in segments]
+            for number, row in places.get(tick, ()):
+                filled[number][row] = values
+        return [replace(one, integration_states=rows) for one, rows in zip(segments, filled, strict=True)]
 
     def messages(self, *topics: str) -> Iterator[RecordedMessage]:
         """Iterate over the messages of these topics, or of all, in the order of the file.

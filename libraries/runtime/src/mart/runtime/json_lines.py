@@ -16,7 +16,11 @@ _TAIL_BYTES = 4096
 _MAX_LINE_BYTES = 16 * 1024 * 1024
 _PATIENCE_S = 10.0
 _RETRY_S = 0.002
-_NO_LOCKS = (errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS)  # of some network folders: one write goes in one piece
+_NO_LOCKS = (
+    errno.ENOLCK,
+    errno.EOPNOTSUPP,
+    errno.ENOSYS,
+)  # of some network folders: one write goes in one piece
 
 
 def append_json_line(path: Path, row: Mapping[str, Any]) -> None:

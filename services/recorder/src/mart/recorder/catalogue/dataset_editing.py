@@ -21,7 +21,7 @@ from mart.protocol.errors import InvalidInput, NotFound
 
 @dataclass(frozen=True)
 class DataSetEdit:
-    """Tell what an act changed. left_out: why → how many. dataset: as it is now. act_ns: undoes it; 0: nothing was done."""
+    """Tell what an act changed. left_out: why → how many. dataset: as it is now. act_ns: undoes it; 0: nothing."""
 
     dataset: NamedDataSet
     changed: int

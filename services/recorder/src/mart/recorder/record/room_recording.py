@@ -79,7 +79,10 @@ class RoomRecording:
     def _steady_ns(self, arrived_ns: int, now_s: float) -> int:
         """Return when something came: never before what came before it into an open file, whatever the clock does."""
         if not self._files:
-            self._arrivals, self._newest_ns = SteadyTime(), 0  # a clock that was set right is right from here on
+            self._arrivals, self._newest_ns = (
+                SteadyTime(),
+                0,
+            )  # a clock that was set right is right from here on
         steady_ns = self._arrivals.steady_ns(arrived_ns, round(now_s * 1e9))
         self._newest_ns = max(self._newest_ns, steady_ns)
         return self._newest_ns
