@@ -110,4 +110,6 @@ def test_an_edited_episode_has_the_integration_states_of_the_ticks_that_are_left
     row = describe(path, path.name).model_copy(update={"edits": edits})
     states = [state.integration_state for state in open_episode(path).states()]
     for segment in row.segments():
-        assert [one.tobytes() for one in segment.integration_states] == [states[tick] for tick in segment.ticks]
+        assert [one.tobytes() for one in segment.integration_states] == [
+            states[tick] for tick in segment.ticks
+        ]

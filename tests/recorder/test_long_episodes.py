@@ -12,7 +12,13 @@ import pytest
 pytestmark = [pytest.mark.slow, pytest.mark.system]
 SHORT_MIN, LONG_MIN = 1, 4
 # An hour of each was measured: 76, 79, 58, 153 and 453 MB, of which a process without an episode has 50.
-MOST_MB_A_MINUTE = {"recorded": 1.5, "shown": 1.5, "verified": 1.5, "learned from": 3.5, "read as arrays": 8.4}
+MOST_MB_A_MINUTE = {
+    "recorded": 1.5,
+    "shown": 1.5,
+    "verified": 1.5,
+    "learned from": 3.5,
+    "read as arrays": 8.4,
+}
 WORK = """
 import json, resource, sys
 from contextlib import closing
