@@ -72,6 +72,6 @@ def _but_for_path(label: Label) -> tuple[int, LabelKind, str, str, str]:
 
 def _fields(shared: tuple[int, LabelKind, str, str, str], paths: list[str]) -> dict[str, object]:
     at_ns, kind, value, detail, by = shared
-    named = {"path": paths[0]} if len(paths) == 1 else {"paths": paths}
-    fields = {"at_ns": at_ns, **named, "kind": kind.value, "value": value}
+    named: dict[str, object] = {"path": paths[0]} if len(paths) == 1 else {"paths": paths}
+    fields: dict[str, object] = {"at_ns": at_ns, **named, "kind": kind.value, "value": value}
     return fields | {name: text for name, text in (("detail", detail), ("by", by)) if text}

@@ -7,10 +7,11 @@ import errno
 import fcntl
 import json
 import os
-import time
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
+
+from mart.protocol import clock
 
 _TAIL_BYTES = 4096
 _MAX_LINE_BYTES = 16 * 1024 * 1024
@@ -61,15 +62,15 @@ def append_lines(file: BinaryIO, lines: Iterable[bytes]) -> None:
 
 @contextlib.contextmanager
 def _locked(path: Path) -> Iterator[BinaryIO]:
-    until_s = time.monotonic() + _PATIENCE_S
+    until_s = clock.monotonic_s() + _PATIENCE_S
     while True:
         with path.open("ab+") as file:
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
-                if time.monotonic() > until_s:
+                if clock.monotonic_s() > until_s:
                     raise
-                time.sleep(_RETRY_S)
+                clock.sleep_s(_RETRY_S)
                 continue
             except OSError as error:
                 if error.errno not in _NO_LOCKS:
