@@ -15,12 +15,12 @@ from mart.runtime.bus import Bus
 
 
 @contextlib.contextmanager
-def child(*command: str, **environment: str) -> Iterator[None]:
+def child(*command: str, **environment: str) -> Iterator[subprocess.Popen[bytes]]:
     """Run a command for the length of the block; the word `mart` is this environment's."""
     program = str(Path(sys.executable).with_name(command[0])) if command[0] == "mart" else command[0]
     process = subprocess.Popen([program, *command[1:]], env={**os.environ, **environment})
     try:
-        yield
+        yield process
     finally:
         process.send_signal(signal.SIGTERM)
         process.wait()

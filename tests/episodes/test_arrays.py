@@ -9,11 +9,14 @@ import numpy as np
 import pytest
 
 from mart.episodes import EpisodeData, arrays_for_task, arrays_from_states, open_episode
+from mart.episodes.edits import EpisodeEdits
+from mart.episodes.labelled_episode import describe
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import OPERATOR_HOLD, OPERATOR_HUMAN, State
 from mart.protocol.tasks import get_task
 from tests.recorder import synthetic
 from tests.recorder.files import write_episode
+from tests.recorder.long_episode import write_long_episode
 
 TICKS = 6
 
@@ -99,3 +102,14 @@ def test_a_file_that_is_not_whole_is_named(tmp_path: Path) -> None:
     path = write_episode(tmp_path, ticks=5).path
     with pytest.raises(InvalidInput, match=path.name):
         open_episode(path).arrays()
+
+
+def test_an_edited_episode_has_the_integration_states_of_the_ticks_that_are_left(tmp_path: Path) -> None:
+    path = write_long_episode(tmp_path, minutes=0.01).path
+    edits = EpisodeEdits().with_cut("3-5").with_skip("8-9")
+    row = describe(path, path.name).model_copy(update={"edits": edits})
+    states = [state.integration_state for state in open_episode(path).states()]
+    for segment in row.segments():
+        assert [one.tobytes() for one in segment.integration_states] == [
+            states[tick] for tick in segment.ticks
+        ]

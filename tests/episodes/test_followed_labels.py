@@ -11,10 +11,21 @@ from hypothesis import strategies as st
 from mart.episodes import labels
 from mart.episodes.episode_labels import fold
 from mart.episodes.label import Label, LabelKind
+from mart.episodes.label_format import labels_of, lines_of
 
+_ABOUT_SEVERAL = [Label(path, LabelKind.JOIN, "good", 2) for path in "acb"]
 LINES = [
-    labels.line_of(Label(path, LabelKind.NOTE, note, at_ns)) + b"\n"
-    for path, note, at_ns in (("a", "one", 1), ("a", "two", 2), ("b", "six", 3), ("b", "old", 1))
+    line + b"\n"
+    for said in (
+        *(
+            [Label(path, LabelKind.NOTE, note, at_ns)]
+            for path, note, at_ns in (("a", "one", 1), ("a", "two", 2), ("b", "six", 3), ("b", "old", 1))
+        ),
+        _ABOUT_SEVERAL,
+        [Label(path, LabelKind.LEAVE, "good", 4) for path in "ab"],
+        [Label("a", LabelKind.UNDO, "2", 5)],
+    )
+    for line in lines_of(said)
 ] + [b"\n", b"no label\n", b'{"at_ns":1}\n', b'{"at_ns":5,"path":"c","kin']
 
 
@@ -29,7 +40,7 @@ def test_a_file_that_grows_shrinks_or_is_edited_is_read_as_if_anew(
         for content in contents:
             before = before + content if data.draw(st.booleans()) else content
             path.write_bytes(before)
-            expected = [label for line in before.split(b"\n") if (label := labels.label_of(line)) is not None]
+            expected = [label for line in before.split(b"\n") for label in labels_of(line)]
             assert labels.read(Path(folder)) == expected
             assert labels.read_folded(Path(folder)) == fold(expected)
 

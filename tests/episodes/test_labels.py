@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -26,9 +27,39 @@ _label = st.one_of(
 @given(st.lists(_label, max_size=8))
 def test_labels_read_back(tmp_path_factory: pytest.TempPathFactory, said: list[Label]) -> None:
     root = tmp_path_factory.mktemp("labels")
-    for label in said:
-        labels.append(root, [label])
-    assert labels.read(root) == said
+    stamps = [labels.append(root, [label]) for label in said]
+    assert labels.read(root) == [replace(one, at_ns=at_ns) for one, at_ns in zip(said, stamps, strict=True)]
+    assert len(set(stamps)) == len(stamps)
+    assert all(at_ns >= one.at_ns for one, at_ns in zip(said, stamps, strict=True))
+
+
+@settings(max_examples=40)
+@given(st.lists(st.tuples(_paths, st.integers(-5, 5)), max_size=12))
+def test_what_is_said_last_holds_whatever_the_clock_does(
+    tmp_path_factory: pytest.TempPathFactory, said: list[tuple[str, int]]
+) -> None:
+    root, now_ns, model = tmp_path_factory.mktemp("clock"), 50, dict[str, str]()
+    for number, (path, hours) in enumerate(said):
+        now_ns = max(0, now_ns + hours)
+        labels.append(root, [Label(path, LabelKind.NOTE, f"{number}", now_ns)])
+        model[path] = f"{number}"
+        assert {name: one.note for name, one in labels.read_folded(root).items()} == model
+
+
+def test_a_label_from_elsewhere_keeps_its_stamp_and_is_not_said_twice(tmp_path: Path) -> None:
+    newer, older = Label("a", LabelKind.NOTE, "newer", 9), Label("a", LabelKind.NOTE, "older", 3)
+    labels.append(tmp_path, [newer])
+    assert labels.append_missing(tmp_path, [older, newer, older]) == 1
+    assert labels.append_missing(tmp_path, [older, newer]) == 0
+    assert labels.read(tmp_path) == [newer, older]
+    assert labels.read_folded(tmp_path)["a"].note == "newer"
+
+
+def test_an_act_about_many_files_is_few_lines(tmp_path: Path) -> None:
+    said = [Label(f"2026-09-21/{number}.mcap", LabelKind.JOIN, "all", 7, by="Ana") for number in range(1200)]
+    labels.append(tmp_path, said)
+    assert len((tmp_path / labels.FILE_NAME).read_bytes().splitlines()) == 3
+    assert labels.read(tmp_path) == said
 
 
 def test_the_newest_of_a_kind_holds() -> None:
@@ -72,6 +103,12 @@ FOREIGN = [
     '{"at_ns":2,"path":"a\\u0000b","kind":"join","value":"few"}',
     '{"at_ns":2,"path":"../../etc/passwd","kind":"join","value":"few"}',
     '{"at_ns":2,"path":"/etc/passwd","kind":"join","value":"few"}',
+    '{"at_ns":2,"paths":[],"kind":"join","value":"few"}',
+    '{"at_ns":2,"paths":"ab","kind":"join","value":"few"}',
+    '{"at_ns":2,"paths":["a",2],"kind":"join","value":"few"}',
+    '{"at_ns":2,"paths":["a","../b"],"kind":"join","value":"few"}',
+    '{"at_ns":2,"path":"a","paths":["b"],"kind":"join","value":"few"}',
+    '{"at_ns":2,"paths":[%s"a"],"kind":"join","value":"few"}' % ('"a",' * 500),
     "[" * 100_000,
     '{"at_ns":2,"path":"a","kind":"note","value":' * 50_000,
     "\0" * 40,
@@ -128,9 +165,9 @@ def test_any_bytes_are_labels_or_none(tmp_path_factory: pytest.TempPathFactory, 
     labels.append(root, [first])
     with (root / labels.FILE_NAME).open("ab") as file:
         file.write(data)
-    labels.append(root, [first])
+    at_ns = labels.append(root, [first])
     said = labels.read(root)
-    assert (said[0], said[-1]) == (first, first)
+    assert (said[0], said[-1]) == (first, replace(first, at_ns=at_ns))
 
 
 def test_labels_that_cannot_be_read_are_no_labels_that_say_nothing(tmp_path: Path) -> None:

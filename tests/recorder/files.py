@@ -53,7 +53,7 @@ def _write_tick(file: EpisodeWriter, episode: EpisodeAccumulator, state: State) 
     file.add(command_entry("arm0", command, codec.encode(command), at_ns))
     video = synthetic.video(state.tick, is_key=state.tick % 10 == 0)
     file.add(video_entry("arm0", video, codec.encode(video), at_ns))
-    episode.add_state(state)
+    episode.add_state(state, at_ns)
     for entry in state_entries(state, codec.encode(state), at_ns, synthetic.TASK):
         file.add(entry)
 

@@ -120,7 +120,7 @@ def write(
     for event in events:
         file.add(event_entry(event, codec.encode(event), event.wall_ns))
     for state in states:
-        episode.add_state(state)
+        episode.add_state(state, state.stamps.sent_ns)
         for entry in state_entries(state, codec.encode(state), state.stamps.sent_ns, task):
             file.add(entry)
     said = VerificationRecord(verdict=verdict, detail="")

@@ -55,6 +55,8 @@ declare namespace Messages {
     skills: string[];
     simulated_s: number;
     drivers: CatalogueReplyDriverStatistics[];
+    files_read: number;
+    files_to_read: number;
   }
 
   interface CatalogueReplyQualityComparison {

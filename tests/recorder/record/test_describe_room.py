@@ -29,7 +29,7 @@ def test_a_file_is_described_once_whenever_its_model_comes(tmp_path: Path, known
     file = EpisodeWriter(part_path(tmp_path, episode, facts))
     for turn, state in enumerate(states):
         describe_room(file, facts, synthetic.MODEL if known_at is not None and turn >= known_at else None)
-        episode.add_state(state)
+        episode.add_state(state, state.stamps.sent_ns)
         for entry in state_entries(state, codec.encode(state), synthetic.wall_ns(state.tick), synthetic.TASK):
             file.add(entry)
         file.flush()

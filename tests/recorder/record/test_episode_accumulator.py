@@ -31,7 +31,7 @@ def folded(states: Iterable[State]) -> EpisodeAccumulator:
     states = list(states)
     episode = EpisodeAccumulator(states[0])
     for state in states:
-        episode.add_state(state)
+        episode.add_state(state, state.stamps.sent_ns)
     return episode
 
 
@@ -126,8 +126,8 @@ def test_a_recorder_that_came_late_says_so() -> None:
 def test_a_state_that_repeats_is_no_news() -> None:
     states = synthetic.states(3)
     episode = folded(states)
-    assert not episode.add_state(states[-1])
-    assert not episode.add_state(states[1])
+    assert not episode.add_state(states[-1], states[-1].stamps.sent_ns)
+    assert not episode.add_state(states[1], states[1].stamps.sent_ns)
     assert episode.states == 4
 
 

@@ -14,7 +14,7 @@ from mart.episodes import labels
 from mart.episodes.labels import LabelKind
 from mart.protocol.errors import Conflict, MartError
 from mart.recorder.storage.store import Store
-from mart.recorder.storage.transfer import push, to_push
+from mart.recorder.storage.transfer import Transferred, pull, push, to_pull, to_push
 from tests.recorder.conftest import Mart
 from tests.recorder.files import write_episode
 
@@ -73,3 +73,33 @@ def test_of_two_who_push_at_once_one_hears_of_the_other(endpoint: str, tmp_path:
     for thread in threads:
         thread.join()
     assert [type(error) for error in refused] == [Conflict], refused
+
+
+def test_two_who_pull_at_once_into_one_folder_get_each_file_and_each_word_once(
+    endpoint: str, tmp_path: Path
+) -> None:
+    source, out = tmp_path / "source", tmp_path / "out"
+    episodes = [write_episode(source, ticks=10, number=number + 1).path for number in range(4)]
+    for number, episode in enumerate(episodes):
+        labels.say(episode, LabelKind.NOTE, f"note {number}", at_ns=100 - number)
+    push(to_push([source]), Store.open("s3://lab/pulled", endpoint), lambda: None)
+    ready, done = threading.Barrier(2), list[Transferred]()
+
+    def pull_at_once() -> None:
+        store = Store.open("s3://lab/pulled", endpoint)
+        sizes = to_pull(store)
+        ready.wait()
+        done.append(pull(sizes, store, out, lambda: None))
+
+    threads = [threading.Thread(target=pull_at_once) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sum(len(one.files) for one in done) == len(episodes)
+    assert sum(one.there for one in done) == len(episodes)
+    assert sum(one.labels for one in done) == len(episodes)
+    assert sorted(labels.read(out), key=str) == sorted(labels.read(source), key=str)
+    for episode in episodes:
+        assert (out / episode.relative_to(source)).read_bytes() == episode.read_bytes()
+    assert not [one for one in out.rglob(".*") if one.is_file()]

@@ -421,7 +421,7 @@ class CatalogueReply(_message.Message):
         simulated_s: float
         def __init__(self, name: _Optional[str] = ..., episodes: _Optional[int] = ..., successes: _Optional[int] = ..., simulated_s: _Optional[float] = ...) -> None: ...
     class Listing(_message.Message):
-        __slots__ = ("episodes", "matching", "successes", "tasks", "operators", "datasets", "skills", "simulated_s", "drivers")
+        __slots__ = ("episodes", "matching", "successes", "tasks", "operators", "datasets", "skills", "simulated_s", "drivers", "files_read", "files_to_read")
         EPISODES_FIELD_NUMBER: _ClassVar[int]
         MATCHING_FIELD_NUMBER: _ClassVar[int]
         SUCCESSES_FIELD_NUMBER: _ClassVar[int]
@@ -431,6 +431,8 @@ class CatalogueReply(_message.Message):
         SKILLS_FIELD_NUMBER: _ClassVar[int]
         SIMULATED_S_FIELD_NUMBER: _ClassVar[int]
         DRIVERS_FIELD_NUMBER: _ClassVar[int]
+        FILES_READ_FIELD_NUMBER: _ClassVar[int]
+        FILES_TO_READ_FIELD_NUMBER: _ClassVar[int]
         episodes: _containers.RepeatedCompositeFieldContainer[RecordedEpisode]
         matching: int
         successes: int
@@ -440,7 +442,9 @@ class CatalogueReply(_message.Message):
         skills: _containers.RepeatedScalarFieldContainer[str]
         simulated_s: float
         drivers: _containers.RepeatedCompositeFieldContainer[CatalogueReply.DriverStatistics]
-        def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ..., datasets: _Optional[_Iterable[_Union[NamedDataSet, _Mapping]]] = ..., skills: _Optional[_Iterable[str]] = ..., simulated_s: _Optional[float] = ..., drivers: _Optional[_Iterable[_Union[CatalogueReply.DriverStatistics, _Mapping]]] = ...) -> None: ...
+        files_read: int
+        files_to_read: int
+        def __init__(self, episodes: _Optional[_Iterable[_Union[RecordedEpisode, _Mapping]]] = ..., matching: _Optional[int] = ..., successes: _Optional[int] = ..., tasks: _Optional[_Iterable[str]] = ..., operators: _Optional[_Iterable[str]] = ..., datasets: _Optional[_Iterable[_Union[NamedDataSet, _Mapping]]] = ..., skills: _Optional[_Iterable[str]] = ..., simulated_s: _Optional[float] = ..., drivers: _Optional[_Iterable[_Union[CatalogueReply.DriverStatistics, _Mapping]]] = ..., files_read: _Optional[int] = ..., files_to_read: _Optional[int] = ...) -> None: ...
     class Details(_message.Message):
         __slots__ = ("episode", "wall_s", "lanes", "traces", "views", "cadence", "versions", "verification", "simulated", "viewpoints", "edits", "tick_times")
         class CadenceEntry(_message.Message):

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from mart.episodes.edits import EpisodeEdits
+from mart.episodes.episode_labels import NOTHING_SAID
 from mart.episodes.labels import EpisodeLabels, Label, LabelKind
 from mart.protocol.errors import NotFound
 
@@ -66,24 +67,28 @@ def find(said: Mapping[str, EpisodeLabels], name: str) -> NamedDataSet:
     return known[name]
 
 
-def join(said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int) -> list[Label]:
+def join(
+    said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int, by: str = ""
+) -> list[Label]:
     """Return the labels by which these episodes join; none for those that are in it.
 
-    Raises InvalidInput for a name that no data set can have.
+    by: who says so, as others see them. Raises InvalidInput for a name that no data set can have.
     """
     return [
-        Label(path, LabelKind.JOIN, name, at_ns)
+        Label(path, LabelKind.JOIN, name, at_ns, by=by)
         for path in dict.fromkeys(paths)
-        if name not in said.get(path, EpisodeLabels()).datasets
+        if name not in said.get(path, NOTHING_SAID).datasets
     ]
 
 
-def leave(said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int) -> list[Label]:
+def leave(
+    said: Mapping[str, EpisodeLabels], name: str, paths: Iterable[str], at_ns: int, by: str = ""
+) -> list[Label]:
     """Return the labels by which these episodes leave; none for those that are not in it."""
     return [
-        Label(path, LabelKind.LEAVE, name, at_ns)
+        Label(path, LabelKind.LEAVE, name, at_ns, by=by)
         for path in dict.fromkeys(paths)
-        if name in said.get(path, EpisodeLabels()).datasets
+        if name in said.get(path, NOTHING_SAID).datasets
     ]
 
 
@@ -95,10 +100,10 @@ def newest_act_ns(labels: Iterable[Label], name: str) -> int:
     return stamps[-1]
 
 
-def undo(labels: Iterable[Label], name: str, act_ns: int, at_ns: int) -> list[Label]:
+def undo(labels: Iterable[Label], name: str, act_ns: int, at_ns: int, by: str = "") -> list[Label]:
     """Return the labels by which what was done to this data set at `act_ns` holds no longer."""
     return [
-        Label(label.path, _OPPOSITE[label.kind], name, at_ns)
+        Label(label.path, _OPPOSITE[label.kind], name, at_ns, by=by)
         for label in labels
         if label.at_ns == act_ns and label.value == name and label.kind in _OPPOSITE
     ]

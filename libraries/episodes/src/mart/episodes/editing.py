@@ -26,6 +26,9 @@ def edited(data: EpisodeData, edits: EpisodeEdits) -> list[EpisodeData]:
 
 
 def _segment(data: EpisodeData, ranges: list[Range]) -> EpisodeData:
+    if len(ranges) == 1:  # the rows themselves, not a copy of them
+        start, end = ranges[0]
+        return data.rows(slice(start, end + 1), slice(start, end))
     moves = np.concatenate([np.arange(*one) for one in ranges])
     seen = np.append(moves, ranges[-1][1])
     return data.rows(seen, moves)

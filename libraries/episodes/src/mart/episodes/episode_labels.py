@@ -11,6 +11,8 @@ from typing import Any
 from mart.episodes.edits import EpisodeEdits
 from mart.episodes.label import DROP, EDITS, Label, LabelKind, undone_ns
 
+_NO_EDITS = EpisodeEdits()
+
 
 @dataclass(frozen=True)
 class EpisodeLabels:
@@ -27,7 +29,7 @@ class EpisodeLabels:
     verdict: str | None = None
     dropped: bool = False
     datasets: Mapping[str, int] = field(default_factory=dict)
-    edits: EpisodeEdits = field(default_factory=EpisodeEdits)
+    edits: EpisodeEdits = _NO_EDITS
 
     def with_label(self, label: Label) -> EpisodeLabels:
         """Return what holds once `label` has been given."""
@@ -53,6 +55,9 @@ class EpisodeLabels:
                 return {}  # an undo: `standing` has heard it
 
 
+NOTHING_SAID = EpisodeLabels()
+
+
 def fold(labels: Iterable[Label]) -> dict[str, EpisodeLabels]:
     """Return by path what holds about each file, out of labels in the order they were given.
 
@@ -62,9 +67,7 @@ def fold(labels: Iterable[Label]) -> dict[str, EpisodeLabels]:
     for label in labels:
         by_path.setdefault(label.path, []).append(label)
     return {
-        path: reduce(
-            EpisodeLabels.with_label, standing(sorted(said, key=attrgetter("at_ns"))), EpisodeLabels()
-        )
+        path: reduce(EpisodeLabels.with_label, standing(sorted(said, key=attrgetter("at_ns"))), NOTHING_SAID)
         for path, said in by_path.items()
     }
 
@@ -88,7 +91,7 @@ def carried(said: EpisodeLabels | None, old: str, new: str, at_ns: int) -> list[
 
     old, new: their paths, as labels name them. The verdict is not carried on: it is of the very bytes.
     """
-    known = said or EpisodeLabels()
+    known = said or NOTHING_SAID
     texts = {LabelKind.OUTCOME: known.outcome, LabelKind.NOTE: known.note}
     found = [Label(new, kind, text, at_ns) for kind, text in texts.items() if text is not None]
     found += [Label(new, LabelKind.JOIN, name, at_ns) for name in known.datasets]

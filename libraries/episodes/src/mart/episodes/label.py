@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import lru_cache
 
 from mart.episodes.edits import EpisodeEdits
 from mart.protocol.errors import InvalidInput
@@ -64,26 +65,13 @@ class Label:
 
     def __post_init__(self) -> None:
         _require_path(self.path)
-        for text in (self.value, self.detail, self.by):
+        _require_value(self.kind, self.value)
+        for text in (self.detail, self.by):
             _require_text(text)
         if not 0 <= self.at_ns < _MAX_NS:
             raise InvalidInput(f"A label of {self.at_ns} ns was given; it must be a time of before 2262.")
-        allowed = _ALLOWED.get(self.kind)
-        if allowed is not None and self.value not in allowed:
-            raise InvalidInput(f"The {self.kind} {self.value!r} was given; it must be {', '.join(allowed)}.")
-        if self.kind in (LabelKind.JOIN, LabelKind.LEAVE) and not _DATASET.fullmatch(self.value):
-            raise InvalidInput(
-                f"The data set {self.value[:100]!r} was given; name it with 1 to 64 lower-case letters, digits, '-' or "
-                "'_', the first a letter or digit."
-            )
-        if self.kind in EDITS:
-            EDITS[self.kind](EpisodeEdits(), self.value)
         if self.kind is LabelKind.UNDO:
             undone_ns(self)
-        if len(self.value) > MAX_NOTE_CHARACTERS:
-            raise InvalidInput(
-                f"A note of {len(self.value)} characters was given; {MAX_NOTE_CHARACTERS} are allowed."
-            )
 
 
 def undone_ns(label: Label) -> int:
@@ -96,6 +84,24 @@ def undone_ns(label: Label) -> int:
     return int(text)
 
 
+@lru_cache(maxsize=1024)  # what is said of many files is looked at once
+def _require_value(kind: LabelKind, value: str) -> None:
+    _require_text(value)
+    allowed = _ALLOWED.get(kind)
+    if allowed is not None and value not in allowed:
+        raise InvalidInput(f"The {kind} {value!r} was given; it must be {', '.join(allowed)}.")
+    if kind in (LabelKind.JOIN, LabelKind.LEAVE) and not _DATASET.fullmatch(value):
+        raise InvalidInput(
+            f"The data set {value[:100]!r} was given; name it with 1 to 64 lower-case letters, digits, '-' or "
+            "'_', the first a letter or digit."
+        )
+    if kind in EDITS:
+        EDITS[kind](EpisodeEdits(), value)
+    if len(value) > MAX_NOTE_CHARACTERS:
+        raise InvalidInput(f"A note of {len(value)} characters was given; {MAX_NOTE_CHARACTERS} are allowed.")
+
+
+@lru_cache(maxsize=32_768)  # each file is spoken of again and again
 def _require_path(path: str) -> None:
     _require_text(path)
     parts = path.split("/")
@@ -109,7 +115,8 @@ def _require_path(path: str) -> None:
 def _require_text(text: str) -> None:
     """Raise InvalidInput where a text cannot be written as UTF-8, as the names of some files cannot."""
     try:
-        text.encode()
+        if not text.isascii():
+            text.encode()
     except UnicodeEncodeError as error:
         raise InvalidInput(
             f"{text[:100]!r} was given, which cannot be written as UTF-8; rename the file, or say it in other words."

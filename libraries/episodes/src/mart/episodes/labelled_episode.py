@@ -16,6 +16,7 @@ from mart.episodes.idle import idle_ranges
 from mart.episodes.labels import EpisodeLabels
 from mart.episodes.reader import EpisodeFile
 from mart.episodes.scan import ForeignFile
+from mart.protocol.control_rate import same_control_hz
 from mart.protocol.errors import Corrupt, InvalidInput, MartError, NotFound
 from mart.protocol.recording import OperatorsRecord, Shift, VerificationRecord
 from mart.protocol.tasks import Task, get_task, is_in_catalogue
@@ -99,23 +100,34 @@ class LabelledEpisode(BaseModel):
         return EpisodeFile.open(self.file_path)
 
     def segments(
-        self, task: Task | None = None, control_hz: float | None = None, skip_idle_s: float | None = None
+        self,
+        task: Task | None = None,
+        control_hz: float | None = None,
+        skip_idle_s: float | None = None,
+        *,
+        with_integration_states: bool = True,
     ) -> list[EpisodeData]:
         """Read the episode into arrays as people have edited it: a segment for each motion that is left, in order.
 
-        task, control_hz: as for `EpisodeFile.arrays`. skip_idle_s: leave out, too, every stretch of at least so many
-        seconds in which no arm moves; None leaves out what people did alone.
+        task, control_hz, with_integration_states: as for `EpisodeFile.arrays`.
+        skip_idle_s: leave out, too, every stretch of at least so many seconds in which no arm moves; None leaves out
+        what people did alone.
         Raises what `EpisodeFile.arrays` raises, and InvalidInput, naming it, where nothing is left of it.
         """
         file = self.open()
-        whole = file.arrays(task)
+        at_its_own_rate = control_hz is None or same_control_hz(self.control_hz or 0.0, control_hz)
+        is_whole = not self.edits and skip_idle_s is None and at_its_own_rate
+        whole = file.arrays(task, with_integration_states=with_integration_states and is_whole)
         skips = () if skip_idle_s is None else idle_ranges(whole, skip_idle_s)
         found = edited(whole, self.edits.with_skips(skips))
         if not found:
             raise InvalidInput(
                 f"{self.file_path} has nothing left: all of it was cut out, or is idle; drop it."
             )
-        return [file.resampled(segment, control_hz, task) for segment in found]
+        segments = [file.resampled(segment, control_hz, task) for segment in found]
+        return (
+            file.with_integration_states(segments) if with_integration_states and not is_whole else segments
+        )
 
     def recorded_task(self) -> Task:
         """Return the task with the arms that were recorded; that of somebody's own task as the file says it.

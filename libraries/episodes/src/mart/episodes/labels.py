@@ -1,8 +1,8 @@
 """Say something about episodes afterwards: files never change, labels are appended to `labels.jsonl` beside them.
 
-Each line says one thing about one file, and the newest of its kind holds; of edits (edits.py) all hold. All lines of
-one act have the same stamp, by which a later line undoes it. What a line says that this version does not know (another
-kind, another value, a torn line) is left where it is and counts nothing.
+Each line says one thing about one file, or the same about several, and the newest of its kind holds; of edits
+(edits.py) all hold. All lines of one act have the same stamp, by which a later line undoes it. What a line says that
+this version does not know (another kind, another value, a torn line) is left where it is and counts nothing.
 
     from mart.episodes import labels
 
@@ -13,20 +13,23 @@ from __future__ import annotations
 
 import logging
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import BinaryIO
 
 from mart.episodes.episode_labels import EpisodeLabels, carried, fold, standing
 from mart.episodes.followed_labels import FollowedLabels
 from mart.episodes.label import DROP, KEEP, MAX_NOTE_CHARACTERS, Label, LabelKind
-from mart.protocol.errors import Conflict, Corrupt, InvalidInput
-from mart.runtime.json_lines import append_json_lines, json_line, json_object
+from mart.episodes.label_format import lines_of
+from mart.protocol.errors import Conflict, Corrupt
+from mart.runtime.json_lines import alone_with, append_lines
 
 __all__ = [
-    "DROP", "FILE_NAME", "KEEP", "MAX_NOTE_CHARACTERS", "EpisodeLabels", "Label", "LabelKind", "append", "carried",
-    "fold", "is_root", "label_of", "line_of", "read", "read_folded", "resolved", "root_of", "say", "standing",
+    "DROP", "FILE_NAME", "KEEP", "MAX_NOTE_CHARACTERS", "EpisodeLabels", "Label", "LabelKind", "append",
+    "append_missing", "carried", "fold", "is_root", "read", "read_folded", "resolved", "root_of", "say", "standing",
 ]  # fmt: skip
 
 _log = logging.getLogger(__name__)
@@ -50,26 +53,35 @@ def read_folded(root: Path) -> dict[str, EpisodeLabels]:
     return _read(root)[1]
 
 
-def append(root: Path, labels: Iterable[Label]) -> None:
-    """Append labels to those of a folder: on the disk when this returns. Raises Conflict where it cannot be written."""
-    path = root / FILE_NAME
-    try:
-        append_json_lines(path, map(_fields, labels))
-    except OSError as error:
-        raise Conflict(f"{path} could not be written: {error.strerror}.") from error
+def append(root: Path, labels: Iterable[Label]) -> int:
+    """Append the labels of one act to those of a folder, and return the act's stamp (Unix time); 0: there are none.
+
+    The stamp is the newest of the labels', or the next that is later than all that was said of these files before, so
+    that it holds whatever the clock does. On the disk when this returns, whoever else appends meanwhile.
+    Raises Conflict where it cannot be written.
+    """
+    act = list(labels)
+    if not act:
+        return 0
+    with _alone(root) as file:
+        newest_ns = max(label.at_ns for label in act)
+        stamp = _followed(root / FILE_NAME).stamp_after(newest_ns, {label.path for label in act})
+        stamped = [label if label.at_ns == stamp else replace(label, at_ns=stamp) for label in act]
+        append_lines(file, lines_of(stamped))
+    return stamp
 
 
-def line_of(label: Label) -> bytes:
-    """Return the line, without its end, that a label is written as."""
-    return json_line(_fields(label))
+def append_missing(root: Path, labels: Iterable[Label]) -> int:
+    """Append what was said elsewhere, with the stamps it has; what stands there already is not said twice.
 
-
-def label_of(line: bytes) -> Label | None:
-    """Return what a line says; None where it is no label that this version knows."""
-    try:
-        return _parse(json_object(line))
-    except (ValueError, KeyError, InvalidInput):
-        return None
+    Returns how many labels are new. Raises Conflict where they cannot be written.
+    """
+    with _alone(root) as file:
+        known = set(_followed(root / FILE_NAME).read()[0])
+        new = [label for label in dict.fromkeys(labels) if label not in known]
+        if new:
+            append_lines(file, lines_of(new))
+    return len(new)
 
 
 def root_of(episode: Path) -> Path:
@@ -97,19 +109,14 @@ def say(episode: Path, kind: LabelKind, value: str, at_ns: int, detail: str = ""
     append(root, [Label(resolved(episode).relative_to(root).as_posix(), kind, value, at_ns, detail)])
 
 
-def _fields(label: Label) -> dict[str, object]:
-    fields = {"at_ns": label.at_ns, "path": label.path, "kind": label.kind.value, "value": label.value}
-    return fields | {name: text for name, text in (("detail", label.detail), ("by", label.by)) if text}
-
-
-def _parse(fields: Mapping[str, Any] | None) -> Label:
-    if fields is None:
-        raise ValueError("it is not one JSON object")
-    at_ns, detail, by = fields["at_ns"], fields.get("detail", ""), fields.get("by", "")
-    said = fields["path"], fields["kind"], fields["value"], detail, by
-    if not isinstance(at_ns, int) or not all(isinstance(text, str) for text in said):
-        raise ValueError("its time is no whole number, or what it says no text")
-    return Label(fields["path"], LabelKind(fields["kind"]), fields["value"], at_ns, detail, by)
+@contextmanager
+def _alone(root: Path) -> Iterator[BinaryIO]:
+    path = root / FILE_NAME
+    try:
+        with alone_with(path) as file:
+            yield file
+    except OSError as error:
+        raise Conflict(f"{path} could not be written: {error.strerror}.") from error
 
 
 def _read(root: Path) -> tuple[list[Label], dict[str, EpisodeLabels]]:
@@ -124,7 +131,7 @@ def _read(root: Path) -> tuple[list[Label], dict[str, EpisodeLabels]]:
 
 @lru_cache(maxsize=_MAX_FOLLOWED)
 def _followed(path: Path) -> FollowedLabels:
-    return FollowedLabels(path, _parse)
+    return FollowedLabels(path)
 
 
 _warned: dict[Path, frozenset[int]] = {}  # file → lines; a catalogue reads its labels every second

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import contextlib
 import functools
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 from typing import TypeVar
 
-from mart.episodes.arrays import EpisodeData, arrays_for_task, arrays_from_states
+import numpy as np
+from numpy.typing import NDArray
+
+from mart.episodes.arrays import EpisodeData, arrays_of
 from mart.episodes.contents import read_attachments, read_messages, read_metadata, require_intact_data
 from mart.episodes.foreign import foreign_kind
 from mart.episodes.resampling import at_control_hz
 from mart.episodes.scan import BoundedFile, ForeignFile, corruption
+from mart.episodes.steady_time import SteadyTime
 from mart.episodes.summary import read_summary
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound
@@ -113,26 +117,45 @@ class EpisodeFile:
 
     def states(self) -> Iterator[State]:
         """Iterate over the states in the order of the file, the one after the reset first. Raises Corrupt."""
+        return (state for state, _ in self._states())
+
+    def _states(self) -> Iterator[tuple[State, int]]:
+        """Iterate over the states, each with when it came (Unix time)."""
         for message in self.messages(STATE):
             try:
-                yield codec.decode(State, message.payload)
+                yield codec.decode(State, message.payload), message.arrived_ns
             except InvalidInput as error:
                 raise Corrupt(f"{self.path} holds a state that cannot be read: {error}") from error
 
-    def arrays(self, task: Task | None = None, control_hz: float | None = None) -> EpisodeData:
+    def steady_states(self) -> Iterator[State]:
+        """Iterate as `states` does, with `fired_ns` and `stepped_ns` as if no clock had been set meanwhile."""
+        fired, stepped = SteadyTime(), SteadyTime()
+        for state, arrived_ns in self._states():
+            state.stamps.fired_ns = max(0, fired.steady_ns(state.stamps.fired_ns, arrived_ns))
+            state.stamps.stepped_ns = max(0, stepped.steady_ns(state.stamps.stepped_ns, arrived_ns))
+            yield state
+
+    def arrays(
+        self,
+        task: Task | None = None,
+        control_hz: float | None = None,
+        *,
+        with_integration_states: bool = True,
+    ) -> EpisodeData:
         """Read the whole episode into numpy arrays.
 
         task: whose observations and shapes are wanted; None takes the one that the file names, or, where the catalogue
         has no such task, every observation of the file as it is.
         control_hz: ticks a second that are wanted, at most those of the recording (`mart.episodes.resampling`); None
         takes every tick.
+        with_integration_states: whether MuJoCo's states are wanted, too, which are nine tenths of all: of an hour of
+        three arms 343 MB.
         Raises Corrupt where the file is damaged and InvalidInput, naming it, where ticks, arms or observations are
         missing, a number is NaN, or the rate cannot be had.
         """
         known = self._known_task() if task is None else task
-        states = list(self.states())
         try:
-            data = arrays_from_states(states) if known is None else arrays_for_task(states, known)
+            data = arrays_of(self.states(), known, with_integration_states=with_integration_states)
         except InvalidInput as error:
             raise InvalidInput(f"{self.path} cannot be read into arrays: {error}") from error
         return self.resampled(data, control_hz, known)
@@ -154,6 +177,20 @@ class EpisodeFile:
             return at_control_hz(data, recorded_hz, control_hz, [arm.kind.limits for arm in known.arms])
         except InvalidInput as error:
             raise InvalidInput(f"{self.path} cannot be read into arrays: {error}") from error
+
+    def with_integration_states(self, segments: Sequence[EpisodeData]) -> list[EpisodeData]:
+        """Return parts of this episode that were read without MuJoCo's states with them: those of their ticks alone."""
+        places: dict[int, list[tuple[int, int]]] = {}
+        for number, segment in enumerate(segments):
+            for row, tick in enumerate(segment.ticks.tolist()):
+                places.setdefault(tick, []).append((number, row))
+        filled: list[NDArray[np.float64]] = []
+        for tick, state in enumerate(self.states()):
+            values = np.frombuffer(state.integration_state, "<f8")
+            filled = filled or [np.zeros((len(one.ticks), len(values))) for one in segments]
+            for number, row in places.get(tick, ()):
+                filled[number][row] = values
+        return [replace(one, integration_states=rows) for one, rows in zip(segments, filled, strict=True)]
 
     def messages(self, *topics: str) -> Iterator[RecordedMessage]:
         """Iterate over the messages of these topics, or of all, in the order of the file.

@@ -33,7 +33,7 @@ def measure(episode: LabelledEpisode) -> EpisodeQuality:
     if not rate_hz:
         raise InvalidInput(f"{episode.file_path} cannot be measured: it does not say its control rate.")
     try:
-        motion = read_motion(file.states())
+        motion = read_motion(file.steady_states())
     except InvalidInput as error:
         raise InvalidInput(f"{episode.file_path} cannot be measured: {error}") from error
     return _quality(episode, motion, rate_hz, _messages(file))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from mart.episodes import datasets, labels
@@ -21,7 +21,7 @@ from mart.protocol.errors import InvalidInput, NotFound
 
 @dataclass(frozen=True)
 class DataSetEdit:
-    """Tell what an act changed. left_out: why → how many. dataset: as it is now. act_ns: undoes it."""
+    """Tell what an act changed. left_out: why → how many. dataset: as it is now. act_ns: undoes it; 0: nothing."""
 
     dataset: NamedDataSet
     changed: int
@@ -58,37 +58,30 @@ def take_in(
     advice = "a data set holds one: narrow the choice, or use another name"
     require_alike([*members, *taken], advice, any_rate=True)
     said = labels.read_folded(root)
-    joining = datasets.join(said, name, [row.path for row in taken], now_ns)
-    return _act(root, name, _said_by(joining, by), now_ns, left_out)
+    return _act(root, name, datasets.join(said, name, [row.path for row in taken], now_ns, by), left_out)
 
 
 def take_out(root: Path, name: str, paths: Iterable[str], now_ns: int, by: str = "") -> DataSetEdit:
     """Take the episodes with these paths out of a data set. Raises NotFound where there is no such data set."""
     said = labels.read_folded(root)
     datasets.find(said, name)
-    return _act(root, name, _said_by(datasets.leave(said, name, paths, now_ns), by), now_ns)
+    return _act(root, name, datasets.leave(said, name, paths, now_ns, by))
 
 
 def undo(root: Path, name: str, act_ns: int, now_ns: int, by: str = "") -> DataSetEdit:
     """Take back what was done to a data set at `act_ns`. Raises NotFound where nothing was done to it then."""
-    opposite = datasets.undo(labels.read(root), name, act_ns, now_ns)
+    opposite = datasets.undo(labels.read(root), name, act_ns, now_ns, by)
     if not opposite:
         raise NotFound(
             f"Nothing was done to the data set {name[:100]!r} at {act_ns}, so nothing can be undone."
         )
-    return _act(root, name, _said_by(opposite, by), now_ns)
+    return _act(root, name, opposite)
 
 
-def _said_by(said: Iterable[Label], by: str) -> list[Label]:
-    return [replace(label, by=by) for label in said]
-
-
-def _act(
-    root: Path, name: str, said: list[Label], now_ns: int, left_out: Mapping[str, int] | None = None
-) -> DataSetEdit:
-    labels.append(root, said)
+def _act(root: Path, name: str, said: list[Label], left_out: Mapping[str, int] | None = None) -> DataSetEdit:
+    act_ns = labels.append(root, said)
     now = datasets.named(labels.read_folded(root)).get(name, NamedDataSet(name, (), 0))
-    return DataSetEdit(now, len(said), now_ns, dict(left_out or {}))
+    return DataSetEdit(now, len(said), act_ns, dict(left_out or {}))
 
 
 def _counted(left_out: Mapping[str, int]) -> str:

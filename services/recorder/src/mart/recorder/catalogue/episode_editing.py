@@ -76,7 +76,8 @@ def idle_skips(row: LabelledEpisode, min_s: float) -> list[Said]:
     Raises InvalidInput for less seconds than idle time can have, and where ticks or poses are missing.
     """
     edits = as_it_is(row).episode.edits
-    found = idle_ranges(arrays_from_states([*row.open().states()]), min_s)
+    states = row.open().states()
+    found = idle_ranges(arrays_from_states(states, with_integration_states=False), min_s)
     left = edits.kept(row.ticks)
     return [
         (LabelKind.SKIP, range_text(one)) for one in found if edits.with_skips([one]).kept(row.ticks) < left
@@ -120,9 +121,7 @@ def redo(row: LabelledEpisode, now_ns: int, by: str = "") -> EditedEpisode:
 def _act(row: LabelledEpisode, said: Iterable[Said], now_ns: int, by: str) -> EditedEpisode:
     stamp = next_stamp(_labels_of(row), now_ns)
     act = [Label(row.path, kind, value, stamp, by=by) for kind, value in dict.fromkeys(said)]
-    if act:
-        labels.append(labels.root_of(row.file_path), act)
-    return as_it_is(row, stamp if act else 0)
+    return as_it_is(row, labels.append(labels.root_of(row.file_path), act))
 
 
 def _labels_of(row: LabelledEpisode) -> list[Label]:

@@ -50,7 +50,7 @@ class EpisodeScenes:
         def make(out: BinaryIO) -> None:
             poses = BodyPoses(self._model_of(file), sha256)
             control_hz = file.room.control_hz if asked.simulated else None
-            write_motion(file.states(), poses, control_hz, out, file.episode.ticks or 0)
+            write_motion(file.steady_states(), poses, control_hz, out, file.episode.ticks or 0)
 
         key = ("motion", asked.path, str(asked.simulated))
         piece, size_bytes = self._kept.piece(key, make, asked.offset, PIECE_BYTES)

@@ -90,6 +90,7 @@ class CatalogueHandlers:
         self._refresh()
         held = datasets.named(labels.read_folded(self._root)).values()
         found = listing(self._rows_for(asked), asked, held)
+        found.files_read, found.files_to_read = self._listing.progress or (0, 0)
         for one in found.episodes:
             quality_answers.with_outliers(one, self._quality.known)
         return CatalogueReply(listing=found)
@@ -230,7 +231,7 @@ class CatalogueHandlers:
 
 def _each_tick_once(file: EpisodeFile) -> Iterator[State]:
     newest = -1
-    for state in file.states():
+    for state in file.steady_states():
         if state.tick > newest:
             newest = state.tick
             yield state

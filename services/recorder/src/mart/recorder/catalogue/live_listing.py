@@ -6,6 +6,7 @@ rows so far are answered.
 
 from __future__ import annotations
 
+import gc
 import logging
 import threading
 from contextlib import closing
@@ -36,6 +37,12 @@ class LiveListing:
         self._reading: threading.Thread | None = None
         self._read_s = float("-inf")
         self._is_known = False
+        self._progress: tuple[int, int] | None = None  # only ever replaced
+
+    @property
+    def progress(self) -> tuple[int, int] | None:
+        """How many new or changed files are read of how many; None where all are, or nobody knows yet."""
+        return self._progress
 
     def rows(self, *, anew: bool = False) -> dict[str, LabelledEpisode]:
         """Return every episode by its path, with its labels of now; anew: look into the folder whenever it was last.
@@ -75,9 +82,13 @@ class LiveListing:
     def _read(self) -> None:
         try:
             by_catalogue(self._root, self._read_by)
+            if not self._is_known:
+                gc.freeze()  # rows stay: without it the collector goes through all of them, in the middle of requests
             self._is_known = True
         except Exception:  # noqa: BLE001 - logged whole; the next request tries again
             _log.exception("%s could not be listed; what was known of it is answered", self._root)
+        finally:
+            self._progress = None
 
     def _read_by(self, database: Path | str) -> None:
         told_s = clock.monotonic_s()
@@ -85,6 +96,7 @@ class LiveListing:
 
             def after_some(done: int, of: int) -> None:
                 nonlocal told_s
+                self._progress = (done, of) if done < of else None
                 if not self._is_known:
                     self._bare = catalogue.rows()
                 if clock.monotonic_s() - told_s >= _PROGRESS_S:

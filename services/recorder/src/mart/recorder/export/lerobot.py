@@ -71,7 +71,8 @@ def feature_name(camera: CameraRequest) -> str:
 def write_piece(selection: ExportSelection, episode: LabelledEpisode, folder: Path) -> None:
     """Write a folder for each segment of an episode: its columns, a video a camera and what colours are in it."""
     pictures = EpisodePictures(episode.open(), selection.captured)
-    for number, data in enumerate(read_segments(selection, episode)):
+    segments = read_segments(selection, episode, with_integration_states=bool(selection.cameras))
+    for number, data in enumerate(segments):
         segment = folder / f"{number:04d}"
         segment.mkdir()
         for camera in selection.cameras:

@@ -63,7 +63,7 @@ class EpisodePictures:
             draw: Callable[[bytes], NDArray[Any]] = renderer.draw
             if kind != RGB:
                 draw = renderer.draw_depth if kind == DEPTH else renderer.draw_segmentation
-            for state in data.integration_states.astype("<f8"):
+            for state in data.integration_states.astype("<f8", copy=False):
                 yield draw(state.tobytes())
 
     @cached_property

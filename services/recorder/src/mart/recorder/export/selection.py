@@ -96,14 +96,21 @@ def _checked(episode: LabelledEpisode) -> LabelledEpisode:
     return episode
 
 
-def read_segments(selection: ExportSelection, episode: LabelledEpisode) -> list[EpisodeData]:
+def read_segments(
+    selection: ExportSelection, episode: LabelledEpisode, *, with_integration_states: bool = True
+) -> list[EpisodeData]:
     """Read the segments that are left of an episode, as the task's catalogue entry says, in ticks of the selection.
 
     Raises Corrupt where the file is damaged, its model included, and InvalidInput, naming it, where it is not whole,
     not finite, was recorded at a lower rate, has nothing left, or an action is outside -1 … 1.
     """
     episode.open().check_model()
-    segments = episode.segments(selection.task, selection.control_hz, selection.skip_idle_s)
+    segments = episode.segments(
+        selection.task,
+        selection.control_hz,
+        selection.skip_idle_s,
+        with_integration_states=with_integration_states,
+    )
     if any((np.abs(segment.actions) > 1.0).any() for segment in segments):
         raise InvalidInput(f"{episode.file_path} cannot be exported: an action is outside -1 … 1.")
     return segments

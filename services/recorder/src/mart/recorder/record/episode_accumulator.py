@@ -12,6 +12,7 @@ from collections import defaultdict
 
 import numpy as np
 
+from mart.episodes.steady_time import SteadyTime
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import (
     BARRIER_PHASE_PAUSED,
@@ -59,7 +60,8 @@ class EpisodeAccumulator:
         self.messages_lost = 0
         self._commands = CommandLedger()
         self._first = self._last = first
-        self._clock = TickClock()
+        self._clock, self._sent = TickClock(), SteadyTime()
+        self._ended_ns = first.stamps.sent_ns
         self._waited_s: dict[str, float] = defaultdict(float)
         self._latency: dict[str, Event.Latency] = {}
         self._shifts: dict[str, list[tuple[int, int, ArmState]]] = defaultdict(list)  # (tick, epoch, arm)
@@ -118,8 +120,11 @@ class EpisodeAccumulator:
                 f"in an episode that began at tick {began}."
             )
 
-    def add_state(self, state: State) -> bool:
-        """Add a state, and tell whether it is news: one that repeats or precedes the newest is not."""
+    def add_state(self, state: State, arrived_ns: int) -> bool:
+        """Add a state, and tell whether it is news: one that repeats or precedes the newest is not.
+
+        arrived_ns: when it came (Unix time), told by a clock that was not set meanwhile.
+        """
         if self.states and state.tick <= self._last.tick:
             return False
         if self.states:
@@ -127,7 +132,8 @@ class EpisodeAccumulator:
             self._commands.add_state(state)
         self.states += 1
         self._last = state
-        self._clock.add(state)
+        self._clock.add(state, arrived_ns)
+        self._ended_ns = self._sent.steady_ns(state.stamps.sent_ns, arrived_ns)
         if state.straggler and np.isfinite(state.straggler_late_s):
             self._waited_s[state.straggler] += state.straggler_late_s
         for arm in state.arms:
@@ -195,7 +201,7 @@ class EpisodeAccumulator:
             skill=(started and started.skill) or None,
             time_limit_s=(started and started.time_limit_s) or None,
             started_ns=self._first.stamps.sent_ns,
-            ended_ns=self._last.stamps.sent_ns,
+            ended_ns=self._ended_ns,
             ticks=self.states - 1,
             first_tick=self._first.tick,
             last_tick=self._last.tick,

@@ -6,10 +6,11 @@ import copy
 import logging
 import shutil
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mart.episodes.patient_file import is_for_want_of_room
+from mart.episodes.steady_time import SteadyTime
 from mart.episodes.writer import EpisodeWriter
 from mart.protocol import keys
 from mart.protocol.errors import MartError
@@ -62,6 +63,7 @@ class RoomRecording:
         self._flushed_s = self._reported_s = 0.0
         self._tellings = RateLimit(1, _TELL_AGAIN_S)
         self._folder_watch = FolderWatch(tools.root)
+        self._arrivals, self._newest_ns = SteadyTime(), 0
 
     @property
     def is_writing(self) -> bool:
@@ -71,7 +73,19 @@ class RoomRecording:
     def take(self, arrival: BusArrival, now_s: float) -> None:
         """Write what has arrived, if it belongs into a file. Raises InvalidInput for what cannot be used."""
         self.heard_s = now_s
-        self._apply(self._decide(decode_arrival(arrival), arrival, now_s))
+        steady = replace(arrival, arrived_ns=self._steady_ns(arrival.arrived_ns, now_s))
+        self._apply(self._decide(decode_arrival(arrival), steady, now_s))
+
+    def _steady_ns(self, arrived_ns: int, now_s: float) -> int:
+        """Return when something came: never before what came before it into an open file, whatever the clock does."""
+        if not self._files:
+            self._arrivals, self._newest_ns = (
+                SteadyTime(),
+                0,
+            )  # a clock that was set right is right from here on
+        steady_ns = self._arrivals.steady_ns(arrived_ns, round(now_s * 1e9))
+        self._newest_ns = max(self._newest_ns, steady_ns)
+        return self._newest_ns
 
     def advance(self, now_s: float) -> None:
         """Do what it is time for: close a file that is over, bring an open one onto the disk."""

@@ -95,7 +95,7 @@ class RoomTracker:
             actions, known = self._enter(state, arrived_ns, now_s)
         else:
             actions = []
-        if known is not None and known.episode.add_state(state):
+        if known is not None and known.episode.add_state(state, arrived_ns):
             entries = state_entries(state, payload, arrived_ns, self.facts.task, self.facts.arm_kinds)
             actions += [WriteEntry(known.episode, entry) for entry in entries]
             if known.episode.states > 1:

@@ -6,21 +6,28 @@ from array import array
 
 import numpy as np
 
+from mart.episodes.steady_time import SteadyTime
 from mart.protocol.messages import State
 from mart.protocol.recording import CadenceRecord
 
+_MAX_NS = 2**62  # of the year 2116
+
 
 class TickClock:
-    """Keep when ticks fired. The first state of an episode is a reset and no tick, so it does not count."""
+    """Keep when ticks fired. The first state of an episode is a reset and no tick, so it does not count.
+
+    A room's clock that is set anew meanwhile makes no tick longer or shorter.
+    """
 
     def __init__(self) -> None:
-        self._fired_ns = array("Q")
+        self._fired_ns = array("q")
         self._sim_s = array("d")
+        self._steady = SteadyTime()
 
-    def add(self, state: State) -> None:
-        """Take a state."""
-        if state.episode_tick > 0 and state.stamps.fired_ns:
-            self._fired_ns.append(state.stamps.fired_ns)
+    def add(self, state: State, arrived_ns: int) -> None:
+        """Take a state. arrived_ns: when it came (Unix time)."""
+        if state.episode_tick > 0 and 0 < state.stamps.fired_ns <= _MAX_NS:
+            self._fired_ns.append(self._steady.steady_ns(state.stamps.fired_ns, arrived_ns))
             self._sim_s.append(state.sim_time_s)
 
     def cadence(self, **known: object) -> CadenceRecord:

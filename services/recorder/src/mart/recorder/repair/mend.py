@@ -167,7 +167,7 @@ class _Mended:
         if not self.episode.belongs(state):
             self.unreadable += 1
             return
-        self.episode.add_state(state)
+        self.episode.add_state(state, found.arrived_ns)
         for entry in state_entries(
             state, found.payload, found.arrived_ns, self.facts.task, self.facts.arm_kinds
         ):

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Iterable
+from operator import attrgetter
 from pathlib import Path
 
 from mart.episodes import labels
+from mart.episodes.label_format import labels_of, line_of
 from mart.recorder.storage.store import Store
 
 FOLDER = "labels"
@@ -25,7 +27,7 @@ def push_lines(store: Store, names: Iterable[str], root: Path, episodes: Collect
     """Write what is said about these episodes and not in the store yet; return how many lines that were."""
     known = set(_lines(store, names))
     wanted = [label for label in labels.read(root) if label.path in episodes]
-    new = [line for line in dict.fromkeys(map(labels.line_of, wanted)) if line not in known]
+    new = [line for line in dict.fromkeys(map(line_of, wanted)) if line not in known]
     if new:
         data = b"".join(line + b"\n" for line in new)
         name = f"{FOLDER}/{hashlib.sha256(data).hexdigest()}.jsonl"
@@ -35,12 +37,10 @@ def push_lines(store: Store, names: Iterable[str], root: Path, episodes: Collect
 
 def pull_lines(store: Store, names: Iterable[str], root: Path) -> int:
     """Append what the store's files say of the episodes in `root` and nobody has said there; return how many lines."""
-    known = {labels.line_of(label) for label in labels.read(root)}
-    found = [labels.label_of(line) for line in dict.fromkeys(_lines(store, names)) if line not in known]
-    new = [label for label in found if label is not None and (root / label.path).is_file()]
-    if new:
-        labels.append(root, sorted(new, key=lambda label: label.at_ns))
-    return len(new)
+    found = [label for line in dict.fromkeys(_lines(store, names)) for label in labels_of(line)]
+    known = set(labels.read(root))
+    new = [label for label in found if label not in known and (root / label.path).is_file()]
+    return labels.append_missing(root, sorted(new, key=attrgetter("at_ns"))) if new else 0
 
 
 def _lines(store: Store, names: Iterable[str]) -> list[bytes]:

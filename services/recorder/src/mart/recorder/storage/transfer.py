@@ -106,13 +106,12 @@ def pull(sizes: Mapping[str, int], store: Store, out: Path, after_each: Callable
     done = Transferred()
     for name, size in sizes.items():
         target = _inside(out, name)
-        if target.exists():
-            _require_same(store, name, target, size, str(target))
-            done.there += 1
-        else:
-            _fetch(store, name, size, target)
+        if not target.exists() and _fetch(store, name, size, target):
             done.files.append(name)
             done.bytes += size
+        else:
+            _require_same(store, name, target, size, str(target))
+            done.there += 1
         after_each()
     done.labels = pull_lines(store, store.sizes(), out)
     return done
@@ -142,7 +141,8 @@ def _require_same(store: Store, name: str, here: Path, size: int, taken: str) ->
     )
 
 
-def _fetch(store: Store, name: str, size: int, target: Path) -> None:
+def _fetch(store: Store, name: str, size: int, target: Path) -> bool:
+    """Fetch a file, and tell whether it got its name: not where somebody else has pulled it meanwhile."""
     target.parent.mkdir(parents=True, exist_ok=True)
     draft = target.with_name(f".{target.name[:100]}.{uuid.uuid4().hex}")
     try:
@@ -171,10 +171,11 @@ def _fetch(store: Store, name: str, size: int, target: Path) -> None:
             os.fsync(file.fileno())
         rename_to_new(draft, target)
         sync_folder(target.parent)
-    except FileExistsError as error:
-        raise Conflict(f"{target} is there by now, from somebody else; pull again.") from error
+    except FileExistsError:
+        return False
     finally:
         draft.unlink(missing_ok=True)
+    return True
 
 
 def _require_name(name: str) -> None:

@@ -44,13 +44,14 @@ def read_episode(
 
     Raises Corrupt where the file is damaged and InvalidInput, naming it, where it is not whole or has no such rate.
     """
-    return [from_data(layout, segment) for segment in episode.segments(task, control_hz, skip_idle_s)]
+    segments = episode.segments(task, control_hz, skip_idle_s, with_integration_states=False)
+    return [from_data(layout, segment) for segment in segments]
 
 
 def from_states(layout: ObservationLayout, states: Sequence[State]) -> EpisodeArrays:
     """Turn the states of one episode in their order, the one after the reset first, into arrays."""
     shapes = {field.name: field.shape for field in layout.fields}
-    return from_data(layout, arrays_from_states(states, layout.arms, shapes))
+    return from_data(layout, arrays_from_states(states, layout.arms, shapes, with_integration_states=False))
 
 
 def from_data(layout: ObservationLayout, data: EpisodeData) -> EpisodeArrays:

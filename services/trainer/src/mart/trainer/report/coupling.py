@@ -121,7 +121,8 @@ def _segments(
     """
     for episode in episodes:
         try:
-            yield episode.segments(task, min(control_hz, episode.control_hz or control_hz))
+            rate_hz = min(control_hz, episode.control_hz or control_hz)
+            yield episode.segments(task, rate_hz, with_integration_states=False)
         except Corrupt as error:
             _log.warning("Left out: %s", error)
 

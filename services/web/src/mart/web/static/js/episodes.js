@@ -5,6 +5,7 @@ import { byId, setShown, setText } from "./dom.js";
 import { CurationForm } from "./episodes/curation-form.js";
 import { EpisodeList } from "./episodes/episode-list.js";
 import { EpisodeView } from "./episodes/episode-view.js";
+import { readingText } from "./episodes/formatting.js";
 import { followRooms } from "./live.js";
 import { isMember, toLobby } from "./member.js";
 
@@ -68,8 +69,9 @@ async function showList(parameters) {
   }
   setShown(byId("absent"), listing === null);
   setShown(byId("list"), listing !== null);
-  if (listing === null) timer = setTimeout(show, RETRY_MS);
-  else list.show(listing);
+  if (listing !== null) list.show(listing);
+  if (listing?.files_to_read) setText(byId("count"), readingText(listing));
+  if (listing === null || listing.files_to_read) timer = setTimeout(show, RETRY_MS);
 }
 
 /** A folder of thousands of files is read when it is first asked for. @param {unknown} error */

@@ -155,6 +155,11 @@ export function curatedText({ dataset, changed, left_out: leftOut, episodes }, d
   return `${plural(changed, "episode")} ${did} “${dataset}”. It holds ${episodes} now.${rest}`;
 }
 
+/** "Reading episodes: 3,200 of 10,000" @type {(listing: Api.EpisodeListing) => string} */
+export function readingText({ files_read: read, files_to_read: all }) {
+  return `Reading episodes: ${read.toLocaleString("en")} of ${all.toLocaleString("en")}`;
+}
+
 /** "61 episodes, 57 good (93 %)" @type {(listing: Api.EpisodeListing) => string} */
 export function countText({ matching, successes }) {
   if (matching === 0) return "";
