@@ -133,6 +133,7 @@ def test_things_are_drawn_where_the_file_has_them(browser: Browser, site: tuple[
         page.get_by_label("Where in the episode").fill("2")  # tick 40 at 20 Hz
         box = page.locator(".space canvas").bounding_box()
         drawn = Image.open(io.BytesIO(picture(page))).convert("RGB")
+        page.goto(f"{url}quality")  # where no 3D is drawn
         places = page.evaluate(PLACES, [PATH, 2.001])
     assert box is not None
     cubes = {name: place for name, place in places.items() if f"{name}/position" in observed}
@@ -252,7 +253,7 @@ def test_an_imported_episode_without_a_model_says_so(browser: Browser, site: tup
     url, code, _ = site
     with joined(browser, url, code, "episodes", size="wide", scheme="light", refused=True) as page:
         page.locator(".episode", has_text="lift, episode").get_by_role("link").click()
-        expect(page.locator(".drawing [role=status]").last).to_contain_text("no model")
+        expect(page.locator(".drawing [role=status]").last).to_contain_text("holds no model")
         expect(page.locator(".space")).to_have_count(0)
         expect(page.get_by_role("button", name="Show in 3D")).to_be_hidden()
         is_legible(page, "episode-without-model")

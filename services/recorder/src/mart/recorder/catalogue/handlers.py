@@ -263,7 +263,7 @@ def _views(file: EpisodeFile) -> list[RecordedView]:
     start_ns = first.stamps.stepped_ns
     cameras = {video_topic(camera): camera for camera in _recorded_cameras(file)}
     first_ns: dict[str, int] = {}
-    for message in file.messages(*cameras):
+    for message in file.messages(*cameras) if cameras else ():
         first_ns.setdefault(cameras[message.topic], _shown_ns(message))
     return [
         RecordedView(camera=camera, start_s=(first_ns[camera] - start_ns) / 1e9)
