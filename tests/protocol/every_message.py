@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from collections.abc import Iterator
+from typing import Any
 
 from google.protobuf.descriptor import Descriptor, FieldDescriptor
 from google.protobuf.message import Message
@@ -59,7 +60,7 @@ def _filled(name: str, kind: type[Message]) -> Iterator[tuple[str, Message]]:
             yield f"{name}.{field.containing_oneof.name}={field.name}", message
 
 
-def _set(message: Message, field: FieldDescriptor) -> None:
+def _set(message: Message, field: Any) -> None:
     target = getattr(message, field.name)
     if field.message_type is not None and field.message_type.GetOptions().map_entry:
         key, value = field.message_type.fields
@@ -75,7 +76,7 @@ def _set(message: Message, field: FieldDescriptor) -> None:
         setattr(message, field.name, _scalar(field))
 
 
-def _scalar(field: FieldDescriptor) -> object:
+def _scalar(field: Any) -> object:
     if field.cpp_type == FieldDescriptor.CPPTYPE_ENUM:
         return field.enum_type.values[-1].number
     if field.type == FieldDescriptor.TYPE_BYTES:

@@ -72,10 +72,10 @@ def test_losses_of_a_phone_are_counted_where_edits_leave_them(tmp_path: Path) ->
         file.add(command_entry("arm0", said, codec.encode(said), synthetic.wall_ns(tick)))
     finalize(file, episode, facts, tmp_path, by_toy_replica, repaired=False)
     found = measure(only(tmp_path)).arms["arm0"]
-    assert (found.phone_losses, found.phone_lost_s) == (2, pytest.approx(21 / 20))
+    assert (found.phone_losses, found.phone_lost_s) == pytest.approx((2, 21 / 20))
     assert found.phone_lost_share == pytest.approx(21 / 40)
     found = measure(only(tmp_path).model_copy(update={"edits": EpisodeEdits().with_cut("0-20")})).arms["arm0"]
-    assert (found.phone_losses, found.phone_lost_s) == (2, pytest.approx(11 / 20))
+    assert (found.phone_losses, found.phone_lost_s) == pytest.approx((2, 11 / 20))
     cut = EpisodeEdits().with_cut("0-20").with_cut("20-30")
     assert measure(only(tmp_path).model_copy(update={"edits": cut})).arms["arm0"].phone_losses == 1
 
