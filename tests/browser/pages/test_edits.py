@@ -33,7 +33,7 @@ class Site:
 def site(tmp_path: Path) -> Iterator[Site]:
     """An episode of 3 s, in the middle of which nothing moves for longer than a second."""
     port = free_port()
-    path = write_moving(tmp_path / "episodes", still=range(20, 46), ticks=60)
+    path = write_moving(tmp_path / "episodes", still=range(20, 46), ticks=60, step="lift_cube0")
     with running_router() as endpoint, contextlib.ExitStack() as services:
         for command, kind, name in (
             (["web", "--port", str(port)], "web", "web"),
@@ -108,7 +108,7 @@ def test_two_at_once_keep_both_and_see_each_other(browser: Browser, site: Site) 
 
 def test_a_step_is_said_to_be_done_elsewhere_or_never(browser: Browser, site: Site) -> None:
     with page_of(browser, site) as page:
-        page.get_by_label("Step of the task").select_option(index=0)
+        page.get_by_label("Step of the task").select_option("lift_cube0")
         done = page.locator(".bar.subtask")
         seek(page, 1.0)
         page.get_by_role("button", name="Done from here").click()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -243,25 +242,6 @@ def its_file_and_its_quality_say_that_tracking_was_lost(platform: Platform) -> N
     assert arm.phone_losses == 2
     assert 0.8 < arm.phone_lost_s < 5.0
     assert measure(found[-1]).arms["arm1"].phone_losses == 0
-
-
-@pytest.mark.parametrize(
-    ("status", "again", "text"),
-    [
-        ({}, False, "Ready"),
-        ({}, True, "Again"),
-        ({"ready": True}, True, "Not ready yet"),
-        ({"practises_only": True}, False, None),
-        ({"phase": "recording"}, False, "Discard"),
-        ({"phase": "ended"}, True, None),
-    ],
-)
-def test_the_button_of_the_episode_offers_what_can_be_done(
-    run: Run, status: dict[str, Any], again: bool, text: str | None
-) -> None:
-    status = {"phase": "practice", "ready": False, "practises_only": False} | status
-    script = "({ nextAction }, { status, again }) => nextAction(status, again)?.text ?? null"
-    assert run("phone/episode-button.js", script, {"status": status, "again": again}) == text
 
 
 def test_one_person_goes_on_to_the_other_arm_and_back_with_page_and_phone(
