@@ -65,11 +65,13 @@ def write_episode(
     return finalize(file, episode, facts, root, verify, repaired=False)
 
 
-def write_moving(root: Path, still: range, ticks: int = 30, number: int = 1) -> Path:
-    """An episode whose first arm moves by a centimetre a tick but for the ticks that are `still`."""
+def write_moving(root: Path, still: range, ticks: int = 30, number: int = 1, step: str = "") -> Path:
+    """An episode whose first arm moves a centimetre a tick but for those that are `still`; `step` is done at last."""
     states = synthetic.states(ticks, number)
     moved_m = 0.0
     for tick, state in enumerate(states):
         moved_m += 0.0 if tick in still and tick != still[0] else 0.01
         state.arms[0].tool_in_base.x = moved_m
+        if step:
+            state.progress.subtasks.add(name=step, done=tick == ticks)
     return finalize(*write_part(root, states), root, by_toy_replica, repaired=False).path

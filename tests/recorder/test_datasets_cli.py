@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from mart.episodes import labels
+from mart.protocol.messages import Model
 from mart.recorder.catalogue.episode_catalogue import FILE_NAME
 from tests.recorder import synthetic
 from tests.recorder.conftest import Mart
@@ -127,6 +129,30 @@ def test_what_does_not_belong_together_is_not_merged(mart: Mart, paths: list[Pat
     elsewhere = mart("datasets", "merge", "both", "one", tmp_path / "other" / "two", code=1)
     assert "only data sets of one folder" in elsewhere
     assert [one["name"] for one in mart.json("datasets", "list")["datasets"]] == ["one"]
+
+
+@pytest.mark.parametrize(
+    ("model", "told"),
+    [
+        ({"control_hz": 10.0}, "control_hz: 10 Hz (two); 20 Hz (one)."),
+        ({"mujoco_version": "3.9.1"}, "MuJoCo 3.9 (two)"),
+    ],
+)
+def test_rates_and_versions_that_differ_are_named_with_their_mend(
+    mart: Mart, paths: list[Path], monkeypatch: pytest.MonkeyPatch, model: dict[str, Any], told: str
+) -> None:
+    field = "control_hz" if "control_hz" in model else "versions"
+    other = Model()
+    other.CopyFrom(synthetic.MODEL)
+    for name, value in model.items():
+        setattr(other, name, value)
+    monkeypatch.setattr(synthetic, "MODEL", other)
+    mart("datasets", "create", "one", paths[0])
+    mart("datasets", "create", "two", write_episode(mart.episodes_dir, ticks=5, number=9).path)
+    refused = mart("datasets", "merge", "both", "one", "two", code=1)
+    assert told in refused
+    assert f"`--allow {field}`" in refused
+    assert mart.json("datasets", "merge", "both", "one", "two", "--allow", field)["changed"] == 2
 
 
 def test_edits_are_told_and_change_the_digest(mart: Mart, paths: list[Path]) -> None:

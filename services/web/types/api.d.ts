@@ -247,7 +247,7 @@ declare namespace Api {
     tasks: Record<string, string>;
   }
 
-  type LaneKind = "subtask" | "driver" | "engaged" | "waiting" | "cue" | "notice";
+  type LaneKind = "subtask" | "driver" | "engaged" | "waiting" | "lost" | "cue" | "notice";
 
   interface Lane extends Messages.Lane {
     kind: LaneKind;

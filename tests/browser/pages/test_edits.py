@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,7 +33,7 @@ class Site:
 def site(tmp_path: Path) -> Iterator[Site]:
     """An episode of 3 s, in the middle of which nothing moves for longer than a second."""
     port = free_port()
-    path = write_moving(tmp_path / "episodes", still=range(20, 46), ticks=60)
+    path = write_moving(tmp_path / "episodes", still=range(20, 46), ticks=60, step="lift_cube0")
     with running_router() as endpoint, contextlib.ExitStack() as services:
         for command, kind, name in (
             (["web", "--port", str(port)], "web", "web"),
@@ -103,6 +104,37 @@ def test_two_at_once_keep_both_and_see_each_other(browser: Browser, site: Site) 
         one.keyboard.press("u")  # one's own, though the other's is newer
         expect(one.locator(".edit.cut")).to_have_count(1)
         expect(one.locator(".edit.cut")).to_have_attribute("aria-label", "Cut out: 2.5 s to 3.0 s")
+
+
+def test_a_step_is_said_to_be_done_elsewhere_or_never(browser: Browser, site: Site) -> None:
+    with page_of(browser, site) as page:
+        page.get_by_label("Step of the task").select_option("lift_cube0")
+        done = page.locator(".bar.subtask")
+        seek(page, 1.0)
+        page.get_by_role("button", name="Done from here").click()
+        expect(page.locator(".edit-told")).to_contain_text("done from 1.0 s")
+        expect(done.first).to_have_attribute("title", re.compile("1.0 s to 3.0 s"))
+        page.get_by_role("button", name="Never done").click()
+        expect(page.locator(".edit-told")).to_contain_text("never done")
+        expect(done).to_have_count(0)
+        page.get_by_role("button", name="Undo", exact=True).first.click()
+        expect(done).to_have_count(1)
+
+
+def test_how_long_idle_time_lasts_is_chosen(browser: Browser, site: Site) -> None:
+    """Nothing moves for 1.3 s."""
+    with page_of(browser, site) as page:
+        longest = page.get_by_label("How long nothing moves in idle time")
+        expect(longest).to_have_value("1")
+        longest.select_option("2 s or longer")
+        page.get_by_role("button", name="Leave out idle time").click()
+        expect(page.locator(".edit-told")).to_contain_text("All arms stand still for 2 s or longer nowhere")
+        page.reload()
+        expect(longest).to_have_value("2")
+        longest.select_option("0.5 s or longer")
+        longest.blur()
+        page.keyboard.press("i")
+        expect(page.locator(".edit.skip")).to_have_count(1)
 
 
 @pytest.mark.parametrize(("size", "scheme"), FEW_LOOKS)

@@ -5,11 +5,12 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from mart.episodes import list_episodes
+from mart.episodes.quality import measure
 from mart.platform.run.running import Platform
 from mart.protocol import clock, codec, keys
 from mart.protocol.messages import CUE_COME_CLOSER, Cue, Event
@@ -112,6 +113,7 @@ def test_a_phone_reloads_stops_and_records(browser: Browser, platform: Platform)
         a_reload_carries_on_and_a_used_code_is_explained(phone, browser, platform)
         stop_takes_half_a_second_of_holding(phone)
         an_episode_is_begun_and_discarded(phone)
+        its_file_and_its_quality_say_that_tracking_was_lost(platform)
 
 
 def the_arm_follows_only_while_held_and_tracked(phone: Phone) -> None:
@@ -214,29 +216,32 @@ def an_episode_is_begun_and_discarded(phone: Phone) -> None:
     phone.page.get_by_role("button", name="Ready", exact=True).click()
     expect(phone.page.locator("#link")).to_contain_text("Recording")
     phone.is_fine("phone-recording")
+    phone.page.evaluate("() => { xrDevice.tracked = false }")
+    expect(phone.page.locator("#hold-text")).to_have_text(
+        "Tracking lost. Let the camera see more of the room."
+    )
+    phone.page.wait_for_timeout(1000)
+    phone.page.evaluate("() => { xrDevice.tracked = true }")
+    expect(phone.page.locator("#link")).to_contain_text("tracking good")
+    phone.page.evaluate("() => xrDevice.space.dispatchEvent(new Event('reset'))")
+    expect(phone.page.locator("#link")).to_contain_text("tracking lost")
+    expect(phone.page.locator("#link")).to_contain_text("tracking good")
     phone.page.get_by_role("button", name="Discard").click()
     phone.page.get_by_role("button", name="Press again to discard").click()
     expect(phone.operator.locator("#state-label")).to_have_text("Discarded")
     expect(phone.page.get_by_role("button", name="Again", exact=True)).to_be_visible()
 
 
-@pytest.mark.parametrize(
-    ("status", "again", "text"),
-    [
-        ({}, False, "Ready"),
-        ({}, True, "Again"),
-        ({"ready": True}, True, "Not ready yet"),
-        ({"practises_only": True}, False, None),
-        ({"phase": "recording"}, False, "Discard"),
-        ({"phase": "ended"}, True, None),
-    ],
-)
-def test_the_button_of_the_episode_offers_what_can_be_done(
-    run: Run, status: dict[str, Any], again: bool, text: str | None
-) -> None:
-    status = {"phase": "practice", "ready": False, "practises_only": False} | status
-    script = "({ nextAction }, { status, again }) => nextAction(status, again)?.text ?? null"
-    assert run("phone/episode-button.js", script, {"status": status, "again": again}) == text
+def its_file_and_its_quality_say_that_tracking_was_lost(platform: Platform) -> None:
+    folder = platform.options.data_dir / "episodes"
+    deadline_s = clock.monotonic_s() + 60.0
+    while not (found := [one for one in list_episodes(folder) if one.outcome == "discarded"]):
+        assert clock.monotonic_s() < deadline_s
+        clock.sleep_s(0.2)
+    arm = measure(found[-1]).arms["arm0"]
+    assert arm.phone_losses == 2
+    assert 0.8 < arm.phone_lost_s < 5.0
+    assert measure(found[-1]).arms["arm1"].phone_losses == 0
 
 
 def test_one_person_goes_on_to_the_other_arm_and_back_with_page_and_phone(

@@ -12,7 +12,7 @@
 
     /** @param {string} type */
     async requestReferenceSpace(type) {
-      return { type };
+      return Object.assign(device.space, { type });
     }
 
     /** @param {(nowMs: number, frame: { session: Session, getViewerPose: () => Pose }) => void} callback */
@@ -32,6 +32,7 @@
     position: { x: 0, y: 1.4, z: 0 },
     orientation: { x: 0, y: 0, z: 0, w: 1 },
     tracked: true, // false: the runtime guesses the position
+    space: new EventTarget(), // "reset": its origin is somewhere else
     session: /** @type {Session | null} */ (null),
 
     viewerPose() {

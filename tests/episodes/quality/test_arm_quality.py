@@ -19,7 +19,8 @@ def quality(edits: EpisodeEdits | None = None, arm: int = 0, **changes: object) 
     segments = edited(whole, edits or EpisodeEdits())
     late_s = np.zeros(sum(map(len, segments)))
     late_s[:10] = 0.2
-    return arm_quality(segments, arm, late_s, RATE_HZ)
+    known = [np.zeros(len(segment), np.bool_) for segment in segments]
+    return arm_quality(segments, arm, late_s, known, RATE_HZ)
 
 
 def test_a_straight_way_with_a_rest() -> None:

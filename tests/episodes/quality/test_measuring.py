@@ -7,14 +7,24 @@ import pytest
 
 from mart.episodes import list_episodes, open_episode
 from mart.episodes.arrays import EpisodeData, arrays_from_states
+from mart.episodes.edits import EpisodeEdits
 from mart.episodes.labelled_episode import LabelledEpisode
-from mart.episodes.mcap_entries import event_entry
+from mart.episodes.mcap_entries import command_entry, event_entry
 from mart.episodes.quality import measure
 from mart.episodes.quality.motion import read_motion
 from mart.episodes.quality.pictures import PictureGaps
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput
-from mart.protocol.messages import BARRIER_PHASE_RUNNING, BARRIER_PHASE_STOPPED, BarrierPhase, Event, State
+from mart.protocol.messages import (
+    BARRIER_PHASE_RUNNING,
+    BARRIER_PHASE_STOPPED,
+    HAND_FAULT_TRACKING,
+    HAND_FAULT_UNSPECIFIED,
+    BarrierPhase,
+    Command,
+    Event,
+    State,
+)
 from mart.recorder.record.finalize import finalize
 from tests.recorder import synthetic
 from tests.recorder.files import by_toy_replica, write_episode, write_part
@@ -51,6 +61,23 @@ def test_what_messages_say_is_counted(tmp_path: Path) -> None:
     assert found.arms["arm0"].held_share == 0.0
     assert found.video_gap_s == pytest.approx(0.05)
     assert found.video_gap_share == 0.0
+
+
+def test_losses_of_a_phone_are_counted_where_edits_leave_them(tmp_path: Path) -> None:
+    file, episode, facts = write_part(tmp_path, synthetic.states(40, first_tick=100))
+    lost = {*range(110, 130), 135, 99, 140}  # before the first state and after the last transition: not of it
+    for number, tick in enumerate(range(98, 141)):
+        said = Command(arm="arm0", sequence=1000 + number, state_tick=tick)
+        said.hand_fault = HAND_FAULT_TRACKING if tick in lost else HAND_FAULT_UNSPECIFIED
+        file.add(command_entry("arm0", said, codec.encode(said), synthetic.wall_ns(tick)))
+    finalize(file, episode, facts, tmp_path, by_toy_replica, repaired=False)
+    found = measure(only(tmp_path)).arms["arm0"]
+    assert (found.phone_losses, found.phone_lost_s) == pytest.approx((2, 21 / 20))
+    assert found.phone_lost_share == pytest.approx(21 / 40)
+    found = measure(only(tmp_path).model_copy(update={"edits": EpisodeEdits().with_cut("0-20")})).arms["arm0"]
+    assert (found.phone_losses, found.phone_lost_s) == pytest.approx((2, 11 / 20))
+    cut = EpisodeEdits().with_cut("0-20").with_cut("20-30")
+    assert measure(only(tmp_path).model_copy(update={"edits": cut})).arms["arm0"].phone_losses == 1
 
 
 def test_a_motion_is_what_arrays_say(tmp_path: Path) -> None:

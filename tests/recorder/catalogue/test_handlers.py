@@ -3,6 +3,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from mart.episodes import labels
@@ -17,6 +18,7 @@ from mart.recorder.catalogue.handlers import CatalogueHandlers
 from mart.recorder.record.finalize import finalize
 from tests.recorder import synthetic
 from tests.recorder.files import by_toy_replica, write_episode, write_part
+from tests.recorder.importing import sources
 
 PATH = f"2026-09-21/room-1-0001-{synthetic.TASK}.mcap"
 
@@ -63,6 +65,15 @@ def test_what_real_cameras_captured_is_among_the_views(tmp_path: Path) -> None:
         "arm0-wrist": pytest.approx(0.198),
         "arm1-wrist": pytest.approx(0.2),
     }  # none of the table's came
+
+
+def test_what_was_imported_without_arms_and_pictures_is_shown(tmp_path: Path) -> None:
+    values = {"actions": np.zeros((8, 7)), "obs/eef_pos": np.ones((8, 3))}
+    sources.write_demo(tmp_path / "lift.hdf5", values)
+    path = sources.only(sources.imported(tmp_path / "lift.hdf5", tmp_path / "in")).path
+    asked = CatalogueRequest.Show(path=path.relative_to(tmp_path / "in").as_posix())
+    details = CatalogueHandlers(tmp_path / "in").answer(CatalogueRequest(show=asked)).details
+    assert (list(details.views), details.episode.ticks) == ([], 7)
 
 
 def test_no_folder_is_no_episodes(tmp_path: Path) -> None:

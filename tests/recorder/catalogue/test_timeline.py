@@ -1,6 +1,18 @@
 from __future__ import annotations
 
-from mart.protocol.messages import CUE_GO, OPERATOR_HUMAN, OPERATOR_POLICY, ArmState, Event, Lane, Span, State
+from mart.episodes.hand_faults import HandFaults
+from mart.protocol.messages import (
+    CUE_GO,
+    HAND_FAULT_TRACKING,
+    OPERATOR_HUMAN,
+    OPERATOR_POLICY,
+    ArmState,
+    Command,
+    Event,
+    Lane,
+    Span,
+    State,
+)
 from mart.recorder.catalogue.timeline import MAX_POINTS, MAX_SPANS, runs, timeline
 from tests.recorder import synthetic
 
@@ -37,7 +49,9 @@ def test_it_tells_what_was_done_who_drove_and_for_whom_the_world_waited() -> Non
     ]
     notice = Event(wall_ns=states[1].stamps.stepped_ns, notice=Event.Notice(text="The link broke."))
     cue = Event(wall_ns=states[2].stamps.stepped_ns, cue_given=Event.CueGiven(arm="arm0", cue=CUE_GO))
-    details = timeline(states, [notice, cue, Event(wall_ns=1, notice=Event.Notice(text="before"))])
+    details = timeline(
+        states, [notice, cue, Event(wall_ns=1, notice=Event.Notice(text="before"))], HandFaults()
+    )
     lanes = list(details.lanes)
     assert details.wall_s == 4.0
     assert lane(lanes, "subtask") == [(2.0, 4.0, "done")]
@@ -48,17 +62,25 @@ def test_it_tells_what_was_done_who_drove_and_for_whom_the_world_waited() -> Non
     assert lane(lanes, "notice") == [(1.0, 1.0, "The link broke.")]
 
 
+def test_it_tells_when_a_phone_was_lost() -> None:
+    faults = HandFaults()
+    for tick in (12, 13, 15):
+        faults.add(Command(arm="arm0", state_tick=tick, hand_fault=HAND_FAULT_TRACKING))
+    details = timeline([state(tick) for tick in range(10, 17)], [], faults)
+    assert lane(list(details.lanes), "lost") == [(2.0, 4.0, "lost"), (5.0, 6.0, "lost")]
+
+
 def test_where_the_wall_means_nothing_time_is_simulated() -> None:
     cue = Event(wall_ns=state(2).stamps.stepped_ns + 1, cue_given=Event.CueGiven(arm="arm0", cue=CUE_GO))
     early = Event(wall_ns=1, notice=Event.Notice(text="before"))
-    details = timeline([state(tick) for tick in range(5)], [cue, early], control_hz=20.0)
+    details = timeline([state(tick) for tick in range(5)], [cue, early], HandFaults(), control_hz=20.0)
     assert (details.simulated, details.wall_s) == (True, 0.2)
     assert lane(list(details.lanes), "cue") == [(0.1, 0.1, "go")]
     assert lane(list(details.lanes), "notice") == []
 
 
 def test_long_episodes_are_thinned() -> None:
-    details = timeline([state(tick) for tick in range(3 * MAX_POINTS)], [])
+    details = timeline([state(tick) for tick in range(3 * MAX_POINTS)], [], HandFaults())
     assert {len(trace.values) for trace in details.traces} == {MAX_POINTS}
     assert [(trace.arm, trace.quantity, trace.unit) for trace in details.traces] == [
         ("arm0", "height", "m"),
@@ -73,7 +95,7 @@ def test_what_is_told_is_bounded() -> None:
         for tick in range(3 * MAX_SPANS)
     )
     events = (Event(wall_ns=2**63, notice=Event.Notice(text="x" * 10_000)) for _ in range(2 * MAX_SPANS))
-    details = timeline(states, events)
+    details = timeline(states, events, HandFaults())
     assert max(len(one.spans) for one in details.lanes) == MAX_SPANS
     assert details.ByteSize() < 5_000_000
 
@@ -83,8 +105,8 @@ def test_states_that_do_not_agree_are_told_as_far_as_they_do() -> None:
     strange.stamps.stepped_ns = synthetic.START_NS
     strange.arms[0].tool_in_base.z = float("nan")
     for order in ([state(0), strange, state(2)], [strange, state(0)], [strange, State()]):
-        timeline(order, []).SerializeToString()
+        timeline(order, [], HandFaults()).SerializeToString()
 
 
 def test_a_file_without_states_has_no_time() -> None:
-    assert timeline([], []).wall_s == 0.0
+    assert timeline([], [], HandFaults()).wall_s == 0.0

@@ -8,7 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from mart.protocol.messages import Command, pose_from_message
+from mart.protocol.messages import (
+    HAND_FAULT_JUMP,
+    HAND_FAULT_TRACKING,
+    HAND_FAULT_UNSPECIFIED,
+    Command,
+    HandFault,
+    pose_from_message,
+)
 from mart.protocol.pose import Pose
 from mart.sim.world import World
 from mart.teleop_gateway.input.driving import MAX_FRAME_AGE_NS, Driving, InputDevice
@@ -70,6 +77,10 @@ class DrivenArm:
                 self._send()
             self._step()
 
+    def told(self) -> list[HandFault]:
+        """What every command so far says was lost of the hand."""
+        return [command.hand_fault for command in self._commands]
+
     def wait(self, elapsed_s: float) -> None:
         """Nothing comes: the world waits."""
         self._now_s += elapsed_s
@@ -124,6 +135,27 @@ def give_to_the_other_device(arm: DrivenArm) -> None:
     arm.driving.disconnect(arm.device)
     arm.device = InputDevice.KEYBOARD
     arm.driving.connect(arm.device)
+
+
+def test_commands_say_what_was_lost_of_the_hand() -> None:
+    arm = DrivenArm(InputDevice.PHONE, late_ticks=0)
+    arm.hand.tracking = False
+    arm.advance(1)
+    assert set(arm.told()) == {HAND_FAULT_UNSPECIFIED}  # not started yet: there was nothing to lose
+    arm.hand.tracking = True
+    arm.advance(1)
+    arm.hand.tracking = False
+    arm.advance(1)
+    arm.hand.tracking = True
+    arm.advance(1)
+    arm.hand.clutch = True
+    arm.advance(1)
+    arm.hand.y_m += 0.3
+    arm.advance(1)
+    faults = arm.told()[-5 * FRAMES_A_TICK :]
+    lost, jumped = [HAND_FAULT_TRACKING] * FRAMES_A_TICK, [HAND_FAULT_JUMP]
+    still = [HAND_FAULT_UNSPECIFIED] * FRAMES_A_TICK
+    assert faults == [*still, *lost, *still, *still, *jumped, *still[1:]]
 
 
 @pytest.mark.parametrize("device", list(InputDevice))

@@ -38,6 +38,9 @@ from mart.v1.catalogue_pb2 import (
     Trace,
 )
 from mart.v1.command_pb2 import (
+    HAND_FAULT_JUMP,
+    HAND_FAULT_TRACKING,
+    HAND_FAULT_UNSPECIFIED,
     OPERATOR_HOLD,
     OPERATOR_HUMAN,
     OPERATOR_POLICY,
@@ -45,6 +48,7 @@ from mart.v1.command_pb2 import (
     OPERATOR_UNSPECIFIED,
     Command,
     CommandStamps,
+    HandFault,
     Operator,
 )
 from mart.v1.driver_pb2 import (
@@ -153,6 +157,9 @@ __all__ = [
     "EPISODE_PHASE_ENDED",
     "EPISODE_PHASE_PRACTICE",
     "EPISODE_PHASE_RECORDING",
+    "HAND_FAULT_JUMP",
+    "HAND_FAULT_TRACKING",
+    "HAND_FAULT_UNSPECIFIED",
     "JOB_STATE_CANCELLED",
     "JOB_STATE_DONE",
     "JOB_STATE_FAILED",
@@ -196,6 +203,7 @@ __all__ = [
     "Error",
     "Evaluation",
     "Event",
+    "HandFault",
     "Job",
     "JobProgress",
     "JobState",

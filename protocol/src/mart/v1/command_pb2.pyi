@@ -14,11 +14,20 @@ class Operator(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     OPERATOR_HUMAN: _ClassVar[Operator]
     OPERATOR_POLICY: _ClassVar[Operator]
     OPERATOR_SCRIPT: _ClassVar[Operator]
+
+class HandFault(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    HAND_FAULT_UNSPECIFIED: _ClassVar[HandFault]
+    HAND_FAULT_TRACKING: _ClassVar[HandFault]
+    HAND_FAULT_JUMP: _ClassVar[HandFault]
 OPERATOR_UNSPECIFIED: Operator
 OPERATOR_HOLD: Operator
 OPERATOR_HUMAN: Operator
 OPERATOR_POLICY: Operator
 OPERATOR_SCRIPT: Operator
+HAND_FAULT_UNSPECIFIED: HandFault
+HAND_FAULT_TRACKING: HandFault
+HAND_FAULT_JUMP: HandFault
 
 class CommandStamps(_message.Message):
     __slots__ = ("input_sent_ns", "gateway_received_ns", "sent_ns")
@@ -31,7 +40,7 @@ class CommandStamps(_message.Message):
     def __init__(self, input_sent_ns: _Optional[int] = ..., gateway_received_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ...) -> None: ...
 
 class Command(_message.Message):
-    __slots__ = ("arm", "seat_epoch", "sequence", "target_tool_in_base", "gripper", "engaged", "source", "stamps", "seen_tick", "emergency_stop", "state_tick")
+    __slots__ = ("arm", "seat_epoch", "sequence", "target_tool_in_base", "gripper", "engaged", "source", "stamps", "seen_tick", "emergency_stop", "state_tick", "hand_fault")
     ARM_FIELD_NUMBER: _ClassVar[int]
     SEAT_EPOCH_FIELD_NUMBER: _ClassVar[int]
     SEQUENCE_FIELD_NUMBER: _ClassVar[int]
@@ -43,6 +52,7 @@ class Command(_message.Message):
     SEEN_TICK_FIELD_NUMBER: _ClassVar[int]
     EMERGENCY_STOP_FIELD_NUMBER: _ClassVar[int]
     STATE_TICK_FIELD_NUMBER: _ClassVar[int]
+    HAND_FAULT_FIELD_NUMBER: _ClassVar[int]
     arm: str
     seat_epoch: int
     sequence: int
@@ -54,4 +64,5 @@ class Command(_message.Message):
     seen_tick: int
     emergency_stop: bool
     state_tick: int
-    def __init__(self, arm: _Optional[str] = ..., seat_epoch: _Optional[int] = ..., sequence: _Optional[int] = ..., target_tool_in_base: _Optional[_Union[_pose_pb2.Pose, _Mapping]] = ..., gripper: _Optional[float] = ..., engaged: _Optional[bool] = ..., source: _Optional[_Union[Operator, str]] = ..., stamps: _Optional[_Union[CommandStamps, _Mapping]] = ..., seen_tick: _Optional[int] = ..., emergency_stop: _Optional[bool] = ..., state_tick: _Optional[int] = ...) -> None: ...
+    hand_fault: HandFault
+    def __init__(self, arm: _Optional[str] = ..., seat_epoch: _Optional[int] = ..., sequence: _Optional[int] = ..., target_tool_in_base: _Optional[_Union[_pose_pb2.Pose, _Mapping]] = ..., gripper: _Optional[float] = ..., engaged: _Optional[bool] = ..., source: _Optional[_Union[Operator, str]] = ..., stamps: _Optional[_Union[CommandStamps, _Mapping]] = ..., seen_tick: _Optional[int] = ..., emergency_stop: _Optional[bool] = ..., state_tick: _Optional[int] = ..., hand_fault: _Optional[_Union[HandFault, str]] = ...) -> None: ...

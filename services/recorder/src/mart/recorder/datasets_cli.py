@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
@@ -148,14 +148,26 @@ def delete(name: str, folder: Path, as_json: bool) -> None:
 @_name
 @click.argument("sources", nargs=-1, required=True)
 @_folder
+@click.option(
+    "--allow", multiple=True, type=click.Choice(["control_hz", "versions"]), help="What may differ."
+)
 @json_option
-def merge(name: str, sources: tuple[str, ...], folder: Path, as_json: bool) -> None:
-    """Put the episodes of several data sets of one folder together under a new name; the others stay as they are."""
+def merge(
+    name: str,
+    sources: tuple[str, ...],
+    folder: Path,
+    allow: tuple[Literal["control_hz", "versions"], ...],
+    as_json: bool,
+) -> None:
+    """Put the episodes of several data sets of one folder together under a new name; the others stay as they are.
+
+    Their task, arms, control rate, and versions of MART and MuJoCo have to be one.
+    """
     from mart.recorder.catalogue import dataset_merging
     from mart.recorder.catalogue.episode_catalogue import list_folder
 
     known = list_folder(folder)
-    done = dataset_merging.merge(folder, name, sources, known, now_ns=clock.wall_ns())
+    done = dataset_merging.merge(folder, name, sources, known, allowed=allow, now_ns=clock.wall_ns())
     _say(done, f"put into it, of {', '.join(sources)}", as_json)
 
 

@@ -19,10 +19,17 @@ _CLOSED, _OPEN = 0.2, -0.2  # of the gripper's command, so that one that tremble
 _SHORTEST_STRAIGHT_M = 0.05
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 
-def arm_quality(segments: Sequence[EpisodeData], arm: int, late_s: Array, rate_hz: float) -> ArmQuality:
-    """Measure the arm of this index. late_s: float64[T], how long each transition that is left waited for it."""
+def arm_quality(
+    segments: Sequence[EpisodeData], arm: int, late_s: Array, lost: Sequence[Flags], rate_hz: float
+) -> ArmQuality:
+    """Measure the arm of this index.
+
+    late_s: float64[T], how long each transition that is left waited for it. lost: for each segment bool[T], whether its
+    hand was not known.
+    """
     alone = [one_arm(segment, arm) for segment in segments]
     ways = [segment.tool_positions_in_base[:, 0] for segment in alone]
     changes = [_gripper_changes(segment.actions[:, 0, 6]) for segment in alone]
@@ -30,6 +37,7 @@ def arm_quality(segments: Sequence[EpisodeData], arm: int, late_s: Array, rate_h
     count = sum(map(len, alone))
     path_m = sum(_length(way) for way in ways)
     straight_m = sum(_length(way[_places(way, found)]) for way, found in zip(ways, changes, strict=True))
+    lost_ticks = sum(int(flags.sum()) for flags in lost)
     closings = sum(closed for found in changes for _, closed in found)
     return ArmQuality(
         log_dimensionless_jerk=_weighted([(log_dimensionless_jerk(way, rate_hz), len(way)) for way in ways]),
@@ -43,6 +51,9 @@ def arm_quality(segments: Sequence[EpisodeData], arm: int, late_s: Array, rate_h
         held_share=float(np.concatenate([segment.held[:, 0] for segment in alone]).mean()),
         late_share=float((late_s >= LATE_S).mean()),
         waited_s=float(late_s.sum()),
+        phone_losses=sum(map(_rises, lost)),
+        phone_lost_s=lost_ticks / rate_hz,
+        phone_lost_share=lost_ticks / count,
     )
 
 
@@ -99,5 +110,5 @@ def _places(way: Array, changes: Sequence[tuple[int, bool]]) -> list[int]:
     return [0, *(row for row, _ in changes if row > 0), len(way) - 1]
 
 
-def _rises(flags: NDArray[np.bool_]) -> int:
+def _rises(flags: Flags) -> int:
     return int(flags[0]) + int((flags[1:] & ~flags[:-1]).sum())

@@ -21,7 +21,7 @@ WAYS: tuple[By, ...] = get_args(By)
 # What people and days are compared by; the rest is of links and machines, and is told where it is an outlier.
 COMPARED = (
     "duration_s", "log_dimensionless_jerk", "path_ratio", "idle_share", "regrasps", "engagements", "held_share",
-    "waited_share",
+    "waited_share", "phone_losses", "phone_lost_share",
 )  # fmt: skip
 
 

@@ -16,7 +16,8 @@ class ArmQuality(BaseModel):
     where its gripper closed or opened.
     regrasps: how often its gripper was closed again. engagements: how often its clutch was pressed.
     held_share: ticks in which no new command of its operator's was there. late_share: ticks that waited for it.
-    waited_s: how long the room waited for it.
+    waited_s: how long the room waited for it. phone_losses: how often the phone, or controller, that led it lost its
+    tracking or was somewhere else at once. phone_lost_s, phone_lost_share: for how long, in whole ticks.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -32,6 +33,9 @@ class ArmQuality(BaseModel):
     held_share: float = 0.0
     late_share: float = 0.0
     waited_s: float = 0.0
+    phone_losses: int = 0
+    phone_lost_s: float = 0.0
+    phone_lost_share: float = 0.0
 
 
 class EpisodeQuality(BaseModel):

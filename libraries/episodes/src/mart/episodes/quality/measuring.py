@@ -1,12 +1,15 @@
-"""Measure one episode: its states once, its events and the times of its pictures once more."""
+"""Measure one episode: its states once, its events, commands and the times of its pictures once more."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from mart.episodes.editing import edited
+from mart.episodes.hand_faults import HandFaults
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.quality.arm_quality import arm_quality, idle_seconds
 from mart.episodes.quality.measures import EpisodeQuality
@@ -15,10 +18,12 @@ from mart.episodes.quality.pictures import PictureGaps
 from mart.episodes.reader import EpisodeFile
 from mart.protocol import codec
 from mart.protocol.errors import Corrupt, InvalidInput
-from mart.protocol.messages import BARRIER_PHASE_STOPPED, Event
-from mart.protocol.recording import EVENT, video_topic
+from mart.protocol.messages import BARRIER_PHASE_STOPPED, Command, Event
+from mart.protocol.recording import EVENT, command_topic, video_topic
 
 _BROKEN = "link of"  # what a gateway says of a seat whose link broke
+M = TypeVar("M", Event, Command)
+
 _LOCKSTEP = "lockstep"  # paced by nobody
 
 
@@ -39,13 +44,13 @@ def measure(episode: LabelledEpisode) -> EpisodeQuality:
     return _quality(episode, motion, rate_hz, _messages(file))
 
 
-def _quality(
-    episode: LabelledEpisode, motion: Motion, rate_hz: float, said: dict[str, float | int | None]
-) -> EpisodeQuality:
+def _quality(episode: LabelledEpisode, motion: Motion, rate_hz: float, said: _Said) -> EpisodeQuality:
     segments = edited(motion.data, episode.edits)
     if not segments:
         raise InvalidInput(f"{episode.file_path} cannot be measured: all of it was cut out.")
-    rows = np.concatenate([segment.ticks[:-1] for segment in segments])
+    parts = [segment.ticks[:-1] for segment in segments]
+    rows = np.concatenate(parts)
+    lost = said.faults.transitions(motion.data.arms, motion.first_tick, len(motion.data))
     late_s = motion.late_s[rows]
     idle_s = sum(map(idle_seconds, segments))
     duration_s = len(rows) / rate_hz
@@ -67,35 +72,49 @@ def _quality(
                 if done.any()
             },
             "arms": {
-                name: arm_quality(segments, arm, late_s[:, arm], rate_hz)
+                name: arm_quality(segments, arm, late_s[:, arm], [lost[part, arm] for part in parts], rate_hz)
                 for arm, name in enumerate(motion.data.arms)
             },
-            **said,
+            **said.numbers,
         }
     )
 
 
-def _messages(file: EpisodeFile) -> dict[str, float | int | None]:
-    """Return what events and pictures say, by the name of the measure."""
+@dataclass(frozen=True)
+class _Said:
+    """Hold what messages beside the states say: numbers by the name of the measure, and when hands were not known."""
+
+    numbers: dict[str, float | int | None]
+    faults: HandFaults
+
+
+def _messages(file: EpisodeFile) -> _Said:
     cameras = dict.fromkeys([*file.episode.arms, *(file.episode.captured_cameras or ())])
-    topics = [video_topic(camera) for camera in cameras]
-    gaps = PictureGaps()
+    commands = set(map(command_topic, file.episode.arms))
+    gaps, faults = PictureGaps(), HandFaults()
     events: list[Event] = []
-    for message in file.messages(EVENT, *topics):
-        if message.topic != EVENT:
+    for message in file.messages(EVENT, *commands, *map(video_topic, cameras)):
+        if message.topic == EVENT:
+            events.append(_decoded(Event, message.payload, file))
+        elif message.topic in commands:
+            faults.add(_decoded(Command, message.payload, file))
+        else:
             gaps.add(message.topic, message.arrived_ns)
-            continue
-        try:
-            events.append(codec.decode(Event, message.payload))
-        except InvalidInput as error:
-            raise Corrupt(f"{file.path} holds an event that cannot be read: {error}") from error
     longest_s, share = gaps.longest_s_and_share()
-    return {
+    numbers = {
         "video_gap_s": longest_s,
         "video_gap_share": share,
         "link_losses": sum(_BROKEN in one.notice.text for one in events if one.HasField("notice")),
         "stops": _stops(events),
     }
+    return _Said(numbers, faults)
+
+
+def _decoded(kind: type[M], payload: bytes, file: EpisodeFile) -> M:
+    try:
+        return codec.decode(kind, payload)
+    except InvalidInput as error:
+        raise Corrupt(f"{file.path} holds a {kind.DESCRIPTOR.name} that cannot be read: {error}") from error
 
 
 def _stops(events: Iterable[Event]) -> int:

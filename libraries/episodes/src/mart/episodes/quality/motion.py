@@ -25,12 +25,14 @@ class Motion:
     """Hold what an episode's states say about its quality.
 
     data: the episode without observations and integration states. late_s: float64[T, arms], how long the tick waited
-    for that arm beyond the pace. wall_s: from the first state to the last, on the wall's clock.
+    for that arm beyond the pace. wall_s: from the first state to the last, on the wall's clock. first_tick: of the
+    room, at the first state.
     """
 
     data: EpisodeData
     late_s: NDArray[np.float64]
     wall_s: float
+    first_tick: int
 
 
 def read_motion(states: Iterable[State]) -> Motion:
@@ -54,6 +56,7 @@ class _Columns:
         self.states = 0
         self._arms = tuple(arm.arm for arm in first.arms)
         self._next_tick = first.episode_tick
+        self._first_tick = first.tick
         self._poses, self._grippers, self._late_s, self._times_s = (array("d") for _ in range(4))
         self._flags, self._done = array("B"), array("B")
         self._sent_ns = array("Q")
@@ -114,4 +117,4 @@ class _Columns:
             tool_quaternions_in_base=poses[..., 3:] / norms[..., None],
         )
         wall_s = (self._stepped_ns[1] - self._stepped_ns[0]) / 1e9
-        return Motion(data, late_s[1:], max(0.0, wall_s))
+        return Motion(data, late_s[1:], max(0.0, wall_s), self._first_tick)

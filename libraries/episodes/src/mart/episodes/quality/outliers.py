@@ -43,6 +43,8 @@ JUDGED: Mapping[str, Judged] = {
     "engagements": Judged("Clutch presses", "", 1, 1.0),
     "held_share": Judged("Held", "%", 1, 0.01),
     "late_share": Judged("Late", "%", 1, 0.01),
+    "phone_losses": Judged("Phone losses", "", 1, 0.25),
+    "phone_lost_share": Judged("Phone lost", "%", 1, 0.01),
     "waited_share": Judged("Waiting", "%", 1, 0.01),
     "real_time_factor": Judged("Real time", "×", -1, 0.02),
     "missing_ticks": Judged("Missing ticks", "", 1, 0.25),

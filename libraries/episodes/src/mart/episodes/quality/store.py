@@ -21,7 +21,7 @@ from mart.protocol.errors import MartError
 _log = logging.getLogger(__name__)
 
 FILE_NAME = "quality.sqlite"
-_VERSION = 1  # of what is measured and how: of another one everything is measured anew
+_VERSION = 2  # of what is measured and how: of another one everything is measured anew
 _TABLE = "CREATE TABLE quality (path TEXT PRIMARY KEY, stamp TEXT, row TEXT)"
 
 

@@ -8,13 +8,21 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from mart.episodes import datasets, labels
+from mart.episodes.hand_faults import HandFaults
 from mart.episodes.labelled_episode import LabelledEpisode
 from mart.episodes.labels import Label, LabelKind
 from mart.episodes.reader import EpisodeFile, RecordedMessage
 from mart.protocol import clock, codec
 from mart.protocol.errors import InvalidInput, NotFound
-from mart.protocol.messages import CatalogueReply, CatalogueRequest, Event, RecordedView, State
-from mart.protocol.recording import EVENT, VERSIONS, CadenceRecord, VerificationRecord, video_topic
+from mart.protocol.messages import CatalogueReply, CatalogueRequest, Command, Event, RecordedView, State
+from mart.protocol.recording import (
+    EVENT,
+    VERSIONS,
+    CadenceRecord,
+    VerificationRecord,
+    command_topic,
+    video_topic,
+)
 from mart.protocol.tasks import SHARED_VIEWPOINT
 from mart.recorder.catalogue import (
     dataset_editing,
@@ -126,8 +134,8 @@ class CatalogueHandlers:
     def _details(self, path: str) -> CatalogueReply.Details:
         file = self._file(path)
         views = _views(file)
-        events = (codec.decode(Event, message.payload) for message in file.messages(EVENT))
-        details = timeline(_each_tick_once(file), events, None if views else file.room.control_hz)
+        events, faults = _said(file)
+        details = timeline(_each_tick_once(file), events, faults, None if views else file.room.control_hz)
         known = episode_editing.as_it_is(self._rows[path])
         details.episode.CopyFrom(episode_message(known.episode))
         details.edits.CopyFrom(edits_message(known))
@@ -229,6 +237,17 @@ class CatalogueHandlers:
         return self._drawings.still(file)
 
 
+def _said(file: EpisodeFile) -> tuple[list[Event], HandFaults]:
+    """Return what people and services said, and when hands were not known, in one reading."""
+    events, faults = [], HandFaults()
+    for message in file.messages(EVENT, *map(command_topic, file.episode.arms)):
+        if message.topic == EVENT:
+            events.append(codec.decode(Event, message.payload))
+        else:
+            faults.add(codec.decode(Command, message.payload))
+    return events, faults
+
+
 def _each_tick_once(file: EpisodeFile) -> Iterator[State]:
     newest = -1
     for state in file.steady_states():
@@ -245,7 +264,7 @@ def _views(file: EpisodeFile) -> list[RecordedView]:
     start_ns = first.stamps.stepped_ns
     cameras = {video_topic(camera): camera for camera in _recorded_cameras(file)}
     first_ns: dict[str, int] = {}
-    for message in file.messages(*cameras):
+    for message in file.messages(*cameras) if cameras else ():
         first_ns.setdefault(cameras[message.topic], _shown_ns(message))
     return [
         RecordedView(camera=camera, start_s=(first_ns[camera] - start_ns) / 1e9)

@@ -10,6 +10,7 @@ from array import array
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 
+from mart.episodes.hand_faults import HandFaults
 from mart.protocol.messages import (
     ArmState,
     CatalogueReply,
@@ -34,7 +35,7 @@ _MAX_TEXT_CHARACTERS = 500
 
 
 def timeline(
-    states: Iterable[State], events: Iterable[Event], control_hz: float | None = None
+    states: Iterable[State], events: Iterable[Event], faults: HandFaults, control_hz: float | None = None
 ) -> CatalogueReply.Details:
     """Return `wall_s`, `lanes` and `traces`.
 
@@ -48,7 +49,7 @@ def timeline(
         return CatalogueReply.Details()
     return CatalogueReply.Details(
         wall_s=told.now_s,
-        lanes=[*told.lanes(), *_said(events, told)],
+        lanes=[*told.lanes(), *told.lost(faults), *_said(events, told)],
         traces=told.traces(),
         simulated=control_hz is not None,
         tick_times=tick_times(told.seconds),
@@ -183,6 +184,14 @@ class _Timeline:
             yield Lane(kind="engaged", name=arm.name, spans=arm.engaged.spans)
         for name, spans in self._waiting.items():
             yield Lane(kind="waiting", name=name, spans=spans)
+
+    def lost(self, faults: HandFaults) -> Iterator[Lane]:
+        arms = list(self._arms)
+        lost = faults.transitions(arms, self._first_tick, len(self.seconds))
+        for column, name in enumerate(arms):
+            if lost[:, column].any():
+                spans = runs(self.seconds, ("lost" if one else "" for one in lost[:, column]))
+                yield Lane(kind="lost", name=name, spans=spans)
 
     def traces(self) -> Iterator[Trace]:
         every = -(-len(self.seconds) // MAX_POINTS)

@@ -6,7 +6,17 @@ import enum
 from collections import Counter
 from dataclasses import dataclass, field, replace
 
-from mart.protocol.messages import OPERATOR_HUMAN, ArmState, Command, CommandStamps, pose_message
+from mart.protocol.messages import (
+    HAND_FAULT_JUMP,
+    HAND_FAULT_TRACKING,
+    HAND_FAULT_UNSPECIFIED,
+    OPERATOR_HUMAN,
+    ArmState,
+    Command,
+    CommandStamps,
+    HandFault,
+    pose_message,
+)
 from mart.teleop_gateway.input.frame_validator import FrameRejection, FrameValidator, HandSample, LetGo
 from mart.teleop_gateway.input.grasp import GripperSample, holds
 from mart.teleop_gateway.input.phone_frame import Flag
@@ -16,6 +26,7 @@ from mart.teleop_gateway.input.tool_motion import ToolMotion
 
 LOST_AFTER_S = 0.25
 _REMEMBERED_COMMANDS = 512
+_FAULTS = {LetGo.TRACKING: HAND_FAULT_TRACKING, LetGo.JUMP: HAND_FAULT_JUMP}
 MAX_FRAME_AGE_NS = 1_000_000_000  # an older hand leads nothing
 _OLDEST_INPUT_NS = 10_000_000_000  # an older stamp is a wrong clock, not a slow network
 
@@ -136,7 +147,9 @@ class Driving:
         follows = peer.grips and not hand.waited
         gripper = target.gripper if follows or self.gripper_told is None else self.gripper
         self._target = replace(target, gripper=gripper)
-        return self._command(hand, self._target, sent_ns, now_ns)
+        command = self._command(hand, self._target, sent_ns, now_ns)
+        command.hand_fault = _hand_fault(hand, peer.started)
+        return command
 
     def see(self, arm: ArmState, tick: int, sim_time_s: float, now_s: float) -> None:
         """Take how the arm is after the newest tick, whoever drove it."""
@@ -233,6 +246,13 @@ class Driving:
             state_tick=self._tick,
             emergency_stop=Flag.EMERGENCY_STOP in hand.frame.flags,
         )
+
+
+def _hand_fault(hand: HandSample, started: bool) -> HandFault:
+    """Return what the device lost of the hand; a phone that has not been started yet has nothing to lose."""
+    return (
+        _FAULTS.get(hand.doubt, HAND_FAULT_UNSPECIFIED) if started and hand.doubt else HAND_FAULT_UNSPECIFIED
+    )
 
 
 def _means_its_gripper(hand: HandSample, before: HandSample | None) -> bool:

@@ -65,7 +65,8 @@ class _Rejected(Exception):
 class HandSample:
     """Hold a good frame. `clutch`: held, and nothing speaks against it; `let_go`: what speaks against a held one.
 
-    waited: it comes so late that nothing in it counts but an emergency stop.
+    waited: it comes so late that nothing in it counts but an emergency stop. doubt: what speaks against this frame,
+    whether or not the clutch is held.
     """
 
     frame: PhoneFrame
@@ -73,6 +74,7 @@ class HandSample:
     clutch: bool
     let_go: LetGo | None = None
     waited: bool = False
+    doubt: LetGo | None = None
 
 
 class FrameValidator:
@@ -135,7 +137,12 @@ class FrameValidator:
         if waited and pressed:
             self.rejected[FrameRejection.AGE] += 1
         hand = HandSample(
-            frame, pose, pressed and not self._let_go, self._let_go if pressed else None, waited=waited
+            frame=frame,
+            pose_phone_in_session=pose,
+            clutch=pressed and not self._let_go,
+            let_go=self._let_go if pressed else None,
+            waited=waited,
+            doubt=doubt,
         )
         self._last, self._last_s = hand, now_s
         return hand

@@ -17,7 +17,11 @@ const list = new EpisodeList(curation, {
   onChange: (query) => go(query),
   onOpen: (path) => go(new URLSearchParams({ path })),
 });
-const view = new EpisodeView(attempt, () => go(list.query));
+const view = new EpisodeView(attempt, {
+  onBack: () => go(list.query),
+  onOpen: (path) => go(new URLSearchParams({ path })),
+  neighbours: (path) => list.neighbours(path),
+});
 let timer = 0;
 let asked = 0; // an older question's late answer is not shown
 

@@ -6,7 +6,7 @@ import { byId, element, setShown, setText } from "./dom.js";
 import * as api from "./episodes/episodes-api.js";
 import { dateText } from "./episodes/formatting.js";
 import { isMember, toLobby } from "./member.js";
-import { groupText, numberText, progressText } from "./quality/formatting.js";
+import { byName, groupText, noneText, numberText, progressText } from "./quality/formatting.js";
 import { rangeChart, tellsSomething } from "./quality/range-chart.js";
 import { repeating } from "./repeating.js";
 
@@ -36,8 +36,10 @@ async function refresh() {
   try {
     const { listing } = await api.episodes(new URLSearchParams(), 1);
     setShown(byId("absent"), listing === null);
-    setShown(byId("choice"), listing !== null);
-    if (listing) await compare(listing);
+    const isEmpty = listing !== null && Object.keys(listing.tasks).length === 0;
+    setShown(byId("nothing"), isEmpty);
+    setShown(byId("choice"), listing !== null && !isEmpty);
+    if (listing && !isEmpty) await compare(listing);
     setText(byId("page-message"), "");
   } catch (error) {
     if (statusOf(error) === NOT_JOINED) toLobby();
@@ -48,10 +50,6 @@ async function refresh() {
 /** @param {Api.EpisodeListing} listing */
 async function compare({ tasks, episodes }) {
   offer(tasks, episodes[0]?.task ?? "");
-  if (!task.value) {
-    setText(byId("progress"), "Nothing has been recorded yet.");
-    return;
-  }
   const asked = `${task.value} ${by.value}`;
   const { comparison } = await api.comparedQuality(task.value, by.value);
   const wanted = JSON.stringify([asked, comparison]);
@@ -75,11 +73,16 @@ function offer(tasks, newest) {
 
 /** @param {Api.QualityComparison} comparison */
 function show(comparison) {
-  const { groups, outliers } = comparison;
+  const { outliers } = comparison;
+  const groups = by.value === "day" ? comparison.groups : comparison.groups.toSorted(byName);
   setText(byId("progress"), progressText(comparison));
   const charts = measuresOf(groups).map((name) => rowsOf(groups, name)).filter(tellsSomething);
   byId("figures").replaceChildren(...charts.map(rangeChart));
-  byId("table").replaceChildren(table(groups));
+  const measures = measuresOf(groups);
+  const zero = measures.filter((name) => rowsOf(groups, name).every(({ number }) => number.value === 0));
+  const told = measures.filter((name) => !zero.includes(name));
+  byId("table").replaceChildren(table(groups, told));
+  setText(byId("all-zero"), noneText(zero.map((name) => titleOf(groups, name))));
   byId("outliers").replaceChildren(...outliers.map(outlierRow));
   setShown(byId("figures"), charts.length > 0);
   setShown(byId("numbers"), groups.length > 0);
@@ -98,9 +101,9 @@ const rowsOf = (groups, measure) =>
 /**
  * The roles are said because a narrow page shows each row as a card, which is no table to a screen reader.
  * @param {Messages.QualityGroup[]} groups
+ * @param {string[]} measures
  */
-function table(groups) {
-  const measures = measuresOf(groups);
+function table(groups, measures) {
   const titles = ["Episodes", "Good", "Unlike others", ...measures.map((name) => titleOf(groups, name))];
   const heads = [by.value === "day" ? "Day" : "Who drove", ...titles].map((text) =>
     element("th", { scope: "col", role: "columnheader" }, text),

@@ -9,7 +9,9 @@ import { lengthText } from "./formatting.js";
 /** @import { Player } from "./player.js" */
 /** @import { EditSpan } from "./edits.js" */
 
-const IDLE_S = 1;
+const IDLE_S = 1; // where nobody has chosen
+const IDLE_CHOICES_S = [0.3, 0.5, IDLE_S, 2, 5];
+const IDLE_KEY = "mart.idle_s";
 
 /** Shows the edits of one episode, and takes new ones. */
 export class EditPanel {
@@ -30,6 +32,11 @@ export class EditPanel {
   #history = element("details", { class: "history" }, element("summary"), this.#acts);
   #cut = key("Cut", "x", () => this.#cutMarked());
   #undo = key("Undo", "u", () => this.#undoNewest());
+  #idle = element(
+    "select",
+    { "aria-label": "How long nothing moves in idle time", on: { change: () => this.#keepIdle() } },
+    ...IDLE_CHOICES_S.map((seconds) => new Option(`${seconds} s or longer`, String(seconds))),
+  );
   #subtask;
   #onFocus = () => this.#act((path) => api.episodeEdits(path));
 
@@ -49,6 +56,8 @@ export class EditPanel {
     this.#titles = new Map(subtasks.map(({ name, title }) => [name, title]));
     const options = subtasks.map(({ name, title }) => element("option", { value: name }, title));
     this.#subtask = element("select", { "aria-label": "Step of the task" }, ...options);
+    this.#idle.value = sessionStorage.getItem(IDLE_KEY) ?? "";
+    if (!this.#idle.value) this.#idle.value = String(IDLE_S);
     this.#whole.addEventListener("change", () => this.#show());
     player.skipTo = (seconds) => (this.#whole.checked ? seconds : goesOnAt(this.#leftOut, seconds));
     addEventListener("focus", this.#onFocus);
@@ -86,11 +95,11 @@ export class EditPanel {
 
   #buttons() {
     return [
-      key("Begin", "[", () => this.#mark("begin")),
-      key("End", "]", () => this.#mark("end")),
+      key("Mark begin", "[", () => this.#mark("begin")),
+      key("Mark end", "]", () => this.#mark("end")),
       this.#cut,
-      key("Leave out idle time", "i", () => this.#leaveOutIdle()),
       key("Split", "k", () => this.#split()),
+      element("span", { class: "tools" }, key("Leave out idle time", "i", () => this.#leaveOutIdle()), this.#idle),
       this.#undo,
     ];
   }
@@ -137,7 +146,13 @@ export class EditPanel {
   }
 
   #leaveOutIdle() {
-    this.#edit({ skip_idle_s: IDLE_S }, `No arm stands still for ${IDLE_S} s or longer in what is left.`);
+    const seconds = Number(this.#idle.value);
+    this.#edit({ skip_idle_s: seconds }, `All arms stand still for ${seconds} s or longer nowhere in what is left.`);
+  }
+
+  /** The next episode is mended the same way. */
+  #keepIdle() {
+    sessionStorage.setItem(IDLE_KEY, this.#idle.value);
   }
 
   #split() {

@@ -5,6 +5,7 @@ import { element } from "../dom.js";
 import { drivers, lengthText, outcomeText, rateText, saidText, verdictText } from "./formatting.js";
 
 const SHORTEST_WAIT_S = 0.05;
+const NOT_PACED = "Nobody waited for the clock: as fast as the computer could";
 
 /** A card of facts. @type {(details: Api.EpisodeDetails) => HTMLElement} */
 export function factsCard(details) {
@@ -37,7 +38,7 @@ function facts({ episode, cadence, versions, verification }) {
       "Length",
       `${lengthText(episode.simulated_s)} simulated, ${episode.ticks} ticks at ${episode.control_hz} Hz`,
     ],
-    ["Real time", rateText(episode.real_time_factor)],
+    ["Real time", episode.mode === "lockstep" ? NOT_PACED : rateText(episode.real_time_factor)],
     ["Waited", `${episode.waited_s.toFixed(1)} s${arms.map((arm) => waitText(arm, cadence)).join("")}`],
     ...arms.map((arm) => delay(arm, cadence)),
     ["Check", [verdictText(episode.verdict), verification].filter(Boolean).join(": ")],

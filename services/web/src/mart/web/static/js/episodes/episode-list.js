@@ -40,6 +40,8 @@ const OPERATORS = [
 /** Shows a page of the episodes that the filters let through. */
 export class EpisodeList {
   #shown = "";
+  /** Of the episodes that were shown last. @type {string[] | null} */
+  #paths = null;
   #offset = 0;
   #curation;
   #listeners;
@@ -88,10 +90,22 @@ export class EpisodeList {
   }
 
   /**
+   * Which episodes stand before and after one; empty where none does, or it is not among those that were shown last.
+   * @param {string} path
+   */
+  async neighbours(path) {
+    this.#paths ??= ((await this.load())?.episodes ?? []).map((one) => one.path);
+    const at = this.#paths.indexOf(path);
+    if (at < 0) return { previous: "", next: "" };
+    return { previous: this.#paths[at - 1] ?? "", next: this.#paths[at + 1] ?? "" };
+  }
+
+  /**
    * Shows them, and what there is to choose from.
    * @param {Api.EpisodeListing} listing
    */
   show(listing) {
+    this.#paths = listing.episodes.map(({ path }) => path);
     const wanted = JSON.stringify(listing);
     if (wanted === this.#shown) return;
     this.#shown = wanted;

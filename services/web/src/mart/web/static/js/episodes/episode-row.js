@@ -3,7 +3,7 @@
 import { badge } from "../arms.js";
 import { element } from "../dom.js";
 import * as api from "./episodes-api.js";
-import { dateText, drivers, lengthText, outcomeText, rateText, remarks, verdictText } from "./formatting.js";
+import { dateText, drivers, lengthText, outcomeText, paceText, remarks, verdictText } from "./formatting.js";
 
 /**
  * A line with the box to tick it and a link that opens it.
@@ -59,7 +59,8 @@ function picture({ path, error }) {
 const driver = ([arm, text]) => element("span", { class: "driver" }, badge(arm), drivers(text).join(", "));
 
 /** @param {Api.Episode} episode */
-function measures({ simulated_s: length, real_time_factor: rate, verdict, verification_pending: pending }) {
+function measures(episode) {
+  const { simulated_s: length, verdict, verification_pending: pending } = episode;
   const check = pending ? "verification pending" : verdictText(verdict).toLowerCase();
-  return `${lengthText(length)}, ${rateText(rate)}, ${check}`;
+  return [lengthText(length), paceText(episode), check].filter(Boolean).join(", ");
 }

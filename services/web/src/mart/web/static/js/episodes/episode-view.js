@@ -20,7 +20,9 @@ import { laneRows, traceRows } from "./timeline.js";
 /** Shows one episode at a time, and takes what people say about it. */
 export class EpisodeView {
   #attempt;
-  #onBack;
+  #list;
+  /** The links to the episodes before and after it in the list. @type {Map<string, HTMLElement>} */
+  #steps = new Map();
   /** @type {Player | null} */
   #player = null;
   /** @type {EditPanel | null} */
@@ -40,11 +42,12 @@ export class EpisodeView {
 
   /**
    * @param {AttemptChange} attempt
-   * @param {() => void} onBack returns to the list
+   * @param {{ onBack: () => void, onOpen: (path: string) => void,
+   *   neighbours: (path: string) => Promise<{ previous: string, next: string }> }} list where it is one of many
    */
-  constructor(attempt, onBack) {
+  constructor(attempt, list) {
     this.#attempt = attempt;
-    this.#onBack = onBack;
+    this.#list = list;
     document.addEventListener("keydown", (event) => this.#onKey(event));
   }
 
@@ -80,7 +83,7 @@ export class EpisodeView {
     const { episode } = details;
     const title = element("h1", { id: "one-title", class: "title" }, episode.title);
     byId("one").replaceChildren(
-      element("p", {}, this.#backLink()),
+      this.#way(episode.path),
       element("header", { class: "one-head" }, element("div", {}, title, this.#subtitle), download(episode)),
       this.#labels.node,
       this.#seen(details),
@@ -105,13 +108,35 @@ export class EpisodeView {
     this.#facts = card;
   }
 
-  #backLink() {
-    /** @param {MouseEvent} event */
-    const click = (event) => {
-      event.preventDefault();
-      this.#onBack();
-    };
-    return element("a", { class: "back", href: "/episodes", on: { click } }, "← All episodes");
+  /** The way back, and on to the next ones. @param {string} path */
+  #way(path) {
+    const back = link("← All episodes", "/episodes", () => this.#list.onBack());
+    const between = element("span", { class: "between" });
+    const node = element("nav", { class: "steps", "aria-label": "Other episodes" }, back, between);
+    this.#steps.clear();
+    this.#list.neighbours(path).then(
+      ({ previous, next }) => {
+        if (this.#path !== path) return;
+        node.append(...this.#step("Previous", "p", previous), ...this.#step("Next", "n", next));
+      },
+      () => {}, // without a list none is before or after it
+    );
+    return node;
+  }
+
+  /**
+   * A link to an episode beside this one, which a key follows, too; nothing where there is none.
+   * @param {string} text
+   * @param {string} key
+   * @param {string} path
+   */
+  #step(text, key, path) {
+    if (!path) return [];
+    const step = link(text, `/episodes?${new URLSearchParams({ path })}`, () => this.#list.onOpen(path));
+    step.setAttribute("aria-keyshortcuts", key);
+    step.append(" ", element("kbd", { "aria-hidden": "true" }, key.toUpperCase()));
+    this.#steps.set(key, step);
+    return [step];
   }
 
   /** @param {Api.EpisodeDetails} details */
@@ -181,7 +206,7 @@ export class EpisodeView {
     const { ctrlKey, metaKey, altKey, target } = event;
     const isCommand = (ctrlKey || metaKey || altKey) && !event.getModifierState("AltGraph"); // with AltGr, [ is typed
     if (!this.isOpen || isCommand || !(target instanceof Element)) return;
-    if (target.matches("input:not([type=range], [type=radio], [type=checkbox]), select")) return;
+    if (target.matches("input:not([type=range], [type=radio], [type=checkbox]), select, textarea")) return;
     const action = this.#actionOf(event.key, target);
     if (!action) return;
     event.preventDefault();
@@ -196,7 +221,9 @@ export class EpisodeView {
   #actionOf(key, target) {
     const outcome = OUTCOME_KEYS.get(key);
     if (outcome) return () => this.#say({ outcome });
-    if (key === "Escape") return () => this.#onBack();
+    if (key === "Escape") return () => this.#list.onBack();
+    const to = this.#steps.get(key);
+    if (to) return () => to.click();
     if (key === " " && !target.matches("button, input, a")) return () => this.#player?.toggle();
     const edit = this.#edits?.actionOf(key);
     if (edit) return edit;
@@ -216,6 +243,22 @@ const STEP_KEYS = new Map([
   ["ArrowLeft", -1],
   ["ArrowRight", 1],
 ]);
+
+/**
+ * A link that is followed here.
+ * @param {string} text
+ * @param {string} href
+ * @param {() => void} follow
+ */
+function link(text, href, follow) {
+  /** @param {MouseEvent} event */
+  const click = (event) => {
+    if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+    event.preventDefault();
+    follow();
+  };
+  return element("a", { class: "back", href, on: { click } }, text);
+}
 
 /** @param {Api.Episode} episode */
 function download({ path, size_bytes: size }) {

@@ -98,6 +98,10 @@ const DAY = new Intl.DateTimeFormat(undefined, { dateStyle: "medium", timeStyle:
 /** When it began; nothing where it is not known. @type {(unixMs: number) => string} */
 export const dateText = (unixMs) => (unixMs ? DAY.format(unixMs) : "");
 
+/** How fast it went; nothing where nobody paced it. @type {(episode: Api.Episode) => string} */
+export const paceText = ({ mode, real_time_factor: factor }) =>
+  mode === "lockstep" || factor === null ? "" : `${rateText(factor)} real time`;
+
 /** 0.97 → "0.97×" @type {(factor: number | null) => string} */
 export const rateText = (factor) => (factor === null ? "–" : `${factor.toFixed(2)}×`);
 

@@ -11,14 +11,24 @@ export class LabelForm {
   #use = element("input", { type: "checkbox", id: "use" });
   #fit = element("span", { class: "soft" });
   #told = element("p", { class: "told", role: "status" });
-  #note = element("input", { id: "note", maxlength: MAX_NOTE_LENGTH, placeholder: "Anything worth remembering" });
+  #note = element("textarea", {
+    id: "note",
+    rows: 1,
+    maxlength: MAX_NOTE_LENGTH,
+    placeholder: "Anything worth remembering",
+  });
 
   /** @param {(labels: Api.EpisodeLabels) => void} onLabel */
   constructor(onLabel) {
     this.#onLabel = onLabel;
     this.#outcomes = OUTCOME_OPTIONS.map(([value, text]) => this.#outcome(value, text));
     this.#use.addEventListener("change", () => onLabel({ dropped: !this.#use.checked }));
-    this.#note.addEventListener("change", () => onLabel({ note: this.#note.value }));
+    this.#note.addEventListener("change", () => onLabel({ note: this.#note.value.replace(/\s+/g, " ").trim() }));
+    this.#note.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter") return;
+      event.preventDefault();
+      this.#note.blur();
+    });
     const labels = this.#outcomes.map(({ label }) => label);
     this.node = element(
       "section",

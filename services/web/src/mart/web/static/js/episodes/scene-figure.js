@@ -14,6 +14,8 @@ const FIRST_VIEWPOINT = "front";
 const LARGEST_RATIO = 2; // pixels for each of the page's
 const OPERATED = { role: "application", tabindex: 0 };
 const LABEL = "The episode in 3D: drag or use the arrow keys to turn, + and - to zoom, with shift to move";
+const BY_MOUSE = "Drag to turn, with Shift to move. Click it, and the wheel zooms.";
+const BY_TOUCH = "Tap it: then one finger turns, two move and zoom. Elsewhere fingers scroll.";
 
 /** Draws when something has changed, and only then. `node` is what to show. */
 export class SceneFigure {
@@ -28,6 +30,7 @@ export class SceneFigure {
   #sizes = new ResizeObserver(() => this.#resize());
   /** @type {{ world: Overlay, paths: ToolPaths, motion: Motion } | null} */
   #over = null;
+  #aheadS = 0;
   #atS = 0;
   #frame = 0;
 
@@ -41,9 +44,11 @@ export class SceneFigure {
     this.#scene = scene;
     this.#motion = motion;
     this.#view = new SceneView(this.#canvas, scene);
-    this.node = element("figure", {}, this.#surface, element("figcaption", {}, "In 3D"));
+    this.node = element("figure", {}, this.#surface, caption());
     this.#paths = this.#added(motion);
-    this.#camera = new FreeCamera(this.#surface, () => this.#drawSoon());
+    const isMeant = () => document.activeElement === this.#surface;
+    this.#camera = new FreeCamera(this.#surface, () => this.#drawSoon(), isMeant);
+    this.#surface.addEventListener("click", () => this.#surface.focus());
     this.home();
     this.#surface.addEventListener("keydown", (event) => event.defaultPrevented && event.stopPropagation());
     this.#canvas.addEventListener("webglcontextlost", onLost);
@@ -64,14 +69,22 @@ export class SceneFigure {
   }
 
   /**
-   * Lays another motion of the same scene over it, in step from the start; null takes it away.
+   * Lays another motion of the same scene over it; null takes it away.
    * @param {Motion | null} motion
+   * @param {number} [aheadS] by how much its seconds are ahead of what is shown of this one
    */
-  lay(motion) {
+  lay(motion, aheadS = 0) {
+    this.#aheadS = aheadS;
     this.#over?.world.dispose();
     this.#over?.paths.dispose();
     this.#over = motion && { world: new Overlay(this.#scene), paths: this.#added(motion, "over"), motion };
     if (this.#over) this.#view.stage.scene.add(this.#over.world.root);
+    this.#drawSoon();
+  }
+
+  /** Brings what lies over it in step another way. @param {number} aheadS as in `lay` */
+  align(aheadS) {
+    this.#aheadS = aheadS;
     this.#drawSoon();
   }
 
@@ -110,7 +123,7 @@ export class SceneFigure {
     this.#camera.place(this.#view, FIRST_VIEWPOINT);
     if (this.#over) {
       const { world, paths, motion } = this.#over;
-      const other = motion.at(this.#atS);
+      const other = motion.at(this.#atS + this.#aheadS);
       world.setPoses(motion.poses(other));
       paths.show(other);
       this.#view.camera.getWorldDirection(world.headlightDirection);
@@ -126,6 +139,16 @@ export class SceneFigure {
     this.#drawSoon();
   }
 }
+
+/** What it is, and how it is turned by whatever points here. */
+const caption = () =>
+  element(
+    "figcaption",
+    {},
+    "In 3D",
+    element("span", { class: "soft by-mouse" }, BY_MOUSE),
+    element("span", { class: "soft by-touch" }, BY_TOUCH),
+  );
 
 /**
  * A colour as the style sheets have it.

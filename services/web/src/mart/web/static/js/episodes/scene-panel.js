@@ -4,14 +4,19 @@ import { messageOf, statusOf } from "../api.js";
 import { element, setShown, setText } from "../dom.js";
 import { parseScene } from "../scene/scene-file.js";
 import { webglRenderer } from "../scene/webgl.js";
+import { alignmentOf, alignments } from "./alignment.js";
 import * as api from "./episodes-api.js";
 import { dateText, outcomeText } from "./formatting.js";
 import { Motion } from "./motion.js";
 
+/** @import { Alignment } from "./alignment.js" */
 /** @import { SceneFigure } from "./scene-figure.js" */
 
 const OFFERED = 30; // others of the task, the newest
-const OVER = "over"; // in the page's address
+const [OVER, ALIGN] = ["over", "align"]; // in the page's address
+const NO_WEBGL =
+  "This browser draws nothing in 3D (it has no WebGL 2). Switch on graphics acceleration in its settings, or open " +
+  "this page in another browser. Videos, timeline and file need none.";
 
 /** `node` is the line to operate it by; the picture joins `videos`. */
 export class ScenePanel {
@@ -19,6 +24,8 @@ export class ScenePanel {
   #videos;
   /** @type {SceneFigure | null} */
   #figure = null;
+  /** @type {Motion | null} */
+  #motion = null;
   #sha256 = "";
   #atS = 0;
   #asked = 0;
@@ -27,11 +34,17 @@ export class ScenePanel {
   #open = element("button", { type: "button", on: { click: () => this.open() } }, "Show in 3D");
   /** @type {HTMLSelectElement} */
   #choice = element("select", { on: { change: () => void this.#lay(this.#choice.value) } }, new Option("Nothing", ""));
+  /** @type {HTMLSelectElement} */
+  #align = element("select", { on: { change: () => this.#alignBy(this.#align.value) } });
+  #alignLabel = element("label", { hidden: true }, "Meet at ", this.#align);
+  /** @type {Alignment[]} */
+  #alignments = [];
   #legend = element("ul", { class: "legend" });
   #tools = element(
     "span",
     { class: "space-tools", hidden: true },
     element("label", {}, "Lay over it ", this.#choice),
+    this.#alignLabel,
     quiet("From the front", () => this.#figure?.home()),
     quiet("Hide 3D", () => this.#away("")),
   );
@@ -44,8 +57,8 @@ export class ScenePanel {
   constructor(details, videos) {
     this.#details = details;
     this.#videos = videos;
-    if (!webglRenderer()) this.#away("This browser has no WebGL 2, so there is no view in 3D here.", false);
-    else if (details.views.length === 0 || overInAddress()) this.open();
+    if (!webglRenderer()) this.#away(NO_WEBGL, false);
+    else if (details.views.length === 0 || inAddress(OVER)) this.open();
   }
 
   /** Follows the player. @param {number} seconds */
@@ -84,7 +97,8 @@ export class ScenePanel {
       import("./scene-figure.js"),
     ]);
     if (this.#isClosed) throw new Error("closed");
-    this.#figure = new Figure(parseScene(bytes), new Motion(motion), () => this.#onLost());
+    this.#motion = new Motion(motion);
+    this.#figure = new Figure(parseScene(bytes), this.#motion, () => this.#onLost());
     this.#sha256 = sha256;
     this.#videos.append(this.#figure.node);
     this.#figure.show(this.#atS);
@@ -99,7 +113,7 @@ export class ScenePanel {
     const known = listing?.episodes ?? [];
     const others = known.filter((one) => one.path !== path && isAlike(one.operators, operators));
     this.#choice.replaceChildren(new Option("Nothing", ""), ...others.map((one) => new Option(nameOf(one), one.path)));
-    const over = overInAddress();
+    const over = inAddress(OVER);
     if (!over) return;
     if (!others.some((one) => one.path === over)) this.#choice.append(new Option(over, over));
     this.#choice.value = over;
@@ -109,21 +123,52 @@ export class ScenePanel {
   /** @param {string} path of an episode; empty for none */
   async #lay(path) {
     const mine = ++this.#asked;
-    remember(path);
+    remember(path ? { [OVER]: path } : { [OVER]: "", [ALIGN]: "" });
     this.#figure?.lay(null);
     this.#legend.replaceChildren();
-    this.#tell(path ? "Fetching…" : "");
-    if (!path) return;
+    setShown(this.#alignLabel, false);
+    this.#tell("");
+    if (path) await this.#fetchOver(path, mine);
+  }
+
+  /**
+   * @param {string} path
+   * @param {number} mine which request this is; a later one counts instead
+   */
+  async #fetchOver(path, mine) {
+    this.#tell("Fetching…");
     try {
-      const motion = await this.#motionOver(path);
+      const [motion, { details }] = await Promise.all([this.#motionOver(path), api.episode(path)]);
       if (mine !== this.#asked || !this.#figure) return;
+      this.#offerAlignments(motion, details);
       this.#figure.lay(motion);
+      this.#alignBy(inAddress(ALIGN));
       const name = this.#choice.selectedOptions[0]?.textContent ?? path;
       this.#legend.replaceChildren(entry("own", nameOf(this.#details.episode)), entry("over", name));
       this.#tell("");
     } catch (error) {
       if (mine === this.#asked) this.#tell(messageOf(error));
     }
+  }
+
+  /**
+   * @param {Motion} motion of the other one
+   * @param {Api.EpisodeDetails} details of it
+   */
+  #offerAlignments(motion, details) {
+    const ends = { ownS: endOf(this.#motion), otherS: endOf(motion) };
+    this.#alignments = alignments(this.#details, details, ends);
+    this.#align.replaceChildren(...this.#alignments.map(({ value, text }) => new Option(text, value)));
+    setShown(this.#alignLabel, true);
+  }
+
+  /** @param {string} wanted one of the alignments; else the first */
+  #alignBy(wanted) {
+    const found = alignmentOf(this.#alignments, wanted);
+    if (!found) return;
+    this.#align.value = found.value;
+    remember({ [ALIGN]: found === this.#alignments[0] ? "" : found.value });
+    this.#figure?.align(found.aheadS);
   }
 
   /** @param {string} path */
@@ -151,6 +196,7 @@ export class ScenePanel {
     this.#open.disabled = false;
     setShown(this.#open, again);
     setShown(this.#tools, false);
+    setShown(this.#alignLabel, false);
     this.#tell(why);
   }
 
@@ -163,14 +209,19 @@ export class ScenePanel {
 /** Whether it may go another time: nobody answered, or not yet. @param {number} status */
 const isPassing = (status) => [0, 502, 503, 504].includes(status);
 
-/** Which episode the address lays over. */
-const overInAddress = () => new URLSearchParams(location.search).get(OVER) ?? "";
+/** When the last tick was. @param {Motion | null} motion */
+const endOf = (motion) => motion?.seconds.at(-1) ?? 0;
 
-/** @param {string} path */
-function remember(path) {
+/** What the address says of how it is shown. @param {string} name */
+const inAddress = (name) => new URLSearchParams(location.search).get(name) ?? "";
+
+/** @param {Record<string, string>} values what is empty is taken away */
+function remember(values) {
   const query = new URLSearchParams(location.search);
-  if (path) query.set(OVER, path);
-  else query.delete(OVER);
+  for (const [name, value] of Object.entries(values)) {
+    if (value) query.set(name, value);
+    else query.delete(name);
+  }
   history.replaceState(null, "", `/episodes?${query}`);
 }
 

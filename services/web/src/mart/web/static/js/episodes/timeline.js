@@ -9,7 +9,7 @@ const HEIGHT = 100;
 const NARROWEST_PERCENT = 0.2;
 
 /** Which lanes have a row, from the top; `engaged` is drawn into the driver's. @type {Api.LaneKind[]} */
-const ROWS = ["subtask", "driver", "waiting", "cue", "notice"];
+const ROWS = ["subtask", "driver", "lost", "waiting", "cue", "notice"];
 
 /** @type {Record<string, string | undefined>} */
 const QUANTITIES = { height: "Tool height", gripper: "Gripper" };
@@ -39,6 +39,7 @@ export function traceRows({ traces, wall_s: wallS }) {
 function laneText({ kind, name, title }) {
   if (kind === "subtask") return title;
   if (kind === "waiting") return `Waiting for ${theArm(name)}`;
+  if (kind === "lost") return `Phone of ${theArm(name)} lost`;
   if (kind === "cue") return `${armName(name)} says`;
   return kind === "notice" ? "Messages" : armName(name);
 }
@@ -54,6 +55,7 @@ function spanText({ kind, name, title }, { begin_s: beginS, end_s: endS, text })
     cue: () => `${cueText(text)} (${begin})`,
     notice: () => `${text} (${begin})`,
     waiting: () => `${(endS - beginS).toFixed(1)} s, at ${begin}`,
+    lost: () => `Tracking lost, ${(endS - beginS).toFixed(1)} s, at ${begin}`,
     subtask: () => `${title}: ${when}`,
     engaged: () => `Moving, ${when}`,
     driver: () => `${driverText(text)} drives ${theArm(name)}, ${when}`,
@@ -65,7 +67,7 @@ function spanText({ kind, name, title }, { begin_s: beginS, end_s: endS, text })
  * @param {number} wallS
  */
 function bars(lane, wallS) {
-  const arm = ["driver", "engaged", "waiting", "cue"].includes(lane.kind) ? { arm: lane.name } : {};
+  const arm = ["driver", "engaged", "waiting", "lost", "cue"].includes(lane.kind) ? { arm: lane.name } : {};
   return lane.spans.map((span) => {
     const title = spanText(lane, span);
     const dataset = { ...arm, text: span.text };

@@ -22,6 +22,7 @@ export class XrTracker {
   /** @type {Quaternion} */
   #quaternionWxyz = IDENTITY;
   #seenMs = -Infinity;
+  #jumpedMs = -Infinity;
   #session;
 
   /**
@@ -43,6 +44,7 @@ export class XrTracker {
     if (!gl) throw new Error("This browser cannot draw with WebGL.");
     session.updateRenderState({ baseLayer: new XRWebGLLayer(session, gl, { antialias: false, depth: false }) });
     const space = await session.requestReferenceSpace("local");
+    space.addEventListener("reset", () => tracker.#jump(performance.now()));
     /** @type {XRFrameRequestCallback} */
     const onFrame = (_, frame) => {
       session.requestAnimationFrame(onFrame);
@@ -63,8 +65,17 @@ export class XrTracker {
    * @returns {Sample}
    */
   sample(nowMs) {
-    const tracking = nowMs - this.#seenMs < STALE_MS && this.#session.visibilityState === "visible";
+    const known = nowMs - this.#seenMs < STALE_MS && nowMs - this.#jumpedMs > STALE_MS;
+    const tracking = known && this.#session.visibilityState === "visible";
     return { position: this.#position, quaternionWxyz: this.#quaternionWxyz, tracking, flags: 0 };
+  }
+
+  /**
+   * The runtime has found itself somewhere else: what was the same place has other coordinates from now on.
+   * @param {number} nowMs
+   */
+  #jump(nowMs) {
+    this.#jumpedMs = nowMs;
   }
 
   /**

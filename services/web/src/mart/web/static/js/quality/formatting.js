@@ -1,5 +1,7 @@
 // Numbers of quality as people read them. Pure.
 
+import { plural } from "../formatting.js";
+
 const MINUS = "−";
 
 /** 0.142 "%" → "14.2 %", 3 "s" → "3.0 s", -7.21 "" → "−7.21" @type {(value: number, unit: string) => string} */
@@ -22,8 +24,20 @@ export function usualText({ value, low, high, unit }) {
 }
 
 /** "12 of 300 looked at"; nothing where all are. @type {(comparison: Api.QualityComparison) => string} */
-export const progressText = ({ measured, episodes }) =>
-  measured < episodes ? `${measured} of ${episodes} episodes looked at…` : `${episodes} episodes`;
+export function progressText({ measured, episodes }) {
+  if (episodes === 0) return "No episode of it can be compared: all are left out of data sets, or cannot be read.";
+  return measured < episodes ? `${measured} of ${episodes} episodes looked at…` : plural(episodes, "episode");
+}
+
+/** What has no column, because it is 0 throughout. @type {(titles: string[]) => string} */
+export const noneText = (titles) => (titles.length ? `0 for everybody: ${titles.join(", ").toLowerCase()}.` : "");
+
+/**
+ * People and policies by name, then kinds of drivers.
+ * @type {(one: { name: string }, other: { name: string }) => number}
+ */
+export const byName = (one, other) =>
+  Number(one.name in KINDS) - Number(other.name in KINDS) || one.name.localeCompare(other.name);
 
 /** What a group is called: a person, a policy, or a kind of driver. @type {(name: string) => string} */
 export const groupText = (name) => KINDS[name] ?? name;

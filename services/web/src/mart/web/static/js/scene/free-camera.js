@@ -17,6 +17,7 @@ const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], Arrow
 export class FreeCamera {
   #surface;
   #onChange;
+  #isMeant;
   /** @type {Orbit | null} */
   #orbit = null;
   #isOn = false;
@@ -26,10 +27,12 @@ export class FreeCamera {
   /**
    * @param {HTMLElement} surface
    * @param {() => void} onChange called when the picture is to be drawn anew
+   * @param {() => boolean} [isMeant] whether fingers and the wheel are for it; else they scroll the page
    */
-  constructor(surface, onChange) {
+  constructor(surface, onChange, isMeant = () => true) {
     this.#surface = surface;
     this.#onChange = onChange;
+    this.#isMeant = isMeant;
     surface.addEventListener("pointerdown", (event) => this.#press(event));
     surface.addEventListener("pointermove", (event) => this.#drag(event));
     for (const type of /** @type {const} */ (["pointerup", "pointercancel", "lostpointercapture"])) {
@@ -78,8 +81,8 @@ export class FreeCamera {
   }
 
   /** @param {PointerEvent} event */
-  #press({ pointerId, clientX: x, clientY: y }) {
-    if (!this.#isOn) return;
+  #press({ pointerId, pointerType, clientX: x, clientY: y }) {
+    if (!this.#isOn || (pointerType === "touch" && !this.#isMeant())) return;
     this.#surface.setPointerCapture(pointerId);
     this.#down.set(pointerId, { x, y });
   }
@@ -91,8 +94,10 @@ export class FreeCamera {
     const spread = this.#spread();
     this.#down.set(pointerId, { x, y });
     const [right, down] = [x - before.x, y - before.y];
-    if (this.#down.size > 1) this.#do((orbit) => spread > 0 && orbit.zoom(spread / Math.max(1, this.#spread())));
-    else this.#goBy(right, down, shiftKey || buttons === 2);
+    if (this.#down.size > 1) {
+      this.#do((orbit) => spread > 0 && orbit.zoom(spread / Math.max(1, this.#spread())));
+      this.#goBy(right / 2, down / 2, true); // the other finger goes the other half
+    } else this.#goBy(right, down, shiftKey || buttons === 2);
   }
 
   /** How far two fingers are from each other, pixels. */
@@ -116,7 +121,7 @@ export class FreeCamera {
 
   /** @param {WheelEvent} event */
   #wheel(event) {
-    if (!this.#isOn) return;
+    if (!this.#isOn || !this.#isMeant()) return;
     event.preventDefault();
     this.#do((orbit) => orbit.zoom(ZOOM_PER_PX ** event.deltaY));
   }
