@@ -9,10 +9,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from mart.episodes.holders import holders_of
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import ArmState, State
 from mart.protocol.pose import QUATERNION_NORM_TOLERANCE
+from mart.protocol.recording import OperatorsRecord
 from mart.protocol.tasks import Task
 
 Shapes = Mapping[str, tuple[int, ...]]  # by an observation's name, without the axis of time
@@ -29,6 +31,8 @@ class EpisodeData:
     sources: int8[T, arms], who drove the arm in that tick (mart.v1.Operator).
     engaged: bool[T, arms], whether the arm's operator had the clutch held in that tick.
     held: bool[T, arms], whether the arm was held in that tick, since no new command of its operator's was there.
+    holders: int16[T, arms], who held the arm's seat in that tick: a row of `holder_names`, -1 where that is unknown.
+    holder_names: such as `human Ana`, `policy act` and `hold`, each once.
     subtasks: by name, each bool[T + 1], whether it was done.
     success: bool[T + 1], whether the task was done.
     sim_time_s: float64[T + 1], simulated seconds, as the world counted them.
@@ -45,6 +49,8 @@ class EpisodeData:
     sources: NDArray[np.int8]
     engaged: NDArray[np.bool_]
     held: NDArray[np.bool_]
+    holders: NDArray[np.int16]
+    holder_names: tuple[str, ...]
     subtasks: Mapping[str, NDArray[np.bool_]]
     success: NDArray[np.bool_]
     sim_time_s: NDArray[np.float64]
@@ -66,6 +72,7 @@ class EpisodeData:
             sources=self.sources[moves],
             engaged=self.engaged[moves],
             held=self.held[moves],
+            holders=self.holders[moves],
             subtasks={name: done[states] for name, done in self.subtasks.items()},
             success=self.success[states],
             sim_time_s=self.sim_time_s[states],
@@ -76,21 +83,28 @@ class EpisodeData:
         )
 
 
-def arrays_for_task(states: Sequence[State], task: Task) -> EpisodeData:
+def arrays_for_task(
+    states: Sequence[State], task: Task, operators: OperatorsRecord | None = None
+) -> EpisodeData:
     """Turn the states of one episode into arrays: arms, observations and shapes as the task's catalogue entry says.
 
     Raises InvalidInput as `arrays_from_states`.
     """
-    return arrays_from_states(states, task.arm_names, {one.name: one.shape for one in task.observations})
+    shapes = {one.name: one.shape for one in task.observations}
+    return arrays_from_states(states, task.arm_names, shapes, operators)
 
 
 def arrays_from_states(
-    states: Sequence[State], arms: Sequence[str] | None = None, shapes: Shapes | None = None
+    states: Sequence[State],
+    arms: Sequence[str] | None = None,
+    shapes: Shapes | None = None,
+    operators: OperatorsRecord | None = None,
 ) -> EpisodeData:
     """Turn the states of one episode, the one after the reset first, into arrays.
 
     arms: whose actions are wanted, in this order; None takes the first state's.
     shapes: of the observations that are wanted, by name; None takes all of the first state's, each as one axis.
+    operators: who held the seats, as the file says it; states alone do not.
 
     Raises InvalidInput, as a sentence about the episode, where ticks, arms or observations are missing, where sizes
     change, and where an action or an observation is NaN or infinite.
@@ -101,6 +115,8 @@ def arrays_from_states(
     arms_of = [_arms(state, names) for state in states]
     moved = arms_of[1:]
     poses = _poses(arms_of)
+    after = np.array([state.episode_tick for state in states[1:]], dtype=np.int64)
+    holders, holder_names = holders_of(operators or OperatorsRecord(shifts={}), names, after)
     return EpisodeData(
         arms=names,
         ticks=np.arange(len(states)),
@@ -109,6 +125,8 @@ def arrays_from_states(
         sources=np.array([[arm.source for arm in row] for row in moved], dtype=np.int8),
         engaged=np.array([[arm.engaged for arm in row] for row in moved], dtype=np.bool_),
         held=np.array([[not arm.fresh for arm in row] for row in moved], dtype=np.bool_),
+        holders=holders,
+        holder_names=holder_names,
         subtasks=_subtasks(states),
         success=np.array([state.progress.success for state in states]),
         sim_time_s=np.array([state.sim_time_s for state in states]),

@@ -131,8 +131,13 @@ class EpisodeFile:
         """
         known = self._known_task() if task is None else task
         states = list(self.states())
+        who = self.operators if OperatorsRecord.NAME in self.metadata else None
         try:
-            data = arrays_from_states(states) if known is None else arrays_for_task(states, known)
+            data = (
+                arrays_from_states(states, operators=who)
+                if known is None
+                else arrays_for_task(states, known, who)
+            )
         except InvalidInput as error:
             raise InvalidInput(f"{self.path} cannot be read into arrays: {error}") from error
         return self.resampled(data, control_hz, known)
