@@ -13,6 +13,7 @@ import click
 from mart.protocol.errors import InvalidInput
 from mart.protocol.vocabulary import GOOD_VERDICTS, EpisodeOutcome
 from mart.recorder.filter_options import OUTCOMES, VERDICTS, filter_of, word_option
+from mart.recorder.hub_options import hub_options
 from mart.recorder.settings import given_or_recorded
 from mart.recorder.view_export_cli import VIEWS, export_views
 from mart.runtime.cli import json_option, print_result
@@ -57,7 +58,14 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path),
     help="Write a layout for Foxglove, too, that shows all at once.",
 )
-@click.option("--with-names", is_flag=True, help="Say in the data card who drove, by name.")
+@click.option("--with-names", is_flag=True, help="Say in the data set and its card who drove, by name.")
+@click.option(
+    "--push",
+    "repo",
+    metavar="OWNER/NAME",
+    help="Bring it to a hub, too (huggingface.co or HF_ENDPOINT), private.",
+)
+@hub_options
 @json_option
 def export(
     *,
@@ -73,6 +81,9 @@ def export(
     jobs: int | None,
     with_names: bool,
     layout: Path | None,
+    repo: str | None,
+    public: bool,
+    over: bool,
     as_json: bool,
     **wanted: Any,
 ) -> None:
@@ -81,12 +92,21 @@ def export(
     One that was interrupted goes on where it was when the same is asked for again. For a viewer (foxglove, rerun) each
     episode becomes a file of its own, whatever its task is and however it ended.
     """
+    from mart.recorder.storage.hub import HubTarget, push_export, require_reachable
+
     if file_format in VIEWS:
+        if repo is not None:
+            raise InvalidInput(
+                "--push is for data sets; leave it out, or export --format lerobot or robomimic."
+            )
         wanted["dataset"] = dataset
         export_views(given_or_recorded(paths), file_format, out, layout, wanted, as_json=as_json)
         return
     if layout is not None:
         raise InvalidInput("--layout is for --format foxglove; leave it out.")
+    target = HubTarget(repo, public, over) if repo is not None else None
+    if target is not None:
+        require_reachable(target)
     from mart.recorder.export.cameras import captured_cameras, parse_cameras
 
     if file_format == "robomimic":
@@ -111,12 +131,12 @@ def export(
     ticks = write(selection, out)
     count, task = len(selection.episodes), selection.task.name
     result = {"path": str(out), "format": file_format, "task": task, "episodes": count, "ticks": ticks}
-    rate = f"{selection.control_hz:g} Hz"
-    print_result(
-        result | {"control_hz": selection.control_hz, "cameras": [*map(str, asked_cameras)]},
-        f"{out}: {count} of {listed} episodes of {task}, {ticks} ticks of {rate}.",
-        as_json,
-    )
+    result |= {"control_hz": selection.control_hz, "cameras": [*map(str, asked_cameras)]}
+    text = f"{out}: {count} of {listed} episodes of {task}, {ticks} ticks of {selection.control_hz:g} Hz."
+    if target is not None:
+        result["url"] = push_export(out, target)
+        text = f"{text} It is at {result['url']}."
+    print_result(result, text, as_json)
 
 
 def _chosen(

@@ -42,7 +42,7 @@ from mart.recorder.export.selection import ExportSelection, read_segments
 from mart.recorder.export.statistics import of_numbers, of_pictures
 from mart.recorder.export.videos import video_info, write_video
 
-_VERSION = "v3.0"
+VERSION = "v3.0"
 _COLUMNS = "columns.npz"
 _ORIGIN = "origin.hdf5"
 
@@ -153,7 +153,7 @@ def _info(selection: ExportSelection, columns: Columns, episodes: int) -> dict[s
         for camera in selection.cameras
     }
     return {
-        "codebase_version": _VERSION,
+        "codebase_version": VERSION,
         "robot_type": _robots(selection.task),
         "total_episodes": episodes,
         "total_frames": len(columns["index"]),
