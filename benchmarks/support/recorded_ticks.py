@@ -22,7 +22,7 @@ def ticks_apart(path: Path, arm: str) -> NDArray[np.int64]:
     apart = []
     for frame in frames_of(file, arm):
         for picture in decoder.decode(av.Packet(frame.data)):
-            shown = tick_code.read(picture.to_ndarray(format="gray"))
+            shown = tick_code.read(picture.to_ndarray(format="gray").astype(np.uint8, copy=False))
             row = max(0, int(np.searchsorted(stamps[:, 0], frame.image_ns, side="right")) - 1)
             if shown is None:
                 raise SystemExit(f"{path}: a picture of {arm} shows no tick.")

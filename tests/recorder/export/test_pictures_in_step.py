@@ -44,13 +44,13 @@ def swinging(world: World, ticks: int) -> list[State]:
 def decoded(path: Path) -> Pictures:
     """Read a video as OpenCV does."""
     video = cv2.VideoCapture(str(path))
-    frames = []
+    frames: list[NDArray[np.uint8]] = []
     while True:
         found, picture = video.read()
         if not found:
             video.release()
             return np.array(frames, np.float64)
-        frames.append(cv2.cvtColor(picture, cv2.COLOR_BGR2RGB))
+        frames.append(cv2.cvtColor(picture, cv2.COLOR_BGR2RGB).astype(np.uint8, copy=False))
 
 
 def nearest(seen: Pictures, states: Pictures) -> list[int]:

@@ -98,7 +98,7 @@ def _files_of(path: Path) -> dict[str, Path]:
 
 def _hub() -> HfApi:
     from huggingface_hub import HfApi
-    from huggingface_hub.utils import disable_progress_bars
+    from huggingface_hub.utils.tqdm import disable_progress_bars
 
     disable_progress_bars()
     return HfApi(endpoint=os.environ.get("HF_ENDPOINT"), library_name="mart")
@@ -129,9 +129,9 @@ def _is_same(there: RepoFile, file: Path) -> bool:
 
 
 def _commit(api: HfApi, repo: str, files: Mapping[str, Path], stale: set[str]) -> None:
-    from huggingface_hub import CommitOperationAdd, CommitOperationDelete
+    from huggingface_hub import CommitOperationAdd, CommitOperationCopy, CommitOperationDelete
 
-    operations = [
+    operations: list[CommitOperationAdd | CommitOperationCopy | CommitOperationDelete] = [
         *(CommitOperationDelete(path_in_repo=name) for name in sorted(stale)),
         *(CommitOperationAdd(path_in_repo=name, path_or_fileobj=file) for name, file in files.items()),
     ]
