@@ -21,7 +21,10 @@ from mart.runtime.progress import tracked
 from mart.runtime.rate_option import control_hz_option, skip_idle_option
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from mart.recorder.export.selection import ExportSelection
+    from mart.recorder.storage.hub import HubTarget
 
 
 @click.command()
@@ -92,28 +95,16 @@ def export(
     One that was interrupted goes on where it was when the same is asked for again. For a viewer (foxglove, rerun) each
     episode becomes a file of its own, whatever its task is and however it ended.
     """
-    from mart.recorder.storage.hub import HubTarget, push_export, require_reachable
+    from mart.recorder.export.cameras import captured_cameras, parse_cameras
+    from mart.recorder.storage.hub import push_export
 
+    target = _target(file_format, repo, public=public, over=over)
     if file_format in VIEWS:
-        if repo is not None:
-            raise InvalidInput(
-                "--push is for data sets; leave it out, or export --format lerobot or robomimic."
-            )
         wanted["dataset"] = dataset
         export_views(given_or_recorded(paths), file_format, out, layout, wanted, as_json=as_json)
         return
     if layout is not None:
         raise InvalidInput("--layout is for --format foxglove; leave it out.")
-    target = HubTarget(repo, public, over) if repo is not None else None
-    if target is not None:
-        require_reachable(target)
-    from mart.recorder.export.cameras import captured_cameras, parse_cameras
-
-    if file_format == "robomimic":
-        from mart.recorder.export.robomimic import write_robomimic as write
-    else:
-        from mart.recorder.export.lerobot import write_lerobot as write
-
     asked_cameras = parse_cameras(cameras)
     selection, listed = _chosen(paths, dataset, control_hz, wanted)
     selection = replace(
@@ -128,7 +119,7 @@ def export(
         jobs=(jobs or len(os.sched_getaffinity(0))) if asked_cameras else 1,
         each=partial(tracked, label="Episodes", as_json=as_json),
     )
-    ticks = write(selection, out)
+    ticks = _writer(file_format)(selection, out)
     count, task = len(selection.episodes), selection.task.name
     result = {"path": str(out), "format": file_format, "task": task, "episodes": count, "ticks": ticks}
     result |= {"control_hz": selection.control_hz, "cameras": [*map(str, asked_cameras)]}
@@ -137,6 +128,26 @@ def export(
         result["url"] = push_export(out, target)
         text = f"{text} It is at {result['url']}."
     print_result(result, text, as_json)
+
+
+def _target(file_format: str, repo: str | None, *, public: bool, over: bool) -> HubTarget | None:
+    """Return where on a hub the data set goes, which was asked; None where nothing was said of one."""
+    from mart.recorder.storage.hub import HubTarget, require_reachable
+
+    if repo is None:
+        return None
+    if file_format in VIEWS:
+        raise InvalidInput("--push is for data sets; leave it out, or export --format lerobot or robomimic.")
+    target = HubTarget(repo, public, over)
+    require_reachable(target)
+    return target
+
+
+def _writer(file_format: str) -> Callable[[ExportSelection, Path], int]:
+    from mart.recorder.export.lerobot import write_lerobot
+    from mart.recorder.export.robomimic import write_robomimic
+
+    return write_robomimic if file_format == "robomimic" else write_lerobot
 
 
 def _chosen(
