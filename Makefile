@@ -28,6 +28,7 @@ PAGE_LIBRARIES := services/web/src/mart/web/static/vendor/three.mjs
 
 # LeRobot needs other versions than the parts, so it is installed beside them (docs/decisions/0075).
 LEROBOT := .venv-lerobot
+ROBOMIMIC := .venv-robomimic
 LEROBOT_PARTS := protocol libraries/runtime libraries/episodes libraries/operators libraries/render libraries/rollouts libraries/lerobot services/driver services/trainer
 
 BENCHMARKS := $(subst _,-,$(filter-out report,$(basename $(notdir $(wildcard benchmarks/*.py)))))
@@ -81,6 +82,10 @@ test-compose: $(VENV)/.tools ## Build the images and collect an episode through 
 .PHONY: test-lerobot
 test-lerobot: $(VENV)/.tools $(LEROBOT)/.installed ## Try LeRobot's robots, commands and data sets against a room, in an environment of their own: 2 GB
 	@LEROBOT_ENVIRONMENT=$(LEROBOT) $(BIN)/pytest tests/lerobot
+
+.PHONY: test-robomimic
+test-robomimic: $(VENV)/.tools $(ROBOMIMIC)/.installed ## Have robomimic open and learn from an export, in an environment of its own: 1.5 GB
+	@ROBOMIMIC_ENVIRONMENT=$(ROBOMIMIC) $(BIN)/pytest tests/robomimic
 
 .PHONY: check
 check: $(VENV)/.tools check-proto check-pages docs ## Check style, types, import rules, generated code, the documentation and the repository's own rules
@@ -189,6 +194,10 @@ $(VENV)/.tools: $(VENV)/.parts pyproject.toml
 
 $(LEROBOT)/.installed: tools/lerobot-environment constraints.txt $(addsuffix /pyproject.toml,$(LEROBOT_PARTS))
 	@PYTHON=$(PYTHON) tools/lerobot-environment $(LEROBOT) $(LEROBOT_PARTS)
+	@touch $@
+
+$(ROBOMIMIC)/.installed: tools/robomimic-environment $(wildcard benchmarks/peers/robomimic/requirements*.txt)
+	@PYTHON=$(PYTHON) tools/robomimic-environment $(ROBOMIMIC)
 	@touch $@
 
 # Nothing of these packages is run but esbuild, eslint and tsc, and none of their install scripts.

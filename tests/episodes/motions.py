@@ -27,6 +27,8 @@ def motion(ticks: int, still: tuple[range, ...] = ()) -> EpisodeData:
         sources=np.full((ticks, 2), 2, np.int8),
         engaged=np.ones((ticks, 2), np.bool_),
         held=np.zeros((ticks, 2), np.bool_),
+        holders=np.zeros((ticks, 2), np.int16),
+        holder_names=("human Ana",),
         subtasks={"grasp": states >= ticks // 2},
         success=states == ticks,
         sim_time_s=(3.0 + PERIOD_S * states).astype(np.float64),

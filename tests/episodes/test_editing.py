@@ -66,6 +66,7 @@ def test_every_array_tells_of_the_same_ticks(cut: int, skip: int, split: int) ->
             == len(segment.sources)
             == len(segment.engaged)
             == len(segment.held)
+            == len(segment.holders)
             == len(states) - 1
             > 0
         )

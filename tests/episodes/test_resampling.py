@@ -49,6 +49,8 @@ def followed(goals: Sequence[Pose], lag: float = 0.0) -> EpisodeData:
         sources=np.full((ticks, 1), OPERATOR_HUMAN, np.int8),
         engaged=np.ones((ticks, 1), np.bool_),
         held=np.zeros((ticks, 1), np.bool_),
+        holders=np.zeros((ticks, 1), np.int16),
+        holder_names=("human Ana",),
         subtasks={"lift": np.arange(ticks + 1) >= ticks - 1},
         success=np.arange(ticks + 1) == ticks,
         sim_time_s=np.arange(ticks + 1) / 60.0,
@@ -128,11 +130,13 @@ def test_what_holds_at_the_end_of_a_transition_is_its_last_ticks() -> None:
     fine.sources[:1] = OPERATOR_POLICY
     fine.engaged[2] = False
     fine.held[2] = True
+    fine.holders[:4] = 1
     coarse = at_control_hz(fine, 60.0, 20.0, LIMITS)
     assert coarse.actions[:, 0, 6].tolist() == [1.0, -1.0]
     assert coarse.sources[:, 0].tolist() == [OPERATOR_HUMAN, OPERATOR_HUMAN]
     assert coarse.engaged[:, 0].tolist() == [False, True]
     assert coarse.held[:, 0].tolist() == [True, False]
+    assert coarse.holders[:, 0].tolist() == [1, 0]
 
 
 @given(ticks=st.integers(1, 500), rates=st.tuples(RATES, RATES))

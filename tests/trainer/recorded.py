@@ -58,7 +58,7 @@ def perform(
         for arm, random in zip(world.arms, randoms, strict=True)
     }
     targets = {arm: world.tool_pose_in_base(arm) for arm in world.arms}
-    states = [_state(world, number, 0, None, source)]
+    states = [state_of(world, number, 0, None, source)]
     while not world.progress().success and len(states) <= most_ticks:
         actions = []
         for arm, expert in experts.items():
@@ -67,7 +67,7 @@ def perform(
                 targets[arm] = intent.pose_tool_in_base
             actions.append(world.action_for(arm, targets[arm], intent.gripper))
         world.step(actions)
-        states.append(_state(world, number, len(states), np.array(actions), source))
+        states.append(state_of(world, number, len(states), np.array(actions), source))
     return states
 
 
@@ -131,7 +131,10 @@ def write(
     return finalize(file, episode, facts, root, verify, repaired=False).path
 
 
-def _state(world: World, number: int, tick: int, actions: np.ndarray | None, source: Source) -> State:
+def state_of(
+    world: World, number: int, tick: int, actions: np.ndarray | None, source: Source = by_scripts
+) -> State:
+    """The state as a room would send it. actions: what was applied in this tick; None after the reset."""
     seen = world.observations()
     stamp_ns = START_NS + number * 10**12 + tick * PERIOD_NS
     arms = [

@@ -179,5 +179,8 @@ def test_people_are_named_only_where_it_is_asked_for(tmp_path: Path, arguments: 
     ):
         write(tmp_path / "episodes", tmp_path / out, file_format, *arguments)
         assert ("Ana Example" in (tmp_path / card).read_text()) == bool(arguments)
+        written = tmp_path / out
+        files = [written] if written.is_file() else [one for one in written.rglob("*") if one.is_file()]
+        assert any(b"Ana Example" in one.read_bytes() for one in files) == bool(arguments)
     with h5py.File(tmp_path / "lifting.hdf5") as file:
         assert ("Ana Example" in file["data/demo_0"].attrs["operators"]) == bool(arguments)

@@ -45,7 +45,8 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Recorded:
 
 def exported(source: Recorded, file_format: str, out: Path, *arguments: str) -> Path:
     export.main(
-        [str(source.path), "--format", file_format, "--out", str(out), *arguments], standalone_mode=False
+        [str(source.path), "--format", file_format, "--out", str(out), "--with-names", *arguments],
+        standalone_mode=False,
     )
     return out
 

@@ -40,6 +40,8 @@ def swung(
         sources=np.zeros((ticks, len(ARMS)), np.int8),
         engaged=np.ones((ticks, len(ARMS)), np.bool_),
         held=np.zeros((ticks, len(ARMS)), np.bool_),
+        holders=np.zeros((ticks, len(ARMS)), np.int16),
+        holder_names=("human Ana",),
         subtasks={},
         success=np.zeros(ticks + 1, np.bool_),
         sim_time_s=3.0 + times_s,

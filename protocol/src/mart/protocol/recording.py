@@ -210,7 +210,12 @@ class Shift(BaseModel):
 
     def __str__(self) -> str:
         start = f"tick {self.episode_tick}: " if self.episode_tick else ""
-        return f"{start}{self.operator} {self.name}".rstrip()
+        return f"{start}{self.holder}"
+
+    @property
+    def holder(self) -> str:
+        """Who drove, whenever it was: the word, and the name of those that have one (`human Ana`)."""
+        return f"{self.operator} {self.name}".rstrip()
 
     @classmethod
     def parse(cls, text: str) -> Shift:
@@ -243,6 +248,15 @@ class OperatorsRecord(BaseModel):
                 f"The record {cls.NAME} says more than {_MAX_OPERATORS_CHARACTERS} characters of an arm."
             )
         return cls(shifts={arm: tuple(map(Shift.parse, text.split(" | "))) for arm, text in strings.items()})
+
+    def without_names(self) -> OperatorsRecord:
+        """Return the same changes, without anybody's name."""
+        return OperatorsRecord(
+            shifts={
+                arm: tuple(shift.model_copy(update={"name": ""}) for shift in shifts)
+                for arm, shifts in self.shifts.items()
+            }
+        )
 
 
 VERSIONS = "mart.versions"  # distribution → version of the software that wrote the file

@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.episodes.episode_data import EpisodeData
+from mart.episodes.holders import holders_of
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import ArmState, State
 from mart.protocol.pose import QUATERNION_NORM_TOLERANCE
+from mart.protocol.recording import OperatorsRecord
 from mart.protocol.tasks import Task
 
 __all__ = ["EpisodeData", "Shapes", "arrays_for_task", "arrays_from_states"]
@@ -33,18 +35,25 @@ def arrays_for_task(states: Iterable[State], task: Task) -> EpisodeData:
 
 
 def arrays_of(
-    states: Iterable[State], task: Task | None, *, with_integration_states: bool = True
+    states: Iterable[State],
+    task: Task | None,
+    operators: OperatorsRecord | None = None,
+    *,
+    with_integration_states: bool = True,
 ) -> EpisodeData:
     """Turn the states of one episode into arrays, as its task says; None takes what the states themselves have."""
     arms = task.arm_names if task else None
     shapes = {one.name: one.shape for one in task.observations} if task else None
-    return arrays_from_states(states, arms, shapes, with_integration_states=with_integration_states)
+    return arrays_from_states(
+        states, arms, shapes, operators, with_integration_states=with_integration_states
+    )
 
 
 def arrays_from_states(
     states: Iterable[State],
     arms: Sequence[str] | None = None,
     shapes: Shapes | None = None,
+    operators: OperatorsRecord | None = None,
     *,
     with_integration_states: bool = True,
 ) -> EpisodeData:
@@ -52,6 +61,7 @@ def arrays_from_states(
 
     arms: whose actions are wanted, in this order; None takes the first state's.
     shapes: of the observations that are wanted, by name; None takes all of the first state's, each as one axis.
+    operators: who held the seats, as the file says it; states alone do not.
     with_integration_states: whether MuJoCo's are wanted, which are nine tenths of all.
 
     Raises InvalidInput, as a sentence about the episode, where ticks, arms or observations are missing, where sizes
@@ -63,7 +73,7 @@ def arrays_from_states(
         found.add(state)
     if found is None or found.count < 2:
         raise InvalidInput(f"it has {found.count if found else 0} states, and at least 2 are needed.")
-    return found.data()
+    return found.data(operators or OperatorsRecord(shifts={}))
 
 
 class _Columns:
@@ -109,11 +119,13 @@ class _Columns:
             self._integration_states += state.integration_state
         self.count += 1
 
-    def data(self) -> EpisodeData:
+    def data(self, operators: OperatorsRecord) -> EpisodeData:
         """Return what was gathered; nothing more may be added."""
         states, arms = self.count, len(self._arms)
         flags = np.frombuffer(self._flags, np.uint8).reshape(states - 1, arms, 3)
         poses = self._unit_poses()
+        after = np.arange(self._last_tick - states + 2, self._last_tick + 1)
+        holders, holder_names = holders_of(operators, self._arms, after)
         return EpisodeData(
             arms=self._arms,
             ticks=np.arange(states),
@@ -122,6 +134,8 @@ class _Columns:
             sources=flags[..., 0].astype(np.int8),
             engaged=flags[..., 1].astype(np.bool_),
             held=flags[..., 2].astype(np.bool_),
+            holders=holders,
+            holder_names=holder_names,
             subtasks={name: np.frombuffer(done, np.bool_) for name, done in self._done.items()},
             success=np.frombuffer(self._success, np.bool_),
             sim_time_s=np.frombuffer(self._sim_time_s),

@@ -22,6 +22,8 @@ class EpisodeData:
     sources: int8[T, arms], who drove the arm in that tick (mart.v1.Operator).
     engaged: bool[T, arms], whether the arm's operator had the clutch held in that tick.
     held: bool[T, arms], whether the arm was held in that tick, since no new command of its operator's was there.
+    holders: int16[T, arms], who held the arm's seat in that tick: a row of `holder_names`, -1 where that is unknown.
+    holder_names: such as `human Ana`, `policy act` and `hold`, each once.
     subtasks: by name, each bool[T + 1], whether it was done.
     success: bool[T + 1], whether the task was done.
     sim_time_s: float64[T + 1], simulated seconds, as the world counted them.
@@ -38,6 +40,8 @@ class EpisodeData:
     sources: NDArray[np.int8]
     engaged: NDArray[np.bool_]
     held: NDArray[np.bool_]
+    holders: NDArray[np.int16]
+    holder_names: tuple[str, ...]
     subtasks: Mapping[str, NDArray[np.bool_]]
     success: NDArray[np.bool_]
     sim_time_s: NDArray[np.float64]
@@ -62,6 +66,7 @@ class EpisodeData:
             sources=self.sources[moves],
             engaged=self.engaged[moves],
             held=self.held[moves],
+            holders=self.holders[moves],
             subtasks={name: done[states] for name, done in self.subtasks.items()},
             success=self.success[states],
             sim_time_s=self.sim_time_s[states],

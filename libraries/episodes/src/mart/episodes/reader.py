@@ -154,8 +154,9 @@ class EpisodeFile:
         missing, a number is NaN, or the rate cannot be had.
         """
         known = self._known_task() if task is None else task
+        who = self.operators if OperatorsRecord.NAME in self.metadata else None
         try:
-            data = arrays_of(self.states(), known, with_integration_states=with_integration_states)
+            data = arrays_of(self.states(), known, who, with_integration_states=with_integration_states)
         except InvalidInput as error:
             raise InvalidInput(f"{self.path} cannot be read into arrays: {error}") from error
         return self.resampled(data, control_hz, known)

@@ -13,6 +13,7 @@ import click
 from mart.protocol.errors import InvalidInput
 from mart.protocol.vocabulary import GOOD_VERDICTS, EpisodeOutcome
 from mart.recorder.filter_options import OUTCOMES, VERDICTS, filter_of, word_option
+from mart.recorder.hub_options import hub_options
 from mart.recorder.settings import given_or_recorded
 from mart.recorder.view_export_cli import VIEWS, export_views
 from mart.runtime.cli import json_option, print_result
@@ -20,7 +21,10 @@ from mart.runtime.progress import tracked
 from mart.runtime.rate_option import control_hz_option, skip_idle_option
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from mart.recorder.export.selection import ExportSelection
+    from mart.recorder.storage.hub import HubTarget
 
 
 @click.command()
@@ -57,7 +61,14 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path),
     help="Write a layout for Foxglove, too, that shows all at once.",
 )
-@click.option("--with-names", is_flag=True, help="Say in the data card who drove, by name.")
+@click.option("--with-names", is_flag=True, help="Say in the data set and its card who drove, by name.")
+@click.option(
+    "--push",
+    "repo",
+    metavar="OWNER/NAME",
+    help="Bring it to a hub, too (huggingface.co or HF_ENDPOINT), private.",
+)
+@hub_options
 @json_option
 def export(
     *,
@@ -73,6 +84,9 @@ def export(
     jobs: int | None,
     with_names: bool,
     layout: Path | None,
+    repo: str | None,
+    public: bool,
+    over: bool,
     as_json: bool,
     **wanted: Any,
 ) -> None:
@@ -81,19 +95,16 @@ def export(
     One that was interrupted goes on where it was when the same is asked for again. For a viewer (foxglove, rerun) each
     episode becomes a file of its own, whatever its task is and however it ended.
     """
+    from mart.recorder.export.cameras import captured_cameras, parse_cameras
+    from mart.recorder.storage.hub import push_export
+
+    target = _target(file_format, repo, public=public, over=over)
     if file_format in VIEWS:
         wanted["dataset"] = dataset
         export_views(given_or_recorded(paths), file_format, out, layout, wanted, as_json=as_json)
         return
     if layout is not None:
         raise InvalidInput("--layout is for --format foxglove; leave it out.")
-    from mart.recorder.export.cameras import captured_cameras, parse_cameras
-
-    if file_format == "robomimic":
-        from mart.recorder.export.robomimic import write_robomimic as write
-    else:
-        from mart.recorder.export.lerobot import write_lerobot as write
-
     asked_cameras = parse_cameras(cameras)
     selection, listed = _chosen(paths, dataset, control_hz, wanted)
     selection = replace(
@@ -108,15 +119,35 @@ def export(
         jobs=(jobs or len(os.sched_getaffinity(0))) if asked_cameras else 1,
         each=partial(tracked, label="Episodes", as_json=as_json),
     )
-    ticks = write(selection, out)
+    ticks = _writer(file_format)(selection, out)
     count, task = len(selection.episodes), selection.task.name
     result = {"path": str(out), "format": file_format, "task": task, "episodes": count, "ticks": ticks}
-    rate = f"{selection.control_hz:g} Hz"
-    print_result(
-        result | {"control_hz": selection.control_hz, "cameras": [*map(str, asked_cameras)]},
-        f"{out}: {count} of {listed} episodes of {task}, {ticks} ticks of {rate}.",
-        as_json,
-    )
+    result |= {"control_hz": selection.control_hz, "cameras": [*map(str, asked_cameras)]}
+    text = f"{out}: {count} of {listed} episodes of {task}, {ticks} ticks of {selection.control_hz:g} Hz."
+    if target is not None:
+        result["url"] = push_export(out, target)
+        text = f"{text} It is at {result['url']}."
+    print_result(result, text, as_json)
+
+
+def _target(file_format: str, repo: str | None, *, public: bool, over: bool) -> HubTarget | None:
+    """Return where on a hub the data set goes, which was asked; None where nothing was said of one."""
+    from mart.recorder.storage.hub import HubTarget, require_reachable
+
+    if repo is None:
+        return None
+    if file_format in VIEWS:
+        raise InvalidInput("--push is for data sets; leave it out, or export --format lerobot or robomimic.")
+    target = HubTarget(repo, public, over)
+    require_reachable(target)
+    return target
+
+
+def _writer(file_format: str) -> Callable[[ExportSelection, Path], int]:
+    from mart.recorder.export.lerobot import write_lerobot
+    from mart.recorder.export.robomimic import write_robomimic
+
+    return write_robomimic if file_format == "robomimic" else write_lerobot
 
 
 def _chosen(

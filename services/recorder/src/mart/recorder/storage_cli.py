@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from mart.protocol.errors import InvalidInput
+from mart.recorder.hub_options import hub_options
 from mart.recorder.settings import RecorderSettings
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import progress
@@ -27,13 +29,25 @@ _endpoint_url = click.option(
 @click.argument("paths", nargs=-1, type=click.Path(path_type=Path))
 @click.argument("url")
 @_endpoint_url
+@hub_options
 @json_option
-def push(paths: tuple[Path, ...], url: str, endpoint_url: str, as_json: bool) -> None:
+def push(
+    *, paths: tuple[Path, ...], url: str, endpoint_url: str, public: bool, over: bool, as_json: bool
+) -> None:
     """Bring finished episodes with their labels, or folders of exports, to a store: s3://bucket/folder, file:///folder.
 
     Without PATHS, all that were recorded here. What is there already is skipped, and nothing is overwritten. Who you
-    are there comes from the environment.
+    are there comes from the environment. hf://datasets/OWNER/NAME takes one export, as a data set of a hub.
     """
+    from mart.recorder.storage.hub import HubTarget, push_export
+
+    target = HubTarget.of_url(url, public=public, over=over)
+    if target is not None:
+        if len(paths) != 1:
+            raise InvalidInput(f"{len(paths)} paths were given; a data set on a hub takes one export.")
+        address = push_export(paths[0], target)
+        print_result({"url": address, "path": str(paths[0])}, f"{paths[0]} is at {address}.", as_json)
+        return
     from mart.recorder.storage.store import Store
     from mart.recorder.storage.transfer import push as push_files
     from mart.recorder.storage.transfer import to_push

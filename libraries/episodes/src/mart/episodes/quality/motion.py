@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mart.episodes.arrays import EpisodeData
+from mart.episodes.holders import UNKNOWN
 from mart.protocol.errors import InvalidInput
 from mart.protocol.messages import State
 from mart.protocol.pose import QUATERNION_NORM_TOLERANCE
@@ -108,6 +109,8 @@ class _Columns:
             sources=flags[..., 0].astype(np.int8),
             engaged=flags[..., 1].astype(np.bool_),
             held=flags[..., 2].astype(np.bool_),
+            holders=np.full((count - 1, arms), UNKNOWN, np.int16),
+            holder_names=(),
             subtasks={name: done[:, i] for i, name in enumerate(self._subtasks)},
             success=done[:, -1],
             sim_time_s=times_s,

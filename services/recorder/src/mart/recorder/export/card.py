@@ -10,6 +10,7 @@ from typing import Any
 
 from mart.protocol.recording import Shift
 from mart.protocol.vocabulary import OperatorKind
+from mart.recorder.export.holders import told_holders
 from mart.recorder.export.selection import SOURCES, ExportSelection
 
 _PARTS = ("mart-recorder", "mart-episodes", "mart-render", "mujoco-core")
@@ -105,6 +106,7 @@ def _facts(selection: ExportSelection, episodes: int, ticks: int, name: str) -> 
         "cameras": _cameras(selection),
         "edits": _edits(selection),
         "sources": json.dumps(SOURCES),
+        "holders": json.dumps(dict(enumerate(told_holders(selection.holders, selection.with_names)))),
         "software": ", ".join(f"{part} {version(part)}" for part in _PARTS),
     }
     return [

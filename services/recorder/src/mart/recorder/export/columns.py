@@ -6,6 +6,7 @@ order; quaternions stay wxyz.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,12 +16,13 @@ from numpy.typing import NDArray
 from mart.episodes.arrays import EpisodeData
 from mart.protocol.batch_state import ACTION_SIZE
 from mart.protocol.tasks import Observation, Task
+from mart.recorder.export.holders import holder_column
 
 Columns = dict[str, NDArray[Any]]  # by feature, one row a frame
 
 
-def columns_of(data: EpisodeData, task: Task, control_hz: float) -> Columns:
-    """Return the columns of one episode, as the first of its data set."""
+def columns_of(data: EpisodeData, task: Task, control_hz: float, holders: Sequence[str]) -> Columns:
+    """Return the columns of one episode, as the first of its data set. holders: whom the data set numbers."""
     count = len(data)
     frame = np.arange(count)
     seen = {
@@ -35,6 +37,7 @@ def columns_of(data: EpisodeData, task: Task, control_hz: float) -> Columns:
         "source": data.sources.astype(np.int64),
         "engaged": data.engaged,
         "held": data.held,
+        "holder": holder_column(data, holders),
         "recorded_tick": data.ticks[:-1],
         "next.reward": data.success[1:].astype(np.float32),
         "next.success": data.success[1:],
@@ -59,7 +62,7 @@ def feature_of(name: str, values: NDArray[Any], task: Task) -> dict[str, Any]:
     names: list[str] | None = None
     if name == "action":
         names = [f"{arm}/action/{i}" for arm in task.arm_names for i in range(ACTION_SIZE)]
-    elif name in ("source", "engaged", "held"):
+    elif name in ("source", "engaged", "held", "holder"):
         names = [f"{arm}/{name}" for arm in task.arm_names]
     for part, observations in observation_parts(task).items():
         if part == name:

@@ -22,6 +22,7 @@ from mart.protocol.tasks import Task
 from mart.recorder.export.cameras import CameraRequest
 from mart.recorder.export.card import lerobot_card
 from mart.recorder.export.columns import Columns, columns_of, feature_of
+from mart.recorder.export.holders import told_holders
 from mart.recorder.export.lerobot_tables import (
     CHUNK_SIZE,
     DATA_FILE,
@@ -41,7 +42,7 @@ from mart.recorder.export.selection import ExportSelection, read_segments
 from mart.recorder.export.statistics import of_numbers, of_pictures
 from mart.recorder.export.videos import video_info, write_video
 
-_VERSION = "v3.0"
+VERSION = "v3.0"
 _COLUMNS = "columns.npz"
 _ORIGIN = "origin.hdf5"
 
@@ -79,10 +80,12 @@ def write_piece(selection: ExportSelection, episode: LabelledEpisode, folder: Pa
             drawn = islice(pictures.of(data, camera), len(data))
             counts = write_video(segment / f"{camera.key}.mp4", drawn, camera, int(selection.control_hz))
             np.save(segment / f"{camera.key}.npy", counts)
-        columns: dict[str, Any] = columns_of(data, selection.task, selection.control_hz)
+        columns: dict[str, Any] = columns_of(data, selection.task, selection.control_hz, selection.holders)
         np.savez(segment / _COLUMNS, **columns)
         with h5py.File(segment / _ORIGIN, "w") as file:
-            write_origin(file.create_group(GROUP), "0", data, episode, states=False)
+            write_origin(
+                file.create_group(GROUP), "0", data, episode, states=False, with_names=selection.with_names
+            )
 
 
 def _part(folder: Path, selection: ExportSelection) -> SegmentPart:
@@ -151,7 +154,7 @@ def _info(selection: ExportSelection, columns: Columns, episodes: int) -> dict[s
         for camera in selection.cameras
     }
     return {
-        "codebase_version": _VERSION,
+        "codebase_version": VERSION,
         "robot_type": _robots(selection.task),
         "total_episodes": episodes,
         "total_frames": len(columns["index"]),
@@ -171,7 +174,13 @@ def _facts(selection: ExportSelection) -> dict[str, Any]:
     """Return what LeRobot has no place for, and who seats a policy that was trained on it has to know."""
     task = selection.task
     kinds = {"arm_kinds": task.arm_kinds} if task.arm_kinds else {}
-    return {"task": task.name, "control_hz": selection.control_hz, "arms": task.arm_names} | kinds
+    return {
+        "task": task.name,
+        "control_hz": selection.control_hz,
+        "arms": task.arm_names,
+        "holders": told_holders(selection.holders, selection.with_names),
+        **kinds,
+    }
 
 
 def _write_origins(path: Path, parts: Sequence[SegmentPart]) -> None:

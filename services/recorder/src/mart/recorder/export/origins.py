@@ -29,13 +29,22 @@ POSITIONS, QUATERNIONS = "tool_positions_in_base", "tool_quaternions_in_base"
 
 
 def write_origin(
-    origins: h5py.Group, demo: str, data: EpisodeData, episode: LabelledEpisode, *, states: bool
+    origins: h5py.Group,
+    demo: str,
+    data: EpisodeData,
+    episode: LabelledEpisode,
+    *,
+    states: bool,
+    with_names: bool,
 ) -> None:
-    """Write what belongs to one demonstration. states: whether the data set has the integration states, too."""
+    """Write what belongs to one demonstration.
+
+    states: whether the data set has the integration states, too. with_names: whether people are named.
+    """
     group = origins.create_group(f"{DEMOS}/{demo}")
     file = episode.open()
     for record in RECORDS:
-        group.attrs[record] = json.dumps(dict(file.metadata.get(record, {})))
+        group.attrs[record] = json.dumps(_strings(file, record, with_names))
     group.attrs["outcome"] = episode.outcome
     group[TIMES], group[SENT], group[SUCCESS] = data.sim_time_s, data.sent_ns, data.success
     group[POSITIONS], group[QUATERNIONS] = data.tool_positions_in_base, data.tool_quaternions_in_base
@@ -58,6 +67,16 @@ def copy_origin(origins: h5py.Group, demo: str, target: h5py.Group, new: str) ->
     for sha256 in origins.get(MODELS, ()):
         if f"{MODELS}/{sha256}" not in target:
             origins.copy(f"{MODELS}/{sha256}", target.require_group(MODELS), sha256)
+
+
+def _strings(file: EpisodeFile, record: str, with_names: bool) -> dict[str, str]:
+    """Return what a record of the file says, of people only who they were to each other where nobody is to be named."""
+    strings = dict(file.metadata.get(record, {}))
+    if with_names:
+        return strings
+    if record == OperatorsRecord.NAME:
+        return OperatorsRecord.from_strings(strings).without_names().to_strings()
+    return {name: said for name, said in strings.items() if name != "ended_by_name"}
 
 
 def _write_model(origins: h5py.Group, file: EpisodeFile) -> None:

@@ -24,6 +24,7 @@ from mart.protocol.recording import OperatorsRecord
 from mart.protocol.tasks import Task
 from mart.recorder.export.cameras import CameraRequest
 from mart.recorder.export.card import robomimic_card
+from mart.recorder.export.holders import holder_column, told_holders
 from mart.recorder.export.origins import GROUP, copy_origin, write_origin
 from mart.recorder.export.pictures import DEPTH, RGB, SEGMENTATION, EpisodePictures
 from mart.recorder.export.pieces import half_folder, write_pieces
@@ -62,9 +63,16 @@ def write_piece(selection: ExportSelection, episode: LabelledEpisode, folder: Pa
     with h5py.File(folder / _DEMOS, "w") as file:
         for number, data in enumerate(read_segments(selection, episode)):
             group = file.create_group(f"{number:04d}")
-            _write_demo(group, data, episode, selection.with_names)
+            _write_demo(group, data, episode, selection)
             _write_pictures(group, data, selection, pictures)
-            write_origin(file.require_group(GROUP), group.name.strip("/"), data, episode, states=True)
+            write_origin(
+                file.require_group(GROUP),
+                group.name.strip("/"),
+                data,
+                episode,
+                states=True,
+                with_names=selection.with_names,
+            )
 
 
 def key_of(name: str) -> str:
@@ -90,13 +98,16 @@ def _assemble(file: h5py.File, selection: ExportSelection, pieces: Sequence[Path
     data.attrs["total"] = total
     data.attrs["env_args"] = json.dumps(_environment(selection))
     data.attrs["source"] = json.dumps(SOURCES)
+    data.attrs["holders"] = json.dumps(told_holders(selection.holders, selection.with_names))
     data.attrs["observations"] = json.dumps(_observations(selection.task))
     for key, demos in groups.items():
         file[f"mask/{key}"] = np.array(demos, dtype="S")
     return total, number
 
 
-def _write_demo(group: h5py.Group, data: EpisodeData, episode: LabelledEpisode, with_names: bool) -> None:
+def _write_demo(
+    group: h5py.Group, data: EpisodeData, episode: LabelledEpisode, selection: ExportSelection
+) -> None:
     last = np.arange(1, len(data) + 1) == len(data)
     group["states"] = data.integration_states[:-1]
     group["actions"] = data.actions.reshape(len(data), -1)
@@ -105,6 +116,7 @@ def _write_demo(group: h5py.Group, data: EpisodeData, episode: LabelledEpisode, 
     group["source"] = data.sources
     group["ticks"] = data.ticks[:-1]
     group["held"] = data.held.astype(np.uint8)
+    group["holder"] = holder_column(data, selection.holders)
     group["engaged"] = data.engaged.astype(np.uint8)
     for name, values in data.observations.items():
         group[f"obs/{key_of(name)}"] = values[:-1]
@@ -112,19 +124,14 @@ def _write_demo(group: h5py.Group, data: EpisodeData, episode: LabelledEpisode, 
     group.attrs["num_samples"] = len(data)
     group.attrs["episode"] = episode.file_path.name
     group.attrs["outcome"] = episode.outcome
-    group.attrs["operators"] = json.dumps(_operators(episode, with_names))
+    group.attrs["operators"] = json.dumps(_operators(episode, selection.with_names))
 
 
 def _operators(episode: LabelledEpisode, with_names: bool) -> dict[str, str]:
     """Return who drove each arm, with changes; people's and policies' names only where they were asked for."""
     if with_names:
         return episode.operators
-    shifts = OperatorsRecord.from_strings(episode.operators).shifts
-    nameless = {
-        arm: tuple(shift.model_copy(update={"name": ""}) for shift in of_arm)
-        for arm, of_arm in shifts.items()
-    }
-    return OperatorsRecord(shifts=nameless).to_strings()
+    return OperatorsRecord.from_strings(episode.operators).without_names().to_strings()
 
 
 def _write_pictures(

@@ -18,6 +18,7 @@ from mart.protocol.messages import operator_from_word
 from mart.protocol.tasks import Task
 from mart.protocol.vocabulary import OperatorKind
 from mart.recorder.export.cameras import CameraRequest
+from mart.recorder.export.holders import holders_in
 
 # What the numbers in a column of sources mean, by tick and arm.
 SOURCES: Mapping[int, str] = {operator_from_word(kind): kind.value for kind in OperatorKind}
@@ -32,7 +33,8 @@ class ExportSelection:
     cameras: whose pictures stand beside the numbers. captured: which of them were real ones; the others are drawn anew.
     depth, segmentation: whether drawn pictures come with these, too.
     jobs: how many processes work at it.
-    with_names: whether the data card names who drove.
+    with_names: whether the data set and its card name who drove.
+    holders: everybody who held a seat in them; the column `holder` numbers them.
     each: how a writer goes through them, for whoever counts along.
     """
 
@@ -46,6 +48,7 @@ class ExportSelection:
     segmentation: bool = False
     jobs: int = 1
     with_names: bool = False
+    holders: tuple[str, ...] = ()
     each: Callable[[Sequence[LabelledEpisode]], Iterable[LabelledEpisode]] = iter
 
     def asked(self, file_format: str) -> dict[str, object]:
@@ -80,7 +83,7 @@ def choose(
     if first.task is None or first.control_hz is None:
         raise InvalidInput(f"{first.file_path} does not say its task and control rate; leave it out.")
     task = first.recorded_task()
-    return ExportSelection(task, control_hz or first.control_hz, tuple(taken))
+    return ExportSelection(task, control_hz or first.control_hz, tuple(taken), holders=holders_in(taken))
 
 
 def sound(episodes: Iterable[LabelledEpisode]) -> list[LabelledEpisode]:
