@@ -62,7 +62,7 @@ def evaluate(
     from mart.trainer.evaluate import formatting
     from mart.trainer.evaluate.config import EvalConfig
     from mart.trainer.evaluate.evaluator import Evaluator
-    from mart.trainer.evaluate.replicas import worlds
+    from mart.rollouts.replicas import worlds
 
     config = EvalConfig(episodes, score_episodes, seed, time_limit, keep)
     names = [name for name in replicas.split(",") if name]
@@ -94,7 +94,7 @@ def _evaluate_foreign(
     from mart.protocol.tasks import get_task
     from mart.trainer.evaluate import formatting
     from mart.trainer.evaluate.evaluator import Evaluator
-    from mart.trainer.evaluate.replicas import worlds
+    from mart.rollouts.replicas import worlds
     from mart.trainer.evaluate.rollouts import batch_count
     from mart.trainer.models.policies.find import load_any_policy
 
