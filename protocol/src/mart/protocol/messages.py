@@ -38,6 +38,7 @@ from mart.v1.catalogue_pb2 import (
     Trace,
 )
 from mart.v1.command_pb2 import (
+    OPERATOR_GENERATED,
     OPERATOR_HOLD,
     OPERATOR_HUMAN,
     OPERATOR_POLICY,
@@ -158,6 +159,7 @@ __all__ = [
     "JOB_STATE_FAILED",
     "JOB_STATE_QUEUED",
     "JOB_STATE_RUNNING",
+    "OPERATOR_GENERATED",
     "OPERATOR_HOLD",
     "OPERATOR_HUMAN",
     "OPERATOR_POLICY",

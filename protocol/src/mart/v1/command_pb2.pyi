@@ -14,11 +14,13 @@ class Operator(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     OPERATOR_HUMAN: _ClassVar[Operator]
     OPERATOR_POLICY: _ClassVar[Operator]
     OPERATOR_SCRIPT: _ClassVar[Operator]
+    OPERATOR_GENERATED: _ClassVar[Operator]
 OPERATOR_UNSPECIFIED: Operator
 OPERATOR_HOLD: Operator
 OPERATOR_HUMAN: Operator
 OPERATOR_POLICY: Operator
 OPERATOR_SCRIPT: Operator
+OPERATOR_GENERATED: Operator
 
 class CommandStamps(_message.Message):
     __slots__ = ("input_sent_ns", "gateway_received_ns", "sent_ns")
