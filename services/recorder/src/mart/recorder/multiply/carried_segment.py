@@ -79,9 +79,9 @@ class CarriedSegment:
             before + share * (after - before), between(turned_before, turned_after, share), gripper
         )
 
-    def demonstrated_step_m(self, tick: float) -> float:
-        """Return how far the demonstration led the tool in the tick that begins here, metres."""
-        return float(np.linalg.norm(self._way.at(tick + 1.0).position - self._way.at(tick).position))
+    def demonstrated_m(self, tick: float, later: float) -> float:
+        """Return how far the demonstration led the tool between two of its ticks, metres."""
+        return float(np.linalg.norm(self._way.at(later).position - self._way.at(tick).position))
 
     def _in_frame(
         self,

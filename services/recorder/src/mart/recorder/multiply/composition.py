@@ -122,18 +122,26 @@ def _library(task: Task, demonstration: Demonstration, arm: str) -> ArmLibrary:
 
 
 def _always_before(task: Task, demonstrations: Sequence[Demonstration]) -> dict[str, tuple[str, ...]]:
-    """Return for each arm the subtasks of others that were done before its own last one in every demonstration."""
+    """Return for each arm the subtasks of others that it waits for while it works alone.
+
+    These were done after the same of its own, and before the next one, in every demonstration: as they always come in
+    this order, arms that follow different demonstrations never wait for each other.
+    """
     before = {}
     for arm in task.arm_names:
-        own = [one.name for one in task.subtasks if arm in acting(one)]
+        own = [one.name for one in task.subtasks if arm in acting(one) and not one.coordinated]
         others = [one.name for one in task.subtasks if arm not in acting(one)]
-        before[arm] = tuple(
-            other
-            for other in others
-            if own
-            and all(first_done(one, other) < min(first_done(one, own[-1]), one.ticks) for one in demonstrations)
-        )
+        before[arm] = tuple(other for other in others if _comes_between(other, own, demonstrations))
     return before
+
+
+def _comes_between(other: str, own: Sequence[str], demonstrations: Sequence[Demonstration]) -> bool:
+    """Tell whether a subtask is always done before the last of these, and after the same of them."""
+    places = set()
+    for one in demonstrations:
+        tick = first_done(one, other)
+        places.add(sum(first_done(one, name) <= tick for name in own))
+    return len(places) == 1 and places.pop() < len(own)
 
 
 def _apart(demonstration: Demonstration, thing: str, now: Placed) -> float:

@@ -23,7 +23,7 @@ from mart.recorder.multiply.transport import turned, yaw_of
 WORLD, TOOL = "the world", "the tool"  # no thing's name has a blank
 _ANY_TURN = 0
 _FEWEST = 3  # segments of a kind that tell more than the nearest thing does
-_AS_GOOD = 1.5  # times the closest, where the simpler answer stands
+_AS_GOOD, _TIE = 1.5, 1.1  # times the closest, where a thing with a turn, or the tool, is taken instead
 _HELD_M, _MOVED_M = 0.02, 0.02
 _SPREADS_RAD = {1: 0.35, 2: 0.2, 4: 0.15}  # by how often a thing looks the same in a turn
 
@@ -52,8 +52,10 @@ class _Ending:
         return np.asarray(self.demonstration.ways[self.segment.arm].positions[self.segment.begin])
 
     @property
-    def end_m(self) -> Array:
-        return np.asarray(self.demonstration.ways[self.segment.arm].positions[self.segment.end - 1])
+    def places_m(self) -> Array:
+        """Where it ended, and the middle of its last half: of a way that rubs a place, that tells more; shape (2, 3)."""
+        way = self.demonstration.ways[self.segment.arm].positions[self.segment.begin : self.segment.end]
+        return np.stack([way[-1], way[len(way) // 2 :].mean(axis=0)])
 
     @property
     def tool_yaw(self) -> float:
@@ -97,14 +99,16 @@ def _reference(kind: SegmentKind, endings: Sequence[_Ending]) -> Reference:
         nearest = min(things, key=lambda thing: _distance_m(thing, endings), default=None)
         return Reference(TOOL) if nearest is None else Reference(nearest, orders[nearest])
     spreads = {thing: _spread_m(_in_thing(thing, orders[thing], endings), endings) for thing in things}
-    spreads[WORLD] = _spread_m([one.end_m for one in endings], endings)
+    spreads[WORLD] = _spread_m([one.places_m for one in endings], endings)
     if kind.end != CLOSES:
-        spreads[TOOL] = _spread_m([one.end_m - one.begin_m for one in endings], endings)
+        spreads[TOOL] = _spread_m([one.places_m - one.begin_m for one in endings], endings)
     best = min(spreads, key=lambda frame: spreads[frame])
-    for simpler in (TOOL, *_best_first(things, orders, spreads)):
-        if spreads.get(simpler, math.inf) <= _AS_GOOD * spreads[best]:
-            best = simpler
-            break
+    if spreads.get(TOOL, math.inf) <= _TIE * spreads[best]:
+        return Reference(TOOL)
+    if kind.end == CLOSES or best in orders:
+        for thing in _best_first(things, orders, spreads):
+            if spreads[thing] <= _AS_GOOD * spreads[best]:
+                return Reference(thing, orders[thing])
     return Reference(best, orders.get(best, 1))
 
 
@@ -137,15 +141,16 @@ def _is_carried(thing: str, endings: Sequence[_Ending]) -> bool:
 
 
 def _distance_m(thing: str, endings: Sequence[_Ending]) -> float:
-    return float(np.mean([np.linalg.norm(one.end_m - one.thing_m(thing)) for one in endings]))
+    return float(np.mean([np.linalg.norm(one.places_m[0] - one.thing_m(thing)) for one in endings]))
 
 
 def _in_thing(thing: str, order: int, endings: Sequence[_Ending]) -> list[Array]:
     found = []
     for one in endings:
         yaw = one.thing_yaw(thing)
-        offset = one.end_m - one.thing_m(thing)
-        found.append(offset if order == _ANY_TURN or yaw is None else turned(offset, -yaw))
+        offsets = one.places_m - one.thing_m(thing)
+        is_turned = order != _ANY_TURN and yaw is not None
+        found.append(np.array([turned(one, -(yaw or 0.0)) for one in offsets]) if is_turned else offsets)
     return found
 
 
@@ -158,4 +163,5 @@ def _spread_m(places: Sequence[Array], endings: Sequence[_Ending]) -> float:
 
 
 def _from_middle_m(places: Array) -> float:
-    return float(np.median(np.linalg.norm(places - np.median(places, axis=0), axis=1)))
+    """Return the distance, of both places of every way together; places: shape (ways, 2, 3)."""
+    return float(np.median(np.linalg.norm(places - np.median(places, axis=0), axis=-1), axis=0).sum())

@@ -85,13 +85,14 @@ def segments_of(task: Task, demonstration: Demonstration, arm: str) -> tuple[Seg
     for subtask in task.subtasks:
         if subtask.coordinated or arm in acting(subtask):
             cuts[first_done(demonstration, subtask.name)] = DONE
-    cuts[together_from(task, demonstration, arm)] = DONE
+    joins = together_from(task, demonstration, arm)
+    cuts[joins] = DONE
     for tick in np.flatnonzero(closed[1:] != closed[:-1]) + 1:
         cuts[int(tick)] = CLOSES if closed[tick] else OPENS
     cuts[ticks] = ENDS
     found, begin = [], 0
     for tick in sorted(cuts):
-        if tick - begin >= _SHORTEST or (tick == ticks and tick > begin):
+        if tick - begin >= _SHORTEST or (tick in (joins, ticks) and tick > begin):
             found.append(_segment(task, demonstration, arm, begin, tick, cuts[tick]))
             begin = tick
     return tuple(found)
@@ -103,9 +104,17 @@ def _segment(
     middle = (begin + end) // 2
     step = next_step(task, arm, {name: bool(done[begin]) for name, done in demonstration.subtasks.items()})
     closed = bool(demonstration.ways[arm].closed[middle])
-    joined = step is not None and step.coordinated and closed and len(acting(step)) > 1
+    began = _closed_from(demonstration, arm, middle) >= together_from(task, demonstration, arm)
+    joined = step is not None and step.coordinated and closed and began and len(acting(step)) > 1
     arms = acting(step) if joined and step is not None else (arm,)
     return Segment(arm, begin, end, SegmentKind(arms, closed, why, step.name if step else ""))
+
+
+def _closed_from(demonstration: Demonstration, arm: str, tick: int) -> int:
+    """Return the tick from which the gripper has been as it is at this one: what it holds it has held since."""
+    closed = demonstration.ways[arm].closed[: tick + 1]
+    changes = np.flatnonzero(closed[1:] != closed[:-1])
+    return int(changes[-1]) + 1 if len(changes) else 0
 
 
 def next_step(task: Task, arm: str, done: Mapping[str, bool]) -> Subtask | None:

@@ -21,6 +21,8 @@ from mart.recorder.multiply.segments import CLOSES, OPENS, Segment, SegmentKind
 _FASTER = 1.3  # than shown, at the same place
 _BRISK_SHARE = 0.9  # of the demonstrated steps are slower than what is always allowed
 _LEAST_STEP_M = 0.004
+_SLOWEST = 0.05  # ticks of the demonstration in one of ours
+_ROUNDING_M = 1e-9
 
 
 class _ArmPlayer:
@@ -33,7 +35,7 @@ class _ArmPlayer:
         self._parts = [(piece, segment) for piece in pieces for segment in piece.segments]
         self._next = 0
         self.last = last
-        self.tick, self._last_tick = 0.0, -1.0
+        self.tick = -1.0  # of the demonstration, that was gone last
         self._carried: CarriedSegment | None = None
         self._piece: Piece | None = None
         self._before: Segment | None = None
@@ -49,6 +51,11 @@ class _ArmPlayer:
     def meets(self) -> int | None:
         return self._piece.meets if self._piece is not None else None
 
+    @property
+    def is_at_meeting(self) -> bool:
+        """Whether all that this arm goes through before it meets others is done."""
+        return self.meets is not None and self.tick >= self.meets - 1
+
     def may_go(self, done: Collection[str]) -> bool:
         """Tell whether what this arm awaits at its tick has been done."""
         assert self._piece is not None
@@ -57,20 +64,21 @@ class _ArmPlayer:
     def proposed(self, placed: Mapping[str, Placed]) -> float:
         """Return by how many ticks of the demonstration, at most 1, the arm can go on now."""
         assert self._carried is not None
-        step_m = self._carried.demonstrated_step_m(self.tick)
-        allowed_m = min(max(_FASTER * step_m, self._brisk_m), max(self._most_m, step_m))
-        there = self._carried.target(self.tick, placed).position
-        ahead_m = float(np.linalg.norm(there - self.last.position))
-        return 1.0 if ahead_m <= allowed_m else max(allowed_m / ahead_m, 0.05)
+        following = min(self.tick + 1.0, self._carried.segment.end - 1.0)
+        shown_m = self._carried.demonstrated_m(self.tick, following)
+        allowed_m = max(min(max(_FASTER * shown_m, self._brisk_m), self._most_m), shown_m)
+        ahead_m = float(np.linalg.norm(self._carried.target(following, placed).position - self.last.position))
+        share = 1.0 if ahead_m <= allowed_m + _ROUNDING_M else max(allowed_m / ahead_m, _SLOWEST)
+        return share * (following - self.tick)
 
     def go(self, ticks: float, placed: Mapping[str, Placed]) -> ToolTarget:
         """Go on by so many ticks of the demonstration, and return the target."""
         assert self._carried is not None
-        self.last, self._last_tick = self._carried.target(self.tick, placed), self.tick
         later = self.tick + ticks
-        meets = self.meets
-        self.tick = later if meets is None or self.tick >= meets else min(later, float(meets))
-        if self.tick >= self._carried.segment.end - 1e-9:
+        if self.meets is not None and not self.is_at_meeting:
+            later = min(later, self.meets - 1.0)
+        self.tick, self.last = later, self._carried.target(later, placed)
+        if self.tick >= self._carried.segment.end - 1.0:
             self._begin_next()
         return self.last
 
@@ -81,11 +89,11 @@ class _ArmPlayer:
         piece, segment = self._parts[self._next]
         self._next += 1
         if piece is not self._piece:
-            self._piece, self.tick, self._last_tick = piece, float(segment.begin), segment.begin - 1.0
+            self._piece, self.tick = piece, segment.begin - 1.0
             self._brisk_m = _brisk_step_m(piece, segment.arm)
         in_contact = self._before is not None and self._before.kind.end in (CLOSES, OPENS)
         self._before = segment
-        origin = piece.demonstration.ways[segment.arm].at(self._last_tick)
+        origin = piece.demonstration.ways[segment.arm].at(self.tick)
         reference = self._references[segment.kind]
         self._carried = CarriedSegment(
             piece.demonstration, segment, reference, self.last, origin, in_contact=in_contact
@@ -130,7 +138,7 @@ class WayPlayer:
         waiting = {
             name
             for name, arm in going.items()
-            if arm.meets is not None and arm.tick >= arm.meets and name not in joined
+            if arm.is_at_meeting and name not in joined
         }
         return {
             name: arm.go(ticks[name], placed) if name in going and name not in waiting else arm.last
@@ -145,7 +153,7 @@ class WayPlayer:
         there = {
             name
             for name, arm in together.items()
-            if arm.done or (arm.meets is not None and arm.tick >= arm.meets)
+            if arm.done or arm.is_at_meeting
         }
         if there != together.keys():
             return set()
