@@ -24,6 +24,7 @@ WORLD, TOOL = "the world", "the tool"  # no thing's name has a blank
 _ANY_TURN = 0
 _FEWEST = 3  # segments of a kind that tell more than the nearest thing does
 _AS_GOOD, _TIE = 1.5, 1.1  # times the closest, where a thing with a turn, or the tool, is taken instead
+_ALIKE_M = 0.001
 _HELD_M, _MOVED_M = 0.02, 0.02
 _SPREADS_RAD = {1: 0.35, 2: 0.2, 4: 0.15}  # by how often a thing looks the same in a turn
 
@@ -103,11 +104,11 @@ def _reference(kind: SegmentKind, endings: Sequence[_Ending]) -> Reference:
     if kind.end != CLOSES:
         spreads[TOOL] = _spread_m([one.places_m - one.begin_m for one in endings], endings)
     best = min(spreads, key=lambda frame: spreads[frame])
-    if spreads.get(TOOL, math.inf) <= _TIE * spreads[best]:
+    if spreads.get(TOOL, math.inf) <= _TIE * spreads[best] + _ALIKE_M:
         return Reference(TOOL)
     if kind.end == CLOSES or best in orders:
         for thing in _best_first(things, orders, spreads):
-            if spreads[thing] <= _AS_GOOD * spreads[best]:
+            if spreads[thing] <= _AS_GOOD * spreads[best] + _ALIKE_M:
                 return Reference(thing, orders[thing])
     return Reference(best, orders.get(best, 1))
 
