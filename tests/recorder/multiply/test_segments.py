@@ -40,7 +40,10 @@ def test_segments_cover_a_way_without_gaps(demonstrations: list) -> None:
     for one in demonstrations:
         for arm in CUBES.arm_names:
             segments = segments_of(CUBES, one, arm)
-            assert [segments[0].begin, *(s.end for s in segments)] == [*(s.begin for s in segments), one.ticks]
+            assert [segments[0].begin, *(s.end for s in segments)] == [
+                *(s.begin for s in segments),
+                one.ticks,
+            ]
 
 
 def test_fingers_close_at_their_cube_and_lift_from_where_they_closed(demonstrations: list) -> None:

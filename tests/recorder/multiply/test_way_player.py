@@ -56,7 +56,10 @@ def test_fingers_close_where_the_thing_lies_and_no_step_is_longer_than_shown(
 ) -> None:
     one = DEMONSTRATIONS[index]
     then = placed(one, 0)
-    now = {name: Placed(p.position + np.array([*shift, 0.0]), (p.yaw_rad or 0.0) + turn) for name, p in then.items()}
+    now = {
+        name: Placed(p.position + np.array([*shift, 0.0]), (p.yaw_rad or 0.0) + turn)
+        for name, p in then.items()
+    }
     playing = player(one, starts(one), now)
     last = {arm: way.start.position for arm, way in one.ways.items()}
     closed: dict[str, np.ndarray] = {}
@@ -95,7 +98,9 @@ def test_the_same_seed_draws_the_same() -> None:
 
 
 @given(st.integers(2, 60), st.booleans(), st.floats(0.0, 0.02))
-def test_a_path_is_led_over_from_nothing_to_all_and_never_back(ticks: int, in_contact: bool, step_m: float) -> None:
+def test_a_path_is_led_over_from_nothing_to_all_and_never_back(
+    ticks: int, in_contact: bool, step_m: float
+) -> None:
     path = np.outer(np.arange(ticks), np.array([step_m, 0.0, 0.0]))
     shares = shares_led_over(path, in_contact=in_contact)
     assert (np.diff(shares) >= 0.0).all()

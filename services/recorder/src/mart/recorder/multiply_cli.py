@@ -17,7 +17,9 @@ from mart.runtime.task_option import task_option
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
 @task_option("two_arm_multi_cube_lifting")
-@click.option("--to", "wanted", type=click.IntRange(1, 100_000), required=True, help="How many are to be made.")
+@click.option(
+    "--to", "wanted", type=click.IntRange(1, 100_000), required=True, help="How many are to be made."
+)
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="The folder of what is made.")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0, 2**32 - 1))
 @click.option(
@@ -25,7 +27,9 @@ from mart.runtime.task_option import task_option
 )
 @click.option("--operator", default="", help="Driven by human, policy, script, or somebody by name.")
 @click.option("--from-generated", is_flag=True, help="Take generated episodes, too.")
-@click.option("--replicas", default="", help="Running replicas, separated by commas.  [default: one of its own]")
+@click.option(
+    "--replicas", default="", help="Running replicas, separated by commas.  [default: one of its own]"
+)
 @json_option
 def multiply(
     *,

@@ -59,7 +59,9 @@ class CarriedSegment:
         self._yaw = yaw_of(self._turn)
         self._thing = demonstration.things.get(reference.frame)
         self._follows = self._moves_meanwhile()
-        self._shares = shares_led_over(self._way.positions[segment.begin : segment.end], in_contact=in_contact)
+        self._shares = shares_led_over(
+            self._way.positions[segment.begin : segment.end], in_contact=in_contact
+        )
         self._frozen: tuple[Array, Array, float] | None = None
 
     def target(self, tick: float, placed: Mapping[str, Placed]) -> ToolTarget:
@@ -115,7 +117,10 @@ class CarriedSegment:
     def _moves_meanwhile(self) -> bool:
         if self._thing is None:
             return False
-        moved = self._thing.positions[self.segment.begin : self.segment.end] - self._thing.positions[self.segment.end - 1]
+        moved = (
+            self._thing.positions[self.segment.begin : self.segment.end]
+            - self._thing.positions[self.segment.end - 1]
+        )
         return bool(np.linalg.norm(moved, axis=1).max() > _MOVES_M)
 
     def _share(self, tick: float) -> float:

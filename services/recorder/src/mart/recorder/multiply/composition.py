@@ -70,7 +70,9 @@ class Composer:
             for segment in (*own.alone, *own.joined)
         ]
 
-    def compose(self, placed: Mapping[str, Placed], random: np.random.Generator) -> dict[str, tuple[Piece, ...]]:
+    def compose(
+        self, placed: Mapping[str, Placed], random: np.random.Generator
+    ) -> dict[str, tuple[Piece, ...]]:
         """Return each arm's pieces, for a world in which things lie so."""
         shared = self._draw(things_of(self._task), placed, random) if self._group else None
         composed = {}

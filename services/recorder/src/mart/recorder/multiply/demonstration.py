@@ -122,7 +122,9 @@ def _way(data: EpisodeData, index: int, arm: Arm) -> Way:
     return Way(np.array(positions), np.array(quaternions), (data.actions[:, index, 6] + 1.0) / 2.0, start)
 
 
-def tool_in_world(arm: Arm, position_in_base: Array, quaternion_in_base: Array, gripper: float = 0.0) -> ToolTarget:
+def tool_in_world(
+    arm: Arm, position_in_base: Array, quaternion_in_base: Array, gripper: float = 0.0
+) -> ToolTarget:
     """Return where a tool is in the world, of a pose in its arm's base frame."""
     base = arm.pose_base_in_world
     return ToolTarget(

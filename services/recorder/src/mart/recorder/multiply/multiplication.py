@@ -24,7 +24,7 @@ from mart.recorder.multiply.replay import PlayedWorld, Replayer
 from mart.runtime.json_lines import append_json_line, read_json_lines
 
 LOG = "multiply.jsonl"
-_BATCH = 32  # worlds: a tick of them costs little more a world than one of many more
+_BATCH = 32  # worlds at most: a tick of them costs little more a world than one of many more
 _FEWEST_KEPT_OF = 256  # attempts of which none succeeded are enough
 _SEEDS = 2**32
 
@@ -71,14 +71,14 @@ class Multiplication:
                 )
 
     def _batch(self, first: int, most: int, written: dict[int, str]) -> Batch:
-        attempts = range(first, first + _BATCH)
+        attempts = range(first, first + min(_BATCH, most + most // 4 + 1))  # some may fail
         kept = []
         for attempt, played in zip(attempts, self._play(attempts), strict=True):
             if len(kept) == most:
                 return Batch(first, attempt - first, tuple(kept))
             if played.succeeded:
                 kept.append(written.get(attempt) or self._write(attempt, played))
-        return Batch(first, _BATCH, tuple(kept))
+        return Batch(first, len(attempts), tuple(kept))
 
     def _play(self, attempts: Sequence[int]) -> list[PlayedWorld]:
         return self.replayer.play([world_seed(self.seed, attempt) for attempt in attempts])
@@ -89,7 +89,9 @@ class Multiplication:
         return path.relative_to(self.maker.out).as_posix()
 
     def _note(self, batch: Batch) -> None:
-        append_json_line(self.maker.out / LOG, {"sources": self.sources_sha256, "seed": self.seed, **vars(batch)})
+        append_json_line(
+            self.maker.out / LOG, {"sources": self.sources_sha256, "seed": self.seed, **vars(batch)}
+        )
 
     def _earlier(self) -> Iterator[Batch]:
         """Yield what earlier runs have noted, without a gap."""
@@ -105,7 +107,9 @@ class Multiplication:
             try:
                 batch = Batch(int(row["first"]), int(row["attempts"]), tuple(map(str, row["kept"])))
             except (KeyError, TypeError, ValueError) as error:
-                raise Corrupt(f"Line {number} of {path} is none of `mart multiply`; name another folder.") from error
+                raise Corrupt(
+                    f"Line {number} of {path} is none of `mart multiply`; name another folder."
+                ) from error
             if batch.first == expected:
                 expected += batch.attempts
                 yield batch

@@ -76,7 +76,10 @@ class _Ending:
         way = self.demonstration.ways[self.segment.arm].positions
         moved = positions[end] - positions[begin]
         led = way[end] - way[begin]
-        return bool(np.linalg.norm(moved) > _MOVED_M and np.linalg.norm(moved - led) < max(_HELD_M, 0.5 * float(np.linalg.norm(led))))
+        return bool(
+            np.linalg.norm(moved) > _MOVED_M
+            and np.linalg.norm(moved - led) < max(_HELD_M, 0.5 * float(np.linalg.norm(led)))
+        )
 
 
 def references_of(

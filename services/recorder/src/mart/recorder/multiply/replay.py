@@ -55,9 +55,7 @@ class Replayer:
     references: Mapping[SegmentKind, Reference]
     time_limit_s: float
 
-    def play(
-        self, seeds: Sequence[int], on_tick: Callable[[], None] = lambda: None
-    ) -> list[PlayedWorld]:
+    def play(self, seeds: Sequence[int], on_tick: Callable[[], None] = lambda: None) -> list[PlayedWorld]:
         """Play one episode for each seed, which decides its world and what it is made of."""
         state = self.client.reset(
             self.task.name,
@@ -98,7 +96,11 @@ class Replayer:
         return WayPlayer(self.task, pieces, self.references, lasts)
 
     def _actions(self, player: WayPlayer, state: BatchState, world: int) -> Array:
-        done = [one.name for one, is_done in zip(self.task.subtasks, state.subtasks[world], strict=True) if is_done]
+        done = [
+            one.name
+            for one, is_done in zip(self.task.subtasks, state.subtasks[world], strict=True)
+            if is_done
+        ]
         targets = player.targets(self._placed(state, world), done)
         return np.array([_action(arm, targets[arm.name], state, world) for arm in self.task.arms])
 

@@ -98,9 +98,7 @@ def segments_of(task: Task, demonstration: Demonstration, arm: str) -> tuple[Seg
     return tuple(found)
 
 
-def _segment(
-    task: Task, demonstration: Demonstration, arm: str, begin: int, end: int, why: str
-) -> Segment:
+def _segment(task: Task, demonstration: Demonstration, arm: str, begin: int, end: int, why: str) -> Segment:
     middle = (begin + end) // 2
     step = next_step(task, arm, {name: bool(done[begin]) for name, done in demonstration.subtasks.items()})
     closed = bool(demonstration.ways[arm].closed[middle])

@@ -29,7 +29,11 @@ class _ArmPlayer:
     """Play the pieces of one arm. last: the target before the first tick."""
 
     def __init__(
-        self, pieces: tuple[Piece, ...], references: Mapping[SegmentKind, Reference], last: ToolTarget, most_m: float
+        self,
+        pieces: tuple[Piece, ...],
+        references: Mapping[SegmentKind, Reference],
+        last: ToolTarget,
+        most_m: float,
     ) -> None:
         self._references, self._most_m = references, most_m
         self._parts = [(piece, segment) for piece in pieces for segment in piece.segments]
@@ -125,9 +129,7 @@ class WayPlayer:
     def targets(self, placed: Mapping[str, Placed], done: Collection[str]) -> dict[str, ToolTarget]:
         """Return where each tool is to be next. done: the subtasks that are done now."""
         self._done.update(done)
-        going = {
-            name: arm for name, arm in self._arms.items() if not arm.done and arm.may_go(self._done)
-        }
+        going = {name: arm for name, arm in self._arms.items() if not arm.done and arm.may_go(self._done)}
         joined = self._joined()
         if joined and not joined <= going.keys():
             joined = set()
@@ -135,11 +137,7 @@ class WayPlayer:
         if joined:
             common = min(ticks[name] for name in joined)
             ticks |= dict.fromkeys(joined, common)
-        waiting = {
-            name
-            for name, arm in going.items()
-            if arm.is_at_meeting and name not in joined
-        }
+        waiting = {name for name, arm in going.items() if arm.is_at_meeting and name not in joined}
         return {
             name: arm.go(ticks[name], placed) if name in going and name not in waiting else arm.last
             for name, arm in self._arms.items()
@@ -148,13 +146,11 @@ class WayPlayer:
     def _joined(self) -> set[str]:
         """Return the arms that keep one time now: all that meet have come to where they do."""
         together = {
-            name: arm for name, arm in self._arms.items() if any(p.meets is not None for p in self.pieces[name])
+            name: arm
+            for name, arm in self._arms.items()
+            if any(p.meets is not None for p in self.pieces[name])
         }
-        there = {
-            name
-            for name, arm in together.items()
-            if arm.done or arm.is_at_meeting
-        }
+        there = {name for name, arm in together.items() if arm.done or arm.is_at_meeting}
         if there != together.keys():
             return set()
         return {name for name in there if not together[name].done}
