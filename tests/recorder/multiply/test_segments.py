@@ -7,6 +7,7 @@ import pytest
 
 from mart.protocol.tasks import get_task
 from mart.recorder.multiply.composition import Composer
+from mart.recorder.multiply.demonstration import Demonstration
 from mart.recorder.multiply.references import TOOL, references_of, turn_order
 from mart.recorder.multiply.segments import (
     CLOSES,
@@ -21,12 +22,14 @@ from tests.recorder.multiply.ways import CUBES, pick_and_lift
 
 
 @pytest.fixture
-def demonstrations() -> list:
+def demonstrations() -> list[Demonstration]:
     random = np.random.default_rng(3)
     return [pick_and_lift(f"{i}.mcap", random, (i, 5 - i)) for i in range(5)]
 
 
-def test_a_way_is_cut_where_the_gripper_closes_and_where_the_subtask_is_done(demonstrations: list) -> None:
+def test_a_way_is_cut_where_the_gripper_closes_and_where_the_subtask_is_done(
+    demonstrations: list[Demonstration],
+) -> None:
     segments = segments_of(CUBES, demonstrations[1], "arm0")
     assert [(one.begin, one.end, one.kind.end) for one in segments] == [
         (0, 41, CLOSES),
@@ -36,7 +39,7 @@ def test_a_way_is_cut_where_the_gripper_closes_and_where_the_subtask_is_done(dem
     assert [one.kind.step for one in segments] == ["lift_cube0", "lift_cube0", ""]
 
 
-def test_segments_cover_a_way_without_gaps(demonstrations: list) -> None:
+def test_segments_cover_a_way_without_gaps(demonstrations: list[Demonstration]) -> None:
     for one in demonstrations:
         for arm in CUBES.arm_names:
             segments = segments_of(CUBES, one, arm)
@@ -46,7 +49,9 @@ def test_segments_cover_a_way_without_gaps(demonstrations: list) -> None:
             ]
 
 
-def test_fingers_close_at_their_cube_and_lift_from_where_they_closed(demonstrations: list) -> None:
+def test_fingers_close_at_their_cube_and_lift_from_where_they_closed(
+    demonstrations: list[Demonstration],
+) -> None:
     references = references_of(Composer(CUBES, demonstrations).segments())
     frames = {(kind.arms, kind.end): reference.frame for kind, reference in references.items()}
     assert frames[("arm0",), CLOSES] == "cube0"
@@ -54,7 +59,7 @@ def test_fingers_close_at_their_cube_and_lift_from_where_they_closed(demonstrati
     assert frames[("arm0",), DONE] == frames[("arm1",), ENDS] == TOOL
 
 
-def test_one_demonstration_is_carried_by_the_nearest_thing(demonstrations: list) -> None:
+def test_one_demonstration_is_carried_by_the_nearest_thing(demonstrations: list[Demonstration]) -> None:
     references = references_of(Composer(CUBES, demonstrations[:1]).segments())
     assert {r.frame for kind, r in references.items() if kind.end == CLOSES} == {"cube0", "cube1"}
 
@@ -69,7 +74,9 @@ def test_one_demonstration_is_carried_by_the_nearest_thing(demonstrations: list)
         ([], 0),
     ],
 )
-def test_how_often_a_thing_looks_the_same_is_told_by_the_turns_of_its_grips(turns: list, order: int) -> None:
+def test_how_often_a_thing_looks_the_same_is_told_by_the_turns_of_its_grips(
+    turns: list[float], order: int
+) -> None:
     assert turn_order(turns) == order
 
 
@@ -80,7 +87,7 @@ def test_arms_that_carry_together_keep_time_from_the_beginning_where_they_do_not
     assert together(get_task("three_arm_lift_wiping")) == ("arm0", "arm1")
 
 
-def test_an_arm_that_works_alone_never_joins(demonstrations: list) -> None:
+def test_an_arm_that_works_alone_never_joins(demonstrations: list[Demonstration]) -> None:
     one = demonstrations[0]
     assert together_from(CUBES, one, "arm0") == one.ticks
     assert first_done(one, "no such subtask") == one.ticks

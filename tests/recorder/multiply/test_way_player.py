@@ -113,7 +113,7 @@ def test_a_tool_that_began_elsewhere_comes_to_the_thing_all_the_same() -> None:
     begun = {
         arm: ToolTarget(start.position + 0.03, yaw_quaternion(0.1), 0.0) for arm, start in starts(one).items()
     }
-    playing = player(one, begun, placed(one, 0))
+    playing, targets = player(one, begun, placed(one, 0)), begun
     for tick in range(38):
         targets = playing.targets(placed(one, tick), SUBTASKS)
     assert np.allclose(targets["arm0"].position, one.ways["arm0"].positions[37], atol=1e-6)

@@ -17,7 +17,7 @@ LIFT_M = np.array([0.0, 0.0, 0.15])
 
 
 def pick_and_lift(name: str, random: np.random.Generator, pauses: tuple[int, int] = (0, 0)) -> Demonstration:
-    """Each arm goes to its cube, which lies anywhere, closes after about 40 ticks, and lifts it. pauses: ticks before."""
+    """Each arm goes to its cube, which lies anywhere, closes after 40 ticks, and lifts it. pauses: ticks before."""
     ways, things, done = {}, {}, {}
     ticks = 120
     for index, arm in enumerate(CUBES.arm_names):

@@ -173,8 +173,8 @@ class CadenceRecord(Record):
 class GeneratedRecord(Record):
     """Tell of what a generated episode was made. Only such files have it.
 
-    sources: the files whose ways were carried. sources_sha256: of all that could have been. segments: by arm, in their
-    order, `source number:first tick-last tick@frame`, the sources counted from 0; the frame is what it was carried by.
+    sources: the files whose ways were carried. sources_sha256: of all that could have been. segments: by arm, in order,
+    `source number:first tick-last tick@frame`, sources counted from 0; the frame is what it was carried by.
     """
 
     NAME = "mart.generated"
@@ -213,7 +213,7 @@ class VerificationRecord(Record):
 
 
 class Shift(BaseModel):
-    """Who drove an arm from `episode_tick` on: a word (human, policy, script, hold, generated) and, for some, a name."""
+    """Who drove an arm from `episode_tick` on: a word of `OperatorKind` and, for some, a name."""
 
     model_config = ConfigDict(frozen=True)
 

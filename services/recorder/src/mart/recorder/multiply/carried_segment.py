@@ -70,15 +70,19 @@ class CarriedSegment:
         placed: where things are now, by name.
         """
         shown = self._way.at(min(tick, self.segment.end - 1.0))
-        position, quaternion, gripper = shown.position, shown.quaternion, shown.gripper
-        before = carried(position, self._origin, self._start, self._yaw)
-        turned_before = quaternion_multiply(self._turn, quaternion)
+        before = ToolTarget(
+            carried(shown.position, self._origin, self._start, self._yaw),
+            quaternion_multiply(self._turn, shown.quaternion),
+            shown.gripper,
+        )
         if self._reference.frame == TOOL:
-            return ToolTarget(before, turned_before, gripper)
+            return before
         share = self._share(tick)
-        after, turned_after = self._in_frame(tick, position, quaternion, turned_before, placed, share)
+        after = self._in_frame(tick, shown, before, placed)
         return ToolTarget(
-            before + share * (after - before), between(turned_before, turned_after, share), gripper
+            before.position + share * (after.position - before.position),
+            between(before.quaternion, after.quaternion, share),
+            shown.gripper,
         )
 
     def demonstrated_m(self, tick: float, later: float) -> float:
@@ -86,23 +90,18 @@ class CarriedSegment:
         return float(np.linalg.norm(self._way.at(later).position - self._way.at(tick).position))
 
     def _in_frame(
-        self,
-        tick: float,
-        position: Array,
-        quaternion: Array,
-        turned_before: Array,
-        placed: Mapping[str, Placed],
-        share: float,
-    ) -> tuple[Array, Array]:
+        self, tick: float, shown: ToolTarget, before: ToolTarget, placed: Mapping[str, Placed]
+    ) -> ToolTarget:
+        """Return the target as the thing carries it, or the world; where no turn counts, turned as the way before."""
         if self._reference.frame == WORLD:
-            return position, quaternion
+            return shown
         origin, now, yaw = self._frozen or self._frames(tick, placed[self._reference.frame])
-        if share >= 1.0 and not self._follows:
+        if self._share(tick) >= 1.0 and not self._follows:
             self._frozen = origin, now, yaw
-        at = carried(position, origin, now, yaw)
+        position = carried(shown.position, origin, now, yaw)
         if not self._reference.order:
-            return at, turned_before
-        return at, quaternion_multiply(yaw_quaternion(yaw), quaternion)
+            return ToolTarget(position, before.quaternion, shown.gripper)
+        return ToolTarget(position, quaternion_multiply(yaw_quaternion(yaw), shown.quaternion), shown.gripper)
 
     def _frames(self, tick: float, now: Placed) -> tuple[Array, Array, float]:
         """Return the thing's place then and now, and how far it is turned now from then."""

@@ -1,7 +1,7 @@
-"""Choose what an episode is made of: for each arm, whose way it goes, and from where several keep one time. Pure.
+"""Choose what an episode is made of: for each arm, whose way it goes, and where several keep one time. Pure.
 
-Arms that work alone may each follow another demonstration; those that work together follow one. Which one is drawn among
-the demonstrations whose things lay most alike.
+Arms that work alone may each follow another demonstration; those that work together follow one. It is drawn among the
+demonstrations whose things lay most alike.
 """
 
 from __future__ import annotations

@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -72,7 +71,7 @@ class Multiplication:
 
     def _batch(self, first: int, most: int, written: dict[int, str]) -> Batch:
         attempts = range(first, first + min(_BATCH, most + most // 4 + 1))  # some may fail
-        kept = []
+        kept: list[str] = []
         for attempt, played in zip(attempts, self._play(attempts), strict=True):
             if len(kept) == most:
                 return Batch(first, attempt - first, tuple(kept))

@@ -54,7 +54,7 @@ class _Ending:
 
     @property
     def places_m(self) -> Array:
-        """Where it ended, and the middle of its last half: of a way that rubs a place, that tells more; shape (2, 3)."""
+        """Where it ended, and the middle of its last half, which tells more of a way that rubs; shape (2, 3)."""
         way = self.demonstration.ways[self.segment.arm].positions[self.segment.begin : self.segment.end]
         return np.stack([way[-1], way[len(way) // 2 :].mean(axis=0)])
 

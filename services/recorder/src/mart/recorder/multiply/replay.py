@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mart.protocol.batch_state import ACTION_SIZE, BatchState
+from mart.protocol.batch_state import ACTION_SIZE, BatchState, Flags
 from mart.protocol.pose import (
     Array,
     Pose,
@@ -38,7 +38,7 @@ class PlayedWorld:
     succeeded: bool
     reason: str
     observations: Mapping[str, Array]
-    subtasks: Array
+    subtasks: Flags
     sim_time_s: Array
     integration_states: Array
     actions: Array
@@ -86,7 +86,7 @@ class Replayer:
             if not running.any():
                 break
         return [
-            self._played(seed, players[world], history, actions, world, int(ended_ticks[world]))
+            self._played(world, seed, players[world], history[: ended_ticks[world] + 1], actions)
             for world, seed in enumerate(seeds)
         ]
 
@@ -113,15 +113,10 @@ class Replayer:
         return found
 
     def _played(
-        self,
-        seed: int,
-        player: WayPlayer,
-        history: Sequence[BatchState],
-        actions: Sequence[Array],
-        world: int,
-        ticks: int,
+        self, world: int, seed: int, player: WayPlayer, own: Sequence[BatchState], actions: Sequence[Array]
     ) -> PlayedWorld:
-        own, last = history[: ticks + 1], history[ticks]
+        """Return how a world went. own: the states while it ran; actions: of all worlds, as many or more."""
+        last = own[-1]
         states = [one.integration_states[world] for one in own if one.integration_states is not None]
         return PlayedWorld(
             seed=seed,
@@ -134,7 +129,7 @@ class Replayer:
             subtasks=np.array([one.subtasks[world] for one in own]),
             sim_time_s=np.array([one.sim_time_s[world] for one in own]),
             integration_states=np.array(states),
-            actions=np.array([one[world] for one in actions[:ticks]]),
+            actions=np.array([one[world] for one in actions[: len(own) - 1]]),
         )
 
 

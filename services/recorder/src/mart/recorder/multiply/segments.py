@@ -73,8 +73,7 @@ def together_from(task: Task, demonstration: Demonstration, arm: str) -> int:
 def first_done(demonstration: Demonstration, subtask: str) -> int:
     """Return the first tick at which a subtask was done; the number of ticks where it never was."""
     done = demonstration.subtasks.get(subtask)
-    found = np.flatnonzero(done) if done is not None else ()
-    return int(found[0]) if len(found) else demonstration.ticks
+    return demonstration.ticks if done is None or not done.any() else int(np.argmax(done))
 
 
 def segments_of(task: Task, demonstration: Demonstration, arm: str) -> tuple[Segment, ...]:
@@ -87,32 +86,33 @@ def segments_of(task: Task, demonstration: Demonstration, arm: str) -> tuple[Seg
             cuts[first_done(demonstration, subtask.name)] = DONE
     joins = together_from(task, demonstration, arm)
     cuts[joins] = DONE
-    for tick in np.flatnonzero(closed[1:] != closed[:-1]) + 1:
-        cuts[int(tick)] = CLOSES if closed[tick] else OPENS
+    for change in np.flatnonzero(closed[1:] != closed[:-1]) + 1:
+        cuts[int(change)] = CLOSES if closed[change] else OPENS
     cuts[ticks] = ENDS
     found, begin = [], 0
     for tick in sorted(cuts):
         if tick - begin >= _SHORTEST or (tick in (joins, ticks) and tick > begin):
-            found.append(_segment(task, demonstration, arm, begin, tick, cuts[tick]))
+            kind = _kind(task, demonstration, arm, (begin + tick) // 2, cuts[tick])
+            found.append(Segment(arm, begin, tick, kind))
             begin = tick
     return tuple(found)
 
 
-def _segment(task: Task, demonstration: Demonstration, arm: str, begin: int, end: int, why: str) -> Segment:
-    middle = (begin + end) // 2
-    step = next_step(task, arm, {name: bool(done[begin]) for name, done in demonstration.subtasks.items()})
+def _kind(task: Task, demonstration: Demonstration, arm: str, middle: int, end: str) -> SegmentKind:
+    """Return the kind of the segment that has this tick in its middle and ends so."""
+    step = next_step(task, arm, {name: bool(done[middle]) for name, done in demonstration.subtasks.items()})
     closed = bool(demonstration.ways[arm].closed[middle])
     began = _closed_from(demonstration, arm, middle) >= together_from(task, demonstration, arm)
     joined = step is not None and step.coordinated and closed and began and len(acting(step)) > 1
     arms = acting(step) if joined and step is not None else (arm,)
-    return Segment(arm, begin, end, SegmentKind(arms, closed, why, step.name if step else ""))
+    return SegmentKind(arms, closed, end, step.name if step else "")
 
 
 def _closed_from(demonstration: Demonstration, arm: str, tick: int) -> int:
     """Return the tick from which the gripper has been as it is at this one: what it holds it has held since."""
     closed = demonstration.ways[arm].closed[: tick + 1]
-    changes = np.flatnonzero(closed[1:] != closed[:-1])
-    return int(changes[-1]) + 1 if len(changes) else 0
+    changes = np.flatnonzero(closed[1:] != closed[:-1]).tolist()
+    return int(changes[-1]) + 1 if changes else 0
 
 
 def next_step(task: Task, arm: str, done: Mapping[str, bool]) -> Subtask | None:

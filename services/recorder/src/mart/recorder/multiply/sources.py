@@ -57,8 +57,8 @@ def _read(episode: LabelledEpisode, task: Task) -> Demonstration:
     parts = episode.segments(task)
     if len(parts) != 1:
         raise InvalidInput(
-            f"{episode.file_path} was split into {len(parts)} by edits, and a way is carried as one: undo the split, or "
-            "drop the episode."
+            f"{episode.file_path} was split into {len(parts)} by edits, and a way is carried as one: undo the "
+            "split, or drop the episode."
         )
     one = demonstration_of(parts[0], task, episode.file_path.name.replace(",", "_"))
     if all(len(segments_of(task, one, arm)) < 2 for arm in task.arm_names):
@@ -74,8 +74,8 @@ def _require_some(found: Iterable[LabelledEpisode], chosen: Sequence[LabelledEpi
         of_task = [one for one in found if one.task == task]
         done = sum(one.outcome == EpisodeOutcome.SUCCESS for one in of_task)
         raise InvalidInput(
-            f"No episode to multiply: {len(of_task)} of {task} were found, {done} of them successful; it takes successful "
-            "ones that are verified."
+            f"No episode to multiply: {len(of_task)} of {task} were found, {done} of them successful; it takes "
+            "successful ones that are verified."
         )
 
 
@@ -83,6 +83,6 @@ def _require_recorded(chosen: Iterable[LabelledEpisode]) -> None:
     made = [one for one in chosen if any(s.operator == OperatorKind.GENERATED for s in one.shifts)]
     if made:
         raise InvalidInput(
-            f"{len(made)} generated episodes are among those to multiply, such as {made[0].file_path}: their errors would "
-            "be multiplied, too. Name other folders, or allow them with --from-generated."
+            f"{len(made)} generated episodes are among those to multiply, such as {made[0].file_path}: their errors "
+            "would be multiplied, too. Name other folders, or allow them with --from-generated."
         )
