@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from mart.recorder.multiply.carried_segment import Placed, shares_led_over
 from mart.recorder.multiply.composition import Composer
-from mart.recorder.multiply.demonstration import Demonstration, ToolTarget
+from mart.recorder.multiply.demonstration import Demonstration, ToolInWorld
 from mart.recorder.multiply.references import references_of
 from mart.recorder.multiply.segments import CLOSES
 from mart.recorder.multiply.transport import carried, yaw_quaternion
@@ -24,12 +24,12 @@ SUBTASKS = [one.name for one in CUBES.subtasks]
 _MOST_TICKS = 600
 
 
-def player(one: Demonstration, start: dict[str, ToolTarget], things: dict[str, Placed]) -> WayPlayer:
+def player(one: Demonstration, start: dict[str, ToolInWorld], things: dict[str, Placed]) -> WayPlayer:
     pieces = Composer(CUBES, [one]).compose(things, np.random.default_rng(0))
     return WayPlayer(CUBES, pieces, REFERENCES, start)
 
 
-def starts(one: Demonstration) -> dict[str, ToolTarget]:
+def starts(one: Demonstration) -> dict[str, ToolInWorld]:
     return {arm: way.start for arm, way in one.ways.items()}
 
 
@@ -111,7 +111,8 @@ def test_a_path_is_led_over_from_nothing_to_all_and_never_back(
 def test_a_tool_that_began_elsewhere_comes_to_the_thing_all_the_same() -> None:
     one = DEMONSTRATIONS[0]
     begun = {
-        arm: ToolTarget(start.position + 0.03, yaw_quaternion(0.1), 0.0) for arm, start in starts(one).items()
+        arm: ToolInWorld(start.position + 0.03, yaw_quaternion(0.1), 0.0)
+        for arm, start in starts(one).items()
     }
     playing, targets = player(one, begun, placed(one, 0)), begun
     for tick in range(38):

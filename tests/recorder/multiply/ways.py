@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from mart.protocol.tasks import Task, get_task
 from mart.recorder.multiply.carried_segment import Placed
-from mart.recorder.multiply.demonstration import Demonstration, ThingTrack, ToolTarget, Way, things_of
+from mart.recorder.multiply.demonstration import Demonstration, ThingTrack, ToolInWorld, Way, things_of
 from mart.recorder.multiply.transport import yaw_of, yaw_quaternion
 
 CUBES = get_task("two_arm_multi_cube_lifting")
@@ -31,7 +31,7 @@ def pick_and_lift(name: str, random: np.random.Generator, pauses: tuple[int, int
         positions = begin + shares * (cube - begin) + lifts * LIFT_M
         quaternions = np.tile(yaw_quaternion(yaw), (ticks, 1))
         grippers = (np.arange(ticks) >= closes).astype(float)
-        ways[arm] = Way(positions, quaternions, grippers, ToolTarget(begin, yaw_quaternion(yaw), 0.0))
+        ways[arm] = Way(positions, quaternions, grippers, ToolInWorld(begin, yaw_quaternion(yaw), 0.0))
         track = cube + np.concatenate([np.zeros((1, 3)), lifts * LIFT_M])
         things[f"cube{index}"] = ThingTrack(track, np.tile(yaw_quaternion(yaw), (ticks + 1, 1)))
         done[f"lift_cube{index}"] = np.arange(ticks + 1) >= lifted

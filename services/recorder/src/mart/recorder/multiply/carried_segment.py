@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mart.protocol.pose import Array, quaternion_conjugate, quaternion_multiply
-from mart.recorder.multiply.demonstration import Demonstration, ToolTarget
+from mart.recorder.multiply.demonstration import Demonstration, ToolInWorld
 from mart.recorder.multiply.references import TOOL, WORLD, Reference
 from mart.recorder.multiply.segments import Segment
 from mart.recorder.multiply.transport import between, carried, folded, min_jerk, yaw_of, yaw_quaternion
@@ -46,8 +46,8 @@ class CarriedSegment:
         demonstration: Demonstration,
         segment: Segment,
         reference: Reference,
-        last: ToolTarget,
-        origin: ToolTarget,
+        last: ToolInWorld,
+        origin: ToolInWorld,
         *,
         in_contact: bool,
     ) -> None:
@@ -64,13 +64,13 @@ class CarriedSegment:
         )
         self._frozen: tuple[Array, Array, float] | None = None
 
-    def target(self, tick: float, placed: Mapping[str, Placed]) -> ToolTarget:
+    def target(self, tick: float, placed: Mapping[str, Placed]) -> ToolInWorld:
         """Return where the tool is to be at a tick of the demonstration, which may lie between two.
 
         placed: where things are now, by name.
         """
         shown = self._way.at(min(tick, self.segment.end - 1.0))
-        before = ToolTarget(
+        before = ToolInWorld(
             carried(shown.position, self._origin, self._start, self._yaw),
             quaternion_multiply(self._turn, shown.quaternion),
             shown.gripper,
@@ -79,7 +79,7 @@ class CarriedSegment:
             return before
         share = self._share(tick)
         after = self._in_frame(tick, shown, before, placed)
-        return ToolTarget(
+        return ToolInWorld(
             before.position + share * (after.position - before.position),
             between(before.quaternion, after.quaternion, share),
             shown.gripper,
@@ -90,8 +90,8 @@ class CarriedSegment:
         return float(np.linalg.norm(self._way.at(later).position - self._way.at(tick).position))
 
     def _in_frame(
-        self, tick: float, shown: ToolTarget, before: ToolTarget, placed: Mapping[str, Placed]
-    ) -> ToolTarget:
+        self, tick: float, shown: ToolInWorld, before: ToolInWorld, placed: Mapping[str, Placed]
+    ) -> ToolInWorld:
         """Return the target as the thing carries it, or the world; where no turn counts, turned as the way before."""
         if self._reference.frame == WORLD:
             return shown
@@ -100,8 +100,10 @@ class CarriedSegment:
             self._frozen = origin, now, yaw
         position = carried(shown.position, origin, now, yaw)
         if not self._reference.order:
-            return ToolTarget(position, before.quaternion, shown.gripper)
-        return ToolTarget(position, quaternion_multiply(yaw_quaternion(yaw), shown.quaternion), shown.gripper)
+            return ToolInWorld(position, before.quaternion, shown.gripper)
+        return ToolInWorld(
+            position, quaternion_multiply(yaw_quaternion(yaw), shown.quaternion), shown.gripper
+        )
 
     def _frames(self, tick: float, now: Placed) -> tuple[Array, Array, float]:
         """Return the thing's place then and now, and how far it is turned now from then."""

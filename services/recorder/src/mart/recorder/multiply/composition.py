@@ -29,7 +29,7 @@ _M_PER_RAD = 0.1
 
 
 @dataclass(frozen=True)
-class Piece:
+class WayPiece:
     """Go an arm's way in one demonstration, from the first segment to the last.
 
     meets: the tick at which it waits for all it works with, and from which they keep time; None: it works alone.
@@ -72,7 +72,7 @@ class Composer:
 
     def compose(
         self, placed: Mapping[str, Placed], random: np.random.Generator
-    ) -> dict[str, tuple[Piece, ...]]:
+    ) -> dict[str, tuple[WayPiece, ...]]:
         """Return each arm's pieces, for a world in which things lie so."""
         shared = self._draw(things_of(self._task), placed, random) if self._group else None
         composed = {}
@@ -84,15 +84,15 @@ class Composer:
             composed[arm] = self._pieces(arm, alone, own)
         return composed
 
-    def _pieces(self, arm: str, alone: int, joined: int | None) -> tuple[Piece, ...]:
+    def _pieces(self, arm: str, alone: int, joined: int | None) -> tuple[WayPiece, ...]:
         pieces = []
         first = self._libraries[alone][arm].alone
         if first:
-            pieces.append(Piece(self._demonstrations[alone], first, None, self._awaited(arm, alone)))
+            pieces.append(WayPiece(self._demonstrations[alone], first, None, self._awaited(arm, alone)))
         if joined is not None and self._libraries[joined][arm].joined:
             one = self._demonstrations[joined]
             meets = max(together_from(self._task, one, each) for each in self._group)
-            pieces.append(Piece(one, self._libraries[joined][arm].joined, meets, ()))
+            pieces.append(WayPiece(one, self._libraries[joined][arm].joined, meets, ()))
         return tuple(pieces)
 
     def _follow_on(self, arm: str, alone: int, joined: int) -> bool:

@@ -19,7 +19,7 @@ _CLOSED = 0.5
 
 
 @dataclass(frozen=True)
-class ToolTarget:
+class ToolInWorld:
     """Say where a tool is to be, in the world, and how far its gripper is to close."""
 
     position: Array
@@ -38,12 +38,12 @@ class Way:
     positions: Array
     quaternions: Array
     grippers: Array
-    start: ToolTarget
+    start: ToolInWorld
 
     def __len__(self) -> int:
         return len(self.positions)
 
-    def at(self, tick: float) -> ToolTarget:
+    def at(self, tick: float) -> ToolInWorld:
         """Return where the arm was led at a tick, which may lie between two; before the first one, where it began."""
         if tick < 0.0:
             return self.start
@@ -53,7 +53,7 @@ class Way:
         if part > 0.0 and following > row:
             position = position + part * (self.positions[following] - position)
             quaternion = between(quaternion, self.quaternions[following], part)
-        return ToolTarget(position, quaternion, float(self.grippers[row]))
+        return ToolInWorld(position, quaternion, float(self.grippers[row]))
 
     @property
     def closed(self) -> NDArray[np.bool_]:
@@ -124,10 +124,10 @@ def _way(data: EpisodeData, index: int, arm: Arm) -> Way:
 
 def tool_in_world(
     arm: Arm, position_in_base: Array, quaternion_in_base: Array, gripper: float = 0.0
-) -> ToolTarget:
+) -> ToolInWorld:
     """Return where a tool is in the world, of a pose in its arm's base frame."""
     base = arm.pose_base_in_world
-    return ToolTarget(
+    return ToolInWorld(
         base.position + rotate(base.quaternion_wxyz, position_in_base),
         quaternion_multiply(base.quaternion_wxyz, quaternion_in_base),
         gripper,

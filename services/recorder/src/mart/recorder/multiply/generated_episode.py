@@ -29,7 +29,7 @@ from mart.protocol.recording import (
 from mart.protocol.tasks import Task
 from mart.protocol.vocabulary import EpisodeEndedBy, EpisodeOutcome, OperatorKind, Verdict
 from mart.recorder.importing.episode_states import StateRows, states_of
-from mart.recorder.multiply.composition import Piece
+from mart.recorder.multiply.composition import WayPiece
 from mart.recorder.multiply.references import Reference
 from mart.recorder.multiply.replay import PlayedWorld
 from mart.recorder.multiply.segments import SegmentKind
@@ -80,7 +80,7 @@ class EpisodeMaker:
             segments={arm: self._segments(own, sources) for arm, own in played.pieces.items()},
         )
 
-    def _segments(self, pieces: Sequence[Piece], sources: Sequence[str]) -> str:
+    def _segments(self, pieces: Sequence[WayPiece], sources: Sequence[str]) -> str:
         return " ".join(
             f"{sources.index(piece.demonstration.name)}:{one.begin}-{one.end}@{_word(self.references[one.kind])}"
             for piece in pieces

@@ -2,8 +2,9 @@
 
 Ends of segments are laid over one another in the frame of every thing, in the world, and from where the tool began.
 Where they lie closest is what the segment acts on: fingers close at the cube, not at a place of the table; a tray is
-set down at a place of the table, wherever it was before. How often a thing looks the same while it turns is told by the
-turns at which it was gripped.
+set down at a place of the table, wherever it was before. Where no fingers close, the middles of their last halves count
+as well: a way that rubs ends anywhere. How often a thing looks the same while it turns is told by the turns at which it
+was gripped.
 """
 
 from __future__ import annotations
@@ -54,8 +55,10 @@ class _Ending:
 
     @property
     def places_m(self) -> Array:
-        """Where it ended, and the middle of its last half, which tells more of a way that rubs; shape (2, 3)."""
+        """Where it ended; unless fingers closed there, the middle of its last half, too; shape (1 or 2, 3)."""
         way = self.demonstration.ways[self.segment.arm].positions[self.segment.begin : self.segment.end]
+        if self.segment.kind.end == CLOSES:
+            return np.asarray(way[-1:])
         return np.stack([way[-1], way[len(way) // 2 :].mean(axis=0)])
 
     @property
@@ -167,5 +170,5 @@ def _spread_m(places: Sequence[Array], endings: Sequence[_Ending]) -> float:
 
 
 def _from_middle_m(places: Array) -> float:
-    """Return the distance, of both places of every way together; places: shape (ways, 2, 3)."""
+    """Return the distance, of all places of a way together; places: shape (ways, 1 or 2, 3)."""
     return float(np.median(np.linalg.norm(places - np.median(places, axis=0), axis=-1), axis=0).sum())

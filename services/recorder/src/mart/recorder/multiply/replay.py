@@ -18,8 +18,8 @@ from mart.protocol.pose import (
 )
 from mart.protocol.tasks import Arm, Task
 from mart.recorder.multiply.carried_segment import Placed
-from mart.recorder.multiply.composition import Composer, Piece
-from mart.recorder.multiply.demonstration import ToolTarget, things_of, tool_in_world, track_of
+from mart.recorder.multiply.composition import Composer, WayPiece
+from mart.recorder.multiply.demonstration import ToolInWorld, things_of, tool_in_world, track_of
 from mart.recorder.multiply.references import Reference
 from mart.recorder.multiply.segments import SegmentKind
 from mart.recorder.multiply.transport import yaw_of
@@ -34,7 +34,7 @@ class PlayedWorld:
     """Hold how one world went, T ticks, T + 1 states: of each the rows of `BatchState`. reason: why it failed."""
 
     seed: int
-    pieces: Mapping[str, tuple[Piece, ...]]
+    pieces: Mapping[str, tuple[WayPiece, ...]]
     succeeded: bool
     reason: str
     observations: Mapping[str, Array]
@@ -140,11 +140,11 @@ def _tool_in_base(arm: str, state: BatchState, world: int) -> tuple[Array, Array
     )
 
 
-def _measured(arm: Arm, state: BatchState, world: int) -> ToolTarget:
+def _measured(arm: Arm, state: BatchState, world: int) -> ToolInWorld:
     return tool_in_world(arm, *_tool_in_base(arm.name, state, world))
 
 
-def _action(arm: Arm, target: ToolTarget, state: BatchState, world: int) -> Array:
+def _action(arm: Arm, target: ToolInWorld, state: BatchState, world: int) -> Array:
     """Return the action, shape (7,), from the measured pose towards a target, within workspace and limits."""
     base = arm.pose_base_in_world.inverse()
     wanted = arm.kind.workspace.clamp(

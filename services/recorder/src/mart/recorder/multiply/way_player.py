@@ -13,8 +13,8 @@ import numpy as np
 
 from mart.protocol.tasks import Task
 from mart.recorder.multiply.carried_segment import CarriedSegment, Placed
-from mart.recorder.multiply.composition import Piece
-from mart.recorder.multiply.demonstration import ToolTarget
+from mart.recorder.multiply.composition import WayPiece
+from mart.recorder.multiply.demonstration import ToolInWorld
 from mart.recorder.multiply.references import Reference
 from mart.recorder.multiply.segments import CLOSES, OPENS, Segment, SegmentKind
 
@@ -30,9 +30,9 @@ class _ArmPlayer:
 
     def __init__(
         self,
-        pieces: tuple[Piece, ...],
+        pieces: tuple[WayPiece, ...],
         references: Mapping[SegmentKind, Reference],
-        last: ToolTarget,
+        last: ToolInWorld,
         most_m: float,
     ) -> None:
         self._references, self._most_m = references, most_m
@@ -41,7 +41,7 @@ class _ArmPlayer:
         self.last = last
         self.tick = -1.0  # of the demonstration, that was gone last
         self._carried: CarriedSegment | None = None
-        self._piece: Piece | None = None
+        self._piece: WayPiece | None = None
         self._before: Segment | None = None
         self._brisk_m = _LEAST_STEP_M
         self._begin_next()
@@ -75,7 +75,7 @@ class _ArmPlayer:
         share = 1.0 if ahead_m <= allowed_m + _ROUNDING_M else max(allowed_m / ahead_m, _SLOWEST)
         return share * (following - self.tick)
 
-    def go(self, ticks: float, placed: Mapping[str, Placed]) -> ToolTarget:
+    def go(self, ticks: float, placed: Mapping[str, Placed]) -> ToolInWorld:
         """Go on by so many ticks of the demonstration, and return the target."""
         assert self._carried is not None
         later = self.tick + ticks
@@ -110,9 +110,9 @@ class WayPlayer:
     def __init__(
         self,
         task: Task,
-        pieces: Mapping[str, tuple[Piece, ...]],
+        pieces: Mapping[str, tuple[WayPiece, ...]],
         references: Mapping[SegmentKind, Reference],
-        lasts: Mapping[str, ToolTarget],
+        lasts: Mapping[str, ToolInWorld],
     ) -> None:
         self.pieces = pieces
         self._arms = {
@@ -126,7 +126,7 @@ class WayPlayer:
         """Whether every arm's way is at its end."""
         return all(arm.done for arm in self._arms.values())
 
-    def targets(self, placed: Mapping[str, Placed], done: Collection[str]) -> dict[str, ToolTarget]:
+    def targets(self, placed: Mapping[str, Placed], done: Collection[str]) -> dict[str, ToolInWorld]:
         """Return where each tool is to be next. done: the subtasks that are done now."""
         self._done.update(done)
         going = {name: arm for name, arm in self._arms.items() if not arm.done and arm.may_go(self._done)}
@@ -156,7 +156,7 @@ class WayPlayer:
         return {name for name in there if not together[name].done}
 
 
-def _brisk_step_m(piece: Piece, arm: str) -> float:
+def _brisk_step_m(piece: WayPiece, arm: str) -> float:
     """Return a step that is always allowed: as large as the larger ones that were shown, metres a tick."""
     steps = np.linalg.norm(np.diff(piece.demonstration.ways[arm].positions, axis=0), axis=1)
     return max(float(np.quantile(steps, _BRISK_SHARE)) if len(steps) else 0.0, _LEAST_STEP_M)
