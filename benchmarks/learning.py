@@ -21,7 +21,7 @@ from support.robomimic import robomimic_policy
 
 from mart.protocol.tasks import get_task
 from mart.rollouts.client import RolloutClient
-from mart.trainer.evaluate.replicas import worlds
+from mart.rollouts.replicas import worlds
 from mart.trainer.evaluate.rollouts import roll_out
 from mart.trainer.evaluate.statistics import Rate
 from mart.trainer.evaluate.world_seeds import Purpose, world_seeds

@@ -89,7 +89,7 @@ def test_no_error_raises_nothing() -> None:
 
 
 def test_words_of_enums_go_both_ways() -> None:
-    for word in ("human", "policy", "script", "hold"):
+    for word in ("human", "policy", "script", "hold", "generated"):
         assert m.operator_word(m.operator_from_word(word)) == word
     for word in ("success", "failure", "discarded"):
         assert m.outcome_word(m.outcome_from_word(word)) == word

@@ -54,7 +54,7 @@ _cadences = st.builds(
 _shifts = st.builds(
     Shift,
     episode_tick=st.integers(min_value=0, max_value=2**32 - 1),
-    operator=st.sampled_from(["human", "policy", "script", "hold"]),
+    operator=st.sampled_from(["human", "policy", "script", "hold", "generated"]),
     name=_words,
 )
 _operators = st.builds(

@@ -6,7 +6,7 @@ declare namespace Messages {
   type Cue = "have_it" | "go" | "wait" | "slower" | "thanks" | "let_go" | "come_closer";
   type EpisodePhase = "practice" | "countdown" | "recording" | "ended";
   type JobState = "queued" | "running" | "done" | "failed" | "cancelled";
-  type Operator = "hold" | "human" | "policy" | "script";
+  type Operator = "hold" | "human" | "policy" | "script" | "generated";
   type Outcome = "success" | "failure" | "discarded";
 
   interface CatalogueReplyCurated {

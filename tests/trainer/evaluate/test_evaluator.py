@@ -23,11 +23,11 @@ from mart.protocol.recording import STATE
 from mart.protocol.tasks import get_task
 from mart.render import PictureSpec, Renderer
 from mart.rollouts.client import RolloutClient
+from mart.rollouts.replicas import worlds
 from mart.trainer.evaluate.cli import evaluate
 from mart.trainer.evaluate.config import EvalConfig
 from mart.trainer.evaluate.evaluation import Evaluation, read_evaluations
 from mart.trainer.evaluate.evaluator import Evaluator, run_of
-from mart.trainer.evaluate.replicas import worlds
 from mart.trainer.evaluate.rollout_recorder import RolloutRecorder
 from mart.trainer.evaluate.rollouts import roll_out
 from mart.trainer.evaluate.world_seeds import Purpose

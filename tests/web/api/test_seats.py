@@ -101,7 +101,7 @@ async def test_a_policy_that_cannot_be_is_refused(enter: Enter, room: Room, poli
 async def test_a_seat_takes_only_operators_that_exist(enter: Enter, room: Room, operator: object) -> None:
     answer = await (await enter("Ana")).post(SEAT, json={"operator": operator})
     assert answer.status_code == 400
-    assert "'human', 'policy', 'script' or 'hold'" in answer.json()["error"]["message"]
+    assert "'human', 'policy', 'script', 'hold' or 'generated'" in answer.json()["error"]["message"]
 
 
 @pytest.mark.parametrize(

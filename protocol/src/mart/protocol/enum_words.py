@@ -12,7 +12,7 @@ from mart.v1.trainer_pb2 import JobState
 
 
 def operator_word(operator: Operator) -> OperatorKind:
-    """Return the word for a member of the wire's enum: human, policy, script or hold."""
+    """Return the word for a member of the wire's enum: human, policy, script, hold or generated."""
     return OperatorKind(_word(Operator.Name(operator), "OPERATOR_"))
 
 
@@ -49,7 +49,7 @@ def ended_by_word(ended_by: EndedBy) -> EpisodeEndedBy | None:
 
 
 def operator_from_word(word: str) -> Operator:
-    """Return the wire's member. Raises InvalidInput for anything but human, policy, script or hold."""
+    """Return the wire's member. Raises InvalidInput for anything but a word of `OperatorKind`."""
     return cast("Operator", _value(Operator, "OPERATOR_", "Operator", word))
 
 

@@ -170,6 +170,24 @@ class CadenceRecord(Record):
     }
 
 
+class GeneratedRecord(Record):
+    """Tell of what a generated episode was made. Only such files have it.
+
+    sources: the files whose ways were carried. sources_sha256: of all that could have been. segments: by arm, in order,
+    `source number:first tick-last tick@frame`, sources counted from 0; the frame is what it was carried by.
+    """
+
+    NAME = "mart.generated"
+
+    attempt: Count
+    seed: Seed  # of the multiplication; attempt and seed decide everything
+    sources_sha256: str
+    sources: Names
+    segments: Mapping[str, str] = Field(default_factory=dict)
+
+    _MAPS: ClassVar[Mapping[str, str]] = {"segments": "segments_{}"}
+
+
 class VerificationRecord(Record):
     """What re-simulation said. It covers states and the actions between them, nothing else that the file says.
 
@@ -195,7 +213,7 @@ class VerificationRecord(Record):
 
 
 class Shift(BaseModel):
-    """Who drove an arm from `episode_tick` on: a word (human, policy, script, hold) and, for some, a name."""
+    """Who drove an arm from `episode_tick` on: a word of `OperatorKind` and, for some, a name."""
 
     model_config = ConfigDict(frozen=True)
 

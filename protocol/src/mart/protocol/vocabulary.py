@@ -31,12 +31,16 @@ class ServiceKind(StrEnum):
 
 
 class OperatorKind(StrEnum):
-    """Name who drives an arm; `hold` is nobody: the arm holds still and the barrier does not wait for it."""
+    """Name who drives an arm; `hold` is nobody: the arm holds still and the barrier does not wait for it.
+
+    `generated` is in files alone: a way made of recorded ones, which no seat ever has.
+    """
 
     HUMAN = "human"
     POLICY = "policy"
     SCRIPT = "script"
     HOLD = "hold"
+    GENERATED = "generated"
 
 
 class EpisodeOutcome(StrEnum):

@@ -25,17 +25,17 @@ _sym_db = _symbol_database.Default()
 from mart.v1 import pose_pb2 as mart_dot_v1_dot_pose__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x15mart/v1/command.proto\x12\x07mart.v1\x1a\x12mart/v1/pose.proto\"T\n\rCommandStamps\x12\x15\n\rinput_sent_ns\x18\x01 \x01(\x06\x12\x1b\n\x13gateway_received_ns\x18\x02 \x01(\x06\x12\x0f\n\x07sent_ns\x18\x03 \x01(\x06\"\xbc\x02\n\x07\x43ommand\x12\x0b\n\x03\x61rm\x18\x01 \x01(\t\x12\x12\n\nseat_epoch\x18\x02 \x01(\x04\x12\x10\n\x08sequence\x18\x03 \x01(\x04\x12*\n\x13target_tool_in_base\x18\x04 \x01(\x0b\x32\r.mart.v1.Pose\x12\x0f\n\x07gripper\x18\x05 \x01(\x01\x12\x0f\n\x07\x65ngaged\x18\x06 \x01(\x08\x12!\n\x06source\x18\x07 \x01(\x0e\x32\x11.mart.v1.Operator\x12&\n\x06stamps\x18\x08 \x01(\x0b\x32\x16.mart.v1.CommandStamps\x12\x11\n\tseen_tick\x18\t \x01(\x04\x12\x16\n\x0e\x65mergency_stop\x18\n \x01(\x08\x12\x12\n\nstate_tick\x18\x0e \x01(\x04\x12&\n\nhand_fault\x18\x0f \x01(\x0e\x32\x12.mart.v1.HandFault*u\n\x08Operator\x12\x18\n\x14OPERATOR_UNSPECIFIED\x10\x00\x12\x11\n\rOPERATOR_HOLD\x10\x01\x12\x12\n\x0eOPERATOR_HUMAN\x10\x02\x12\x13\n\x0fOPERATOR_POLICY\x10\x03\x12\x13\n\x0fOPERATOR_SCRIPT\x10\x04*U\n\tHandFault\x12\x1a\n\x16HAND_FAULT_UNSPECIFIED\x10\x00\x12\x17\n\x13HAND_FAULT_TRACKING\x10\x01\x12\x13\n\x0fHAND_FAULT_JUMP\x10\x02\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x15mart/v1/command.proto\x12\x07mart.v1\x1a\x12mart/v1/pose.proto\"T\n\rCommandStamps\x12\x15\n\rinput_sent_ns\x18\x01 \x01(\x06\x12\x1b\n\x13gateway_received_ns\x18\x02 \x01(\x06\x12\x0f\n\x07sent_ns\x18\x03 \x01(\x06\"\xbc\x02\n\x07\x43ommand\x12\x0b\n\x03\x61rm\x18\x01 \x01(\t\x12\x12\n\nseat_epoch\x18\x02 \x01(\x04\x12\x10\n\x08sequence\x18\x03 \x01(\x04\x12*\n\x13target_tool_in_base\x18\x04 \x01(\x0b\x32\r.mart.v1.Pose\x12\x0f\n\x07gripper\x18\x05 \x01(\x01\x12\x0f\n\x07\x65ngaged\x18\x06 \x01(\x08\x12!\n\x06source\x18\x07 \x01(\x0e\x32\x11.mart.v1.Operator\x12&\n\x06stamps\x18\x08 \x01(\x0b\x32\x16.mart.v1.CommandStamps\x12\x11\n\tseen_tick\x18\t \x01(\x04\x12\x16\n\x0e\x65mergency_stop\x18\n \x01(\x08\x12\x12\n\nstate_tick\x18\x0e \x01(\x04\x12&\n\nhand_fault\x18\x0f \x01(\x0e\x32\x12.mart.v1.HandFault*\x8d\x01\n\x08Operator\x12\x18\n\x14OPERATOR_UNSPECIFIED\x10\x00\x12\x11\n\rOPERATOR_HOLD\x10\x01\x12\x12\n\x0eOPERATOR_HUMAN\x10\x02\x12\x13\n\x0fOPERATOR_POLICY\x10\x03\x12\x13\n\x0fOPERATOR_SCRIPT\x10\x04\x12\x16\n\x12OPERATOR_GENERATED\x10\x05*U\n\tHandFault\x12\x1a\n\x16HAND_FAULT_UNSPECIFIED\x10\x00\x12\x17\n\x13HAND_FAULT_TRACKING\x10\x01\x12\x13\n\x0fHAND_FAULT_JUMP\x10\x02\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
 _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'mart.v1.command_pb2', _globals)
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
-  _globals['_OPERATOR']._serialized_start=459
-  _globals['_OPERATOR']._serialized_end=576
-  _globals['_HANDFAULT']._serialized_start=578
-  _globals['_HANDFAULT']._serialized_end=663
+  _globals['_OPERATOR']._serialized_start=460
+  _globals['_OPERATOR']._serialized_end=601
+  _globals['_HANDFAULT']._serialized_start=603
+  _globals['_HANDFAULT']._serialized_end=688
   _globals['_COMMANDSTAMPS']._serialized_start=54
   _globals['_COMMANDSTAMPS']._serialized_end=138
   _globals['_COMMAND']._serialized_start=141

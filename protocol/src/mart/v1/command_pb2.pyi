@@ -14,6 +14,7 @@ class Operator(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     OPERATOR_HUMAN: _ClassVar[Operator]
     OPERATOR_POLICY: _ClassVar[Operator]
     OPERATOR_SCRIPT: _ClassVar[Operator]
+    OPERATOR_GENERATED: _ClassVar[Operator]
 
 class HandFault(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
@@ -25,6 +26,7 @@ OPERATOR_HOLD: Operator
 OPERATOR_HUMAN: Operator
 OPERATOR_POLICY: Operator
 OPERATOR_SCRIPT: Operator
+OPERATOR_GENERATED: Operator
 HAND_FAULT_UNSPECIFIED: HandFault
 HAND_FAULT_TRACKING: HandFault
 HAND_FAULT_JUMP: HandFault

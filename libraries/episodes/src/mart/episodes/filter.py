@@ -16,7 +16,7 @@ DROPPED = "dropped"
 class EpisodeFilter:
     """Say which episodes are wanted. An empty field takes all; of a field with several values, one must hold.
 
-    driven_by: human, policy, script or hold, or somebody's name, who drove any arm at any time.
+    driven_by: human, policy, script, hold or generated, or somebody's name, who drove any arm at any time.
     operators, names: kinds and names that all who drove must be among.
     unusable: take also what people dropped, and files that cannot be read.
 

@@ -31,7 +31,7 @@ json_option = click.option(
 # What commands are for, in the order of a newcomer's needs; of parts that are not installed nothing is shown.
 _PURPOSES = {
     "A session": ("run", "tasks", "arms", "driver", "stop", "doctor", "rooms", "ar-phone", "demo"),
-    "Episodes": ("collect", "episodes", "datasets"),
+    "Episodes": ("collect", "multiply", "episodes", "datasets"),
     "Policies": ("train", "eval", "report", "jobs", "operate"),
     "Services, which `mart run` starts": (
         *("router", "sim", "replica", "experts", "gateway", "phone", "recorder", "catalogue", "web"),

@@ -25,7 +25,9 @@ def filters(outcome: str = ANY, *verdicts: str) -> Callable[[Command], Command]:
     options = (
         click.option("--dataset", default="", help="Only of this data set."),
         click.option("--skill", default="", help="Only of scripts with this skill."),
-        click.option("--operator", default="", help="Driven by human, policy, script, or somebody by name."),
+        click.option(
+            "--operator", default="", help="Driven by human, policy, script, generated, or somebody by name."
+        ),
         word_option("--verdict", VERDICTS, *verdicts or (ANY,)),
         word_option("--outcome", OUTCOMES, outcome),
         click.option("--task", default="", help="Only of this task."),

@@ -97,7 +97,7 @@ def evaluate_policy(
     Raises InvalidInput without seeds, or where the policy does not drive all arms of its task; NotFound for an unknown
     task; Unavailable where no replica answers or the sim is not installed.
     """
-    from mart.trainer.evaluate.replicas import worlds
+    from mart.rollouts.replicas import worlds
     from mart.trainer.evaluate.rollouts import common_task, roll_out
 
     common_task([policy])  # before worlds are started for nothing

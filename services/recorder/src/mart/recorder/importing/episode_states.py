@@ -34,7 +34,7 @@ from mart.recorder.importing.foreign_episode import Array, ForeignEpisode
 ACTION = "action"  # the observation that holds it where no task says what it means
 _ASSUMED_HZ = 20.0
 _LONGEST_NAME = 128
-_MOST_SOURCES = 4  # mart.v1.Operator
+_MOST_SOURCES = max(Operator.values())
 _NOBODY = (OPERATOR_UNSPECIFIED, OPERATOR_HOLD)
 
 

@@ -6,11 +6,11 @@ import contextlib
 import logging
 
 from mart.protocol.errors import Unavailable
+from mart.rollouts.replicas import worlds
 from mart.trainer.evaluate import formatting
 from mart.trainer.evaluate.config import EvalConfig, EvaluationSpec
 from mart.trainer.evaluate.evaluation import Evaluation
 from mart.trainer.evaluate.evaluator import Evaluator
-from mart.trainer.evaluate.replicas import worlds
 from mart.trainer.train.run_directory import RunDirectory
 
 _log = logging.getLogger(__name__)

@@ -59,10 +59,10 @@ def evaluate(
     as_json: bool,
 ) -> None:
     """Judge a checkpoint, or a whole run, by episodes in worlds that every model is judged in."""
+    from mart.rollouts.replicas import worlds
     from mart.trainer.evaluate import formatting
     from mart.trainer.evaluate.config import EvalConfig
     from mart.trainer.evaluate.evaluator import Evaluator
-    from mart.trainer.evaluate.replicas import worlds
 
     config = EvalConfig(episodes, score_episodes, seed, time_limit, keep)
     names = [name for name in replicas.split(",") if name]
@@ -92,9 +92,9 @@ def _evaluate_foreign(
 ) -> None:
     """Judge a policy that another project trained. Raises InvalidInput where it is for another task."""
     from mart.protocol.tasks import get_task
+    from mart.rollouts.replicas import worlds
     from mart.trainer.evaluate import formatting
     from mart.trainer.evaluate.evaluator import Evaluator
-    from mart.trainer.evaluate.replicas import worlds
     from mart.trainer.evaluate.rollouts import batch_count
     from mart.trainer.models.policies.find import load_any_policy
 

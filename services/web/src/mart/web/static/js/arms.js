@@ -39,7 +39,9 @@ export const hasPicture = (seat) => seat.operator === "human" || seat.operator =
 /** Who sits there, in one or two words. @type {(seat: Api.Seat) => string} */
 export function holderName(seat) {
   if (seat.mine) return "You";
-  return { human: seat.name, policy: seat.name || "Policy", script: "Script", hold: "Nobody" }[seat.operator];
+  const nobody = "Nobody"; // of no seat is what is driven there generated
+  const names = { human: seat.name, policy: seat.name || "Policy", script: "Script", hold: nobody, generated: nobody };
+  return names[seat.operator];
 }
 
 /**

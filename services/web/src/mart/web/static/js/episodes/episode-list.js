@@ -33,6 +33,7 @@ const OPERATORS = [
   ["human", "Any person"],
   ["policy", "Any policy"],
   ["script", "Any script"],
+  ["generated", "Generated"],
 ];
 
 /** @typedef {{ onChange: (query: URLSearchParams) => void, onOpen: (path: string) => void }} Listeners */

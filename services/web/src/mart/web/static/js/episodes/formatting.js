@@ -11,7 +11,7 @@ const NOT_SAID = "No outcome";
 const VERDICTS = { verified: "Verified", diverged: "Diverged", unverified: "Not verified", real: "Real arms" };
 
 /** @type {Record<Messages.Operator, string>} */
-const DRIVERS = { human: "Person", policy: "Policy", script: "Script", hold: "Nobody" };
+const DRIVERS = { human: "Person", policy: "Policy", script: "Script", hold: "Nobody", generated: "Generated" };
 
 /** @type {Record<Messages.Operator, string>} */
 const NAMELESS = { ...DRIVERS, human: "A person", policy: "A policy" };

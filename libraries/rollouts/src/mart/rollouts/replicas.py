@@ -1,6 +1,6 @@
-"""Find worlds to judge in: replicas on the platform's bus, or a router and a replica of our own.
+"""Find worlds to step: replicas on the platform's bus, or a router and a replica of our own.
 
-The trainer never imports the sim. It starts `mart replica` as anybody would, where that command is installed.
+Who steps worlds never imports the sim: `mart replica` is started as anybody would, where that command is installed.
 """
 
 from __future__ import annotations
@@ -34,9 +34,18 @@ def worlds(replicas: Sequence[str]) -> Iterator[RolloutClient]:
 
     Raises Unavailable where a replica does not answer, or none is named and the sim is not installed here.
     """
-    with contextlib.ExitStack() as stack:
-        bus, names = stack.enter_context(_shared(replicas) if replicas else _private())
-        yield stack.enter_context(contextlib.closing(RolloutClient(bus, names)))
+    with reached_replicas(replicas) as (bus, names), contextlib.closing(RolloutClient(bus, names)) as client:
+        yield client
+
+
+@contextlib.contextmanager
+def reached_replicas(replicas: Sequence[str]) -> Iterator[tuple[Bus, Sequence[str]]]:
+    """Give the bus of these replicas and their names; with none named, that of one that is started for it.
+
+    Raises Unavailable as `worlds`.
+    """
+    with _shared(replicas) if replicas else _private() as found:
+        yield found
 
 
 @contextlib.contextmanager
