@@ -32,9 +32,9 @@ class WindowSpec:
         return cls(tuple(range(ticks)), tuple(range(ticks)), ticks)
 
     @classmethod
-    def chunk(cls, ticks: int) -> WindowSpec:
-        """Return the spec of two observations, and the actions of `ticks` ticks from the newer one on."""
-        return cls((-1, 0), tuple(range(ticks)), ticks)
+    def chunk(cls, ticks: int, seen: int = 1) -> WindowSpec:
+        """Return the spec of `ticks` actions, and the observations of the first `seen` of them and one before."""
+        return cls(tuple(range(-1, seen)), tuple(range(ticks)), ticks)
 
 
 @dataclass(frozen=True)

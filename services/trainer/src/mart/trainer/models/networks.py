@@ -11,7 +11,7 @@ from mart.trainer.data.layout import ObservationLayout
 from mart.trainer.data.normalise import Normaliser
 from mart.trainer.data.windows import WindowSpec
 from mart.trainer.models.architecture import ModelSpec
-from mart.trainer.models.flow_policy_net import FlowPolicyNet
+from mart.trainer.models.chunk_policy_net import ChunkPolicyNet
 from mart.trainer.models.hierarchical_bc import HierarchicalBC
 from mart.trainer.models.hyperparameters import Hyperparameters
 
@@ -30,15 +30,15 @@ class Networks(nn.Module):
         """Make untrained networks. dtype: of an LSTM's matrix products while training."""
         super().__init__()
         self.normaliser = Normaliser(layout.width)
-        self.model: HierarchicalBC | FlowPolicyNet = (
-            FlowPolicyNet(model, layout, sizes, seeds)
-            if model.network == "flow"
+        self.model: HierarchicalBC | ChunkPolicyNet = (
+            ChunkPolicyNet(model, layout, sizes, seeds)
+            if model.is_chunked
             else HierarchicalBC(model, layout, sizes, seeds, dtype)
         )
 
 
 def window_spec(model: ModelSpec, sizes: Hyperparameters) -> WindowSpec:
     """Return which ticks of a window a model learns from."""
-    return (
-        WindowSpec.chunk(sizes.flow_chunk) if model.network == "flow" else WindowSpec.sequence(sizes.window)
-    )
+    if not model.is_chunked:
+        return WindowSpec.sequence(sizes.window)
+    return WindowSpec.chunk(sizes.chunk, 1 if model.residual == "none" else sizes.executed)
