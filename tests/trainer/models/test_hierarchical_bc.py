@@ -28,7 +28,12 @@ GRID = [
 HIERARCHIES = list(GRID)
 CHUNKED = [
     ModelSpec.parse(f"none/{actor}/{residual}/{network}")
-    for actor, residual in (("joint", "none"), ("per-arm", "joint"), ("joint", "per-arm"), ("per-arm", "per-arm"))
+    for actor, residual in (
+        ("joint", "none"),
+        ("per-arm", "joint"),
+        ("joint", "per-arm"),
+        ("per-arm", "per-arm"),
+    )
     for network in ("flow", "mip", "diffusion", "act")
 ]
 GRID += CHUNKED

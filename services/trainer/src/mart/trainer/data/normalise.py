@@ -30,3 +30,7 @@ class Normaliser(nn.Module):
     def forward(self, obs: Tensor) -> Tensor:
         """Normalise observations: [..., D] → [..., D]."""
         return ((obs - self.mean) / self.deviation).clamp(-_FARTHEST, _FARTHEST)
+
+    def restore(self, obs: Tensor) -> Tensor:
+        """Return what `forward` normalised: [..., D] → [..., D]."""
+        return obs * self.deviation + self.mean

@@ -56,6 +56,9 @@ class Hyperparameters(BaseModel):
     # Chunks: of flow, mip and diffusion, which are perceptrons, and of act
     chunk: int = Field(16, ge=1)  # actions that are predicted at once
     chunk_execute: int = Field(8, ge=1)  # how many of them are done before the next chunk
+    action_target: Literal["delta", "absolute"] = (
+        "delta"  # steps as recorded, or poses from where a chunk begins
+    )
     chunk_ensemble: float | None = Field(
         None, ge=0
     )  # a chunk every tick, averaged, each weighing exp(-this) of the one before

@@ -25,7 +25,7 @@ from mart.runtime.settings import Settings
 from mart.trainer.data.dataset import DataDigest, Dataset, load_dataset
 from mart.trainer.data.windows import Windows
 from mart.trainer.models.devices import find_device, product_dtype
-from mart.trainer.models.networks import Networks, window_spec
+from mart.trainer.models.networks import Networks, tool_targets, window_spec
 from mart.trainer.train.metrics import MetricsWriter
 from mart.trainer.train.progress import TrainingProgress
 from mart.trainer.train.resume_state import read_state, write_state
@@ -107,7 +107,10 @@ def _training_loop(spec: TrainingSpec, dataset: Dataset, device: torch.device) -
         assert all(name.startswith("model.residual.") for name in missing)
     networks.to(device)
     obs = networks.normaliser(torch.from_numpy(dataset.observations).to(device))
-    windows = Windows(dataset, obs, _weights(dataset, spec), window_spec(model, sizes), device)
+    targets = tool_targets(model, sizes, dataset.digest.task, layout, dataset.digest.arm_kinds)
+    windows = Windows(
+        dataset, obs, _weights(dataset, spec), window_spec(model, sizes), device, targets=targets
+    )
     phases = training_phases(networks, sizes, has_base=spec.base is not None)
     return TrainingLoop(networks, windows, phases, sizes, seeds=spec.seeds, dtype=dtype)
 
