@@ -78,3 +78,18 @@ def test_a_residual_learns_at_every_tick_that_is_done_and_no_other(network: str)
     beyond = batch.actions.clone()
     beyond[:, executed:] = 0
     assert network == "act" or loss(batch.obs, beyond) == plain  # act is told which way the chunk went
+
+
+def test_actions_are_learned_normalised_and_done_as_they_are() -> None:
+    """A model that answers the mean of what it learned, 0, does the mean of the data."""
+    nets = nets_of(ModelSpec.parse("d-MIP"))
+    assert nets.scale is not None
+    nets.scale.mean.copy_(torch.linspace(-0.9, 0.9, ARMS * 7))
+    nets.scale.deviation.fill_(0.1)
+    nets.chunks.net.last.zero()
+    done = nets.chunk(torch.randn(1, 2, 3, LAYOUT.width), WorldRng(0, 3, CPU))
+    torch.testing.assert_close(done, nets.scale.mean.view(ARMS, 7).expand_as(done))
+    batch = batch_of(nets.model, 1)
+    batch.actions.copy_(nets.scale.mean.view(ARMS, 7).expand_as(batch.actions))
+    noise = float(nets.base_losses(batch, UpdateRng([4], 0, CPU)).total.detach())
+    assert noise == 0

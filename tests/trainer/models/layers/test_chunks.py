@@ -122,7 +122,6 @@ def test_models_never_meet(make: Callable[[int], ChunkModel]) -> None:
     done, moved = model.sample(obs, draws[2]), model.sample(other, draws[3])
     assert torch.equal(done[0], moved[0])
     assert not torch.equal(done[1], moved[1])
-    assert done.abs().max() <= 1
 
 
 def test_diffusion_with_the_exact_denoiser_draws_the_distribution() -> None:
@@ -156,7 +155,7 @@ def test_two_steps_are_those_of_the_equations() -> None:
     obs = torch.randn(1, 5, HISTORY * SEEN)
     first = model(torch.zeros(1, 5, CHUNK * SIZE), torch.zeros(1, 5, 1), obs)
     second = model(first, torch.full((1, 5, 1), 0.9), obs)
-    assert torch.equal(model.sample(obs, _draws(0)), second.clamp(-1, 1))
+    assert torch.equal(model.sample(obs, _draws(0)), second)
 
 
 @settings(max_examples=20)

@@ -95,6 +95,11 @@ class Windows:
         weights = None if self._weights is None else self._weights[actions]
         return WindowBatch(self._obs[obs], self._obs[goal], self._done(actions, start), weights)
 
+    def actions(self, most: int = 4096) -> Tensor:
+        """Return the actions of at most so many windows, evenly spread: float32[N, arms * 7]."""
+        which = torch.arange(0, self.count, max(1, self.count // most), device=self.device)
+        return self.take(which[None]).actions.flatten(-2).flatten(0, -2)
+
     def _done(self, actions: Tensor, start: Tensor) -> Tensor:
         """Return what was done in these rows, int64[S, T', B], of windows that start at int64[S, 1, B]."""
         if self._targets is None:

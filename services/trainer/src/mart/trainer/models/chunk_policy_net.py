@@ -16,7 +16,9 @@ from typing import cast
 import torch
 from torch import Tensor, nn
 
+from mart.protocol.batch_state import ACTION_SIZE
 from mart.trainer.data.layout import ObservationLayout
+from mart.trainer.data.normalise import Normaliser
 from mart.trainer.data.windows import WindowBatch
 from mart.trainer.models.architecture import ModelSpec
 from mart.trainer.models.arm_partition import ArmPartition
@@ -39,6 +41,7 @@ class ChunkPolicyNet(nn.Module):
     ) -> None:
         super().__init__()
         self.model, self.executed = model, sizes.executed
+        self.scale = Normaliser(len(layout.arms) * ACTION_SIZE) if sizes.normalise_actions else None
         self.partition = ArmPartition(layout, model.actor)
         self.add_module(model.network, _chunk_model(model, self.partition, sizes, seeds))
         self.residual = ArmResidual.of(layout, model.residual, sizes, seeds)
@@ -75,7 +78,8 @@ class ChunkPolicyNet(nn.Module):
 
     def _demonstrated(self, batch: WindowBatch) -> tuple[Tensor, Tensor]:
         """Return what is seen, [M, B, 2 * width], and what was done then, [M, B, chunk * action size]."""
-        actions = self.partition.split(batch.actions).movedim(1, 2)
+        flat = batch.actions.flatten(-2)
+        actions = self.partition.per_unit(flat if self.scale is None else self.scale(flat)).movedim(1, 2)
         return self._condition(batch.obs[:, :HISTORY]), actions.flatten(2)
 
     def _condition(self, obs: Tensor) -> Tensor:
@@ -83,8 +87,11 @@ class ChunkPolicyNet(nn.Module):
         return self.partition.of(obs).movedim(1, 2).flatten(2)
 
     def _by_tick(self, chunk: Tensor) -> Tensor:
-        """Join the models' chunks: [M, B, chunk * action size] → [S, chunk, B, arms, 7]."""
-        return self.partition.merge(chunk.unflatten(-1, (self.chunks.chunk, -1)).movedim(2, 1))
+        """Join the models' chunks: [M, B, chunk * action size] → [S, chunk, B, arms, 7] in [-1, 1]."""
+        joined = self.partition.merge(chunk.unflatten(-1, (self.chunks.chunk, -1)).movedim(2, 1))
+        if self.scale is not None:
+            joined = self.scale.restore(joined.flatten(-2)).view_as(joined)
+        return joined.clamp(-1, 1)
 
     def _draws(self, batch: int, rng: Rng) -> Draws:
         return Draws(rng, self.partition.units, batch)

@@ -24,6 +24,7 @@ PRESETS: dict[str, Hyperparameters] = {
         residual_hidden=(16,),
         chunk_hidden=(16,),
         chunk=4,
+        normalise_actions=True,
         chunk_execute=2,
         chunk_steps=2,
         act_width=8,
@@ -43,11 +44,12 @@ PRESETS: dict[str, Hyperparameters] = {
         mlp_hidden=(256, 256),
         vae_hidden=(256, 256),
         chunk_hidden=(512, 512, 512),
+        normalise_actions=True,
         act_width=64,
         act_heads=4,
         act_layers=1,
     ),
-    "paper": Hyperparameters(),
+    "paper": Hyperparameters(normalise_actions=True),
 }
 
 

@@ -21,9 +21,8 @@ from mart.trainer.models.hyperparameters import Hyperparameters
 from mart.trainer.train.run_directory import RunDirectory
 
 _STATE = "state.safetensors"
-_SHARED = (
-    "normaliser."  # by all seeds; every other weight has a model axis, a seed's models beside each other
-)
+# Shared by all seeds; every other weight has a model axis, a seed's models beside each other.
+_SHARED = ("normaliser.", "model.scale.")
 _RESIDUAL = "model.residual."
 
 

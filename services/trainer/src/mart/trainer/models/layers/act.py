@@ -69,12 +69,12 @@ class ActionChunkingTransformer(ChunkModel):
 
     def sample(self, obs: Tensor, draws: Draws) -> Tensor:
         del draws
-        return self.decode(obs.new_zeros(*obs.shape[:-1], self.sizes.latent), obs).clamp(-1, 1)
+        return self.decode(obs.new_zeros(*obs.shape[:-1], self.sizes.latent), obs)
 
     def reconstruct(self, obs: Tensor, actions: Tensor, draws: Draws) -> Tensor:
         mean, log_variance = self._posterior(obs, actions)
         z = mean + torch.exp(0.5 * log_variance) * draws.normal(self.sizes.latent)
-        return self.decode(z, obs).clamp(-1, 1)
+        return self.decode(z, obs)
 
     def decode(self, z: Tensor, obs: Tensor) -> Tensor:
         """Decode a latent. z: [M, B, latent], obs: [M, B, C] → a chunk, [M, B, chunk * size]."""

@@ -21,7 +21,10 @@ _FASTEST = 100.0  # the highest frequency that t is told in
 
 
 class ChunkModel(nn.Module, ABC):
-    """Says chunks of actions. `size`: numbers of one tick's action. M models, B rows, C columns of observations."""
+    """Says chunks of actions, as they are normalised. `size`: numbers of one tick's action.
+
+    M models, B rows, C columns of observations.
+    """
 
     def __init__(self, chunk: int, size: int) -> None:
         super().__init__()
@@ -33,7 +36,7 @@ class ChunkModel(nn.Module, ABC):
 
     @abstractmethod
     def sample(self, obs: Tensor, draws: Draws) -> Tensor:
-        """Return a chunk to do: [M, B, chunk * size] within [-1, 1]. obs: [M, B, C]."""
+        """Return a chunk to do: [M, B, chunk * size]. obs: [M, B, C]."""
 
     def reconstruct(self, obs: Tensor, actions: Tensor, draws: Draws) -> Tensor:
         """Return the chunk that it would have done where `actions` were demonstrated, as `sample` does.

@@ -46,4 +46,4 @@ class Flow(ChunkDenoiser):
         for step in range(self.steps):
             t = torch.full_like(x[..., :1], step / self.steps)
             x = x + (self(x, t, obs) - x) / (self.steps - step)
-        return x.clamp(-1, 1)
+        return x

@@ -34,7 +34,7 @@ class TwoStep(ChunkDenoiser):
     def sample(self, obs: Tensor, draws: Draws) -> Tensor:
         del draws
         nothing = obs.new_zeros(*obs.shape[:-1], self.chunk * self.size)
-        return self._step(self._step(nothing, 0.0, obs), SECOND, obs).clamp(-1, 1)
+        return self._step(self._step(nothing, 0.0, obs), SECOND, obs)
 
     def _step(self, x: Tensor, t: float, obs: Tensor) -> Tensor:
         return self(x, torch.full_like(x[..., :1], t), obs)
