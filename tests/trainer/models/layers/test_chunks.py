@@ -19,7 +19,7 @@ from mart.trainer.models.layers.stack import full
 from mart.trainer.models.layers.two_step import TwoStep
 from mart.trainer.models.rng import Draws, UpdateRng
 
-CHUNK, SIZE, SEEN, BATCH = 2, 1, 1, 128
+CHUNK, SIZE, SEEN, BATCH = 2, 1, 1, 64
 CPU = torch.device("cpu")
 
 
@@ -67,13 +67,13 @@ def _learn(model: ChunkModel, demonstrated: Callable[[Tensor, Draws], Tensor], u
 
 def _either_way(obs: Tensor, draws: Draws) -> Tensor:
     """Half of the people pass on the left, half on the right; nobody goes straight on."""
-    side = torch.where(draws.uniform() < 0.5, -0.6, 0.6)
+    side = torch.where(draws.uniform() < 0.5, -1.0, 1.0)
     return side[..., None].expand(*obs.shape[:-1], CHUNK * SIZE)
 
 
 def _wave(obs: Tensor, draws: Draws) -> Tensor:
     del draws
-    return torch.cat((torch.sin(3 * obs[..., :1]) / 2, obs[..., :1] / 2), -1)
+    return torch.cat((torch.sin(3 * obs[..., :1]), obs[..., :1]), -1)
 
 
 @pytest.mark.slow
@@ -84,7 +84,7 @@ def test_two_ways_are_both_learned_where_their_mean_would_fail(make: Callable[[i
     with torch.no_grad():
         done = model.sample(torch.zeros(1, BATCH, HISTORY * SEEN), _draws(10_000))[0]
     sides = done.mean(-1)
-    assert (done.abs() > 0.35).float().mean() > 0.9
+    assert (done.abs() > 0.6).float().mean() > 0.9
     assert 0.25 < (sides > 0).float().mean() < 0.75
     assert (done[:, 0] * done[:, 1] > 0).float().mean() > 0.9  # a chunk keeps to its side
 
@@ -97,17 +97,17 @@ def test_what_follows_from_the_observation_is_learned(make: Callable[[int], Chun
     obs = torch.linspace(-0.9, 0.9, BATCH)[None, :, None].expand(-1, -1, HISTORY * SEEN)
     with torch.no_grad():
         error = (model.sample(obs, _draws(10_000)) - _wave(obs, _draws(0))).abs()
-    assert error.mean() < 0.06
+    assert error.mean() < 0.12
 
 
 @pytest.mark.slow
 def test_the_transformer_tells_ways_apart_that_it_was_shown() -> None:
     model = _transformer(1)
-    _learn(model, _either_way, 600)
+    _learn(model, _either_way, 300)
     obs, draws = torch.zeros(1, BATCH, HISTORY * SEEN), _draws(10_000)
     shown = _either_way(obs, draws)
     with torch.no_grad():
-        assert (model.reconstruct(obs, shown, draws) - shown).abs().mean() < 0.2
+        assert (model.reconstruct(obs, shown, draws) - shown).abs().mean() < 0.3
 
 
 @pytest.mark.parametrize("make", MAKERS)
