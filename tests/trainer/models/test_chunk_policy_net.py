@@ -10,6 +10,7 @@ import torch
 from mart.trainer.data.windows import WindowBatch
 from mart.trainer.models.architecture import ModelSpec
 from mart.trainer.models.chunk_policy_net import ChunkPolicyNet
+from mart.trainer.models.layers.chunks import ChunkDenoiser
 from mart.trainer.models.networks import Networks
 from mart.trainer.models.rng import UpdateRng, WorldRng
 from tests.trainer.models.test_hierarchical_bc import ARMS, CHUNKED, CPU, LAYOUT, SIZES, batch_of
@@ -86,6 +87,7 @@ def test_actions_are_learned_normalised_and_done_as_they_are() -> None:
     assert nets.scale is not None
     nets.scale.mean.copy_(torch.linspace(-0.9, 0.9, ARMS * 7))
     nets.scale.deviation.fill_(0.1)
+    assert isinstance(nets.chunks, ChunkDenoiser)
     nets.chunks.net.last.zero()
     done = nets.chunk(torch.randn(1, 2, 3, LAYOUT.width), WorldRng(0, 3, CPU))
     torch.testing.assert_close(done, nets.scale.mean.view(ARMS, 7).expand_as(done))

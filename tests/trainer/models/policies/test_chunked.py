@@ -13,6 +13,7 @@ from mart.trainer.data.layout import ObservationLayout
 from mart.trainer.models.architecture import ModelSpec
 from mart.trainer.models.checkpoint import CheckpointRecord
 from mart.trainer.models.hyperparameters import Hyperparameters
+from mart.trainer.models.layers.chunks import ChunkDenoiser
 from mart.trainer.models.networks import Networks, tool_targets
 from mart.trainer.models.policies.chunked import ChunkedPolicy
 from mart.trainer.train.presets import PRESETS
@@ -77,7 +78,9 @@ def test_an_ensemble_averages_what_chunks_say_of_a_tick() -> None:
 def test_absolute_targets_lead_back_to_where_a_chunk_began() -> None:
     """A network that answers 0 says: stay where you were. A tool that was moved goes back."""
     held = policy("d-MIP", chunk=6, chunk_execute=6, action_target="absolute")
-    held._nets.chunks.net.last.zero()
+    chunks = held._nets.chunks
+    assert isinstance(chunks, ChunkDenoiser)
+    chunks.net.last.zero()
     held.begin(1, 0)
     seen = observations(1)
     assert np.abs(held.act(seen)).max() < 1e-5
