@@ -21,8 +21,8 @@ POINTS = [f"none/{a}/{r}/{n}" for (a, r), n in itertools.product(
 )]  # fmt: skip
 
 
-def nets_of(model: ModelSpec, epsilon: float = 0.05) -> ChunkPolicyNet:
-    sizes = SIZES.model_copy(update={"residual_epsilon": epsilon})
+def nets_of(model: ModelSpec, epsilon: float = 0.05, *, normalise: bool = False) -> ChunkPolicyNet:
+    sizes = SIZES.model_copy(update={"residual_epsilon": epsilon, "normalise_actions": normalise})
     nets = Networks(model, LAYOUT, sizes, [4]).model
     assert isinstance(nets, ChunkPolicyNet)
     if nets.residual is not None:
@@ -83,7 +83,7 @@ def test_a_residual_learns_at_every_tick_that_is_done_and_no_other(network: str)
 
 def test_actions_are_learned_normalised_and_done_as_they_are() -> None:
     """A model that answers the mean of what it learned, 0, does the mean of the data."""
-    nets = nets_of(ModelSpec.parse("d-MIP"))
+    nets = nets_of(ModelSpec.parse("d-MIP"), normalise=True)
     assert nets.scale is not None
     nets.scale.mean.copy_(torch.linspace(-0.9, 0.9, ARMS * 7))
     nets.scale.deviation.fill_(0.1)

@@ -21,7 +21,7 @@ _FASTEST = 100.0  # the highest frequency that t is told in
 
 
 class ChunkModel(nn.Module, ABC):
-    """Says chunks of actions, as they are normalised. `size`: numbers of one tick's action.
+    """Says chunks of actions, normalised where they are. `size`: numbers of one tick's action.
 
     M models, B rows, C columns of observations.
     """

@@ -5,10 +5,10 @@
     c_noise = ln(sigma) / 4           ln sigma ~ N(-1.2, 1.2^2) while learning
     dx/dsigma = (x - D(x, sigma, o)) / sigma at run time, by Euler's method from sigma = 50 to 0.001, then D
 
-d is the deviation of the actions, taken to be that of normalised ones. One for each arm, trained together, is MIMIC-D
-(Dong et al., arXiv 2509.14159): its centralised objective is the sum of the arms' losses, each of which sees its arm's
-observations alone. The networks share no weight, so the sum's gradient is each one's own: trained together or apart,
-they learn the same but for the clip of the gradient's length over all arms in its published code, left out here.
+d is the deviation of the actions. One for each arm, trained together, is MIMIC-D (Dong et al., arXiv 2509.14159): its
+centralised objective is the sum of the arms' losses, each of which sees its arm's observations alone. The networks
+share no weight, so the sum's gradient is each one's own: trained together or apart, they learn the same but for the
+clip of the gradient's length over all arms in its published code, which is left out here.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from mart.trainer.models.layers.chunks import ChunkDenoiser
 from mart.trainer.models.layers.stack import Generators
 from mart.trainer.models.rng import Draws
 
-_DEVIATION = 1.0
+_DEVIATION = 0.5  # of actions, which lie within [-1, 1]
 _LOG_MEAN, _LOG_DEVIATION = -1.2, 1.2
 _MOST, _LEAST, _BEND = 50.0, 0.001, 7.0  # noise at run time, and how its steps crowd where there is little
 
