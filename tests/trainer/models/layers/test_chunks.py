@@ -67,7 +67,7 @@ def _learn(model: ChunkModel, demonstrated: Callable[[Tensor, Draws], Tensor], u
 
 def _either_way(obs: Tensor, draws: Draws) -> Tensor:
     """Half of the people pass on the left, half on the right; nobody goes straight on."""
-    side = torch.where(draws.uniform() < 0.5, -1.0, 1.0)
+    side = torch.where(draws.uniform() < 0.5, -0.6, 0.6)
     return side[..., None].expand(*obs.shape[:-1], CHUNK * SIZE)
 
 
@@ -80,11 +80,11 @@ def _wave(obs: Tensor, draws: Draws) -> Tensor:
 @pytest.mark.parametrize("make", [_flow, _diffusion])
 def test_two_ways_are_both_learned_where_their_mean_would_fail(make: Callable[[int], ChunkModel]) -> None:
     model = make(1)
-    _learn(model, _either_way, 400)
+    _learn(model, _either_way, 600)
     with torch.no_grad():
         done = model.sample(torch.zeros(1, BATCH, HISTORY * SEEN), _draws(10_000))[0]
     sides = done.mean(-1)
-    assert (done.abs() > 0.6).float().mean() > 0.9
+    assert (done.abs() > 0.35).float().mean() > 0.9
     assert 0.25 < (sides > 0).float().mean() < 0.75
     assert (done[:, 0] * done[:, 1] > 0).float().mean() > 0.9  # a chunk keeps to its side
 

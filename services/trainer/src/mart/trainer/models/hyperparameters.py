@@ -56,9 +56,7 @@ class Hyperparameters(BaseModel):
     # Chunks: of flow, mip and diffusion, which are perceptrons, and of act
     chunk: int = Field(16, ge=1)  # actions that are predicted at once
     chunk_execute: int = Field(8, ge=1)  # how many of them are done before the next chunk
-    normalise_actions: bool = (
-        False  # to mean 0 and deviation 1 over the data; worse where it was measured, decision 0093
-    )
+    normalise_actions: bool = False  # to mean 0 and deviation 1; decision 0093: worse
     action_target: Literal["delta", "absolute"] = (
         "delta"  # steps as recorded, or poses from where a chunk begins
     )
