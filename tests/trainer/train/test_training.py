@@ -125,7 +125,7 @@ def test_stacked_seeds_learn_what_they_would_alone(episodes: Recorded, tmp_path:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("model", ["d-HBC", "BC", "Flow", "MIP", "ACT"])
+@pytest.mark.parametrize("model", ["d-HBC", "BC", "Flow", "MIP"])
 def test_two_episodes_are_learned_by_heart(episodes: Recorded, tmp_path: Path, model: str) -> None:
     changes = {
         "updates": 300, "learning_rate": 1e-2, "schedule": "cosine", "checkpoints": 1, "batch_size": 32,
