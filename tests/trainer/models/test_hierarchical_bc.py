@@ -24,8 +24,19 @@ GRID = [
     ModelSpec.parse(f"{planner}/{actor}/{residual}/{network}/{head}")
     for planner, actor, residual in itertools.product(SPANS, SPANS[1:], SPANS)
     for network, head in (("rnn", "l2"), ("mlp", "gmm"))
-] + [ModelSpec.parse("Flow"), ModelSpec.parse("d-Flow")]
-HIERARCHIES = [model for model in GRID if model.network != "flow"]
+]
+HIERARCHIES = list(GRID)
+CHUNKED = [
+    ModelSpec.parse(f"none/{actor}/{residual}/{network}")
+    for actor, residual in (
+        ("joint", "none"),
+        ("per-arm", "joint"),
+        ("joint", "per-arm"),
+        ("per-arm", "per-arm"),
+    )
+    for network in ("flow", "mip", "diffusion", "act")
+]
+GRID += CHUNKED
 
 
 def batch_of(model: ModelSpec, seeds: int, windows: int = 5, seed: int = 0) -> WindowBatch:
@@ -54,10 +65,9 @@ def test_every_weight_of_the_base_gets_a_gradient(model: ModelSpec) -> None:
             assert (weight.grad.flatten(1).abs().sum(1) > 0).all(), name
 
 
-@pytest.mark.parametrize("model", [m for m in HIERARCHIES if m.residual != "none"], ids=_point)
+@pytest.mark.parametrize("model", [m for m in GRID if m.residual != "none"], ids=_point)
 def test_the_residual_learns_alone(model: ModelSpec) -> None:
     networks = Networks(model, LAYOUT, SIZES, [1, 2])
-    assert isinstance(networks.model, HierarchicalBC)
     losses = networks.model.residual_losses(batch_of(model, 2), UpdateRng([1, 2], 0, CPU))
     losses.total.backward()
     moved = {name for name, w in networks.named_parameters() if w.grad is not None and w.grad.abs().sum() > 0}

@@ -54,12 +54,14 @@ def same(one: dict[str, Tensor], other: dict[str, Tensor]) -> bool:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("model", ["r-HBC", "rd-HBC", "d-Flow", "none/joint/joint/mlp/gmm"])
+@pytest.mark.parametrize(
+    "model", ["r-HBC", "rd-HBC", "r-Flow", "d-MIP", "d-Diffusion", "none/joint/per-arm/act"]
+)
 @pytest.mark.parametrize("ema", [None, 0.9])
 def test_stopped_and_resumed_is_the_same_bit_for_bit(
     episodes: Recorded, tmp_path: Path, model: str, ema: float | None
 ) -> None:
-    asked = request(episodes, model, changes={"ema": ema, "schedule": "cosine"})
+    asked = request(episodes, model, changes={"ema": ema, "schedule": "cosine", "normalise_actions": True})
     whole = run(asked, tmp_path / "whole")
     for stop_after in (
         7,
@@ -123,11 +125,11 @@ def test_stacked_seeds_learn_what_they_would_alone(episodes: Recorded, tmp_path:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("model", ["d-HBC", "BC", "Flow"])
+@pytest.mark.parametrize("model", ["d-HBC", "BC", "Flow", "MIP"])
 def test_two_episodes_are_learned_by_heart(episodes: Recorded, tmp_path: Path, model: str) -> None:
     changes = {
         "updates": 300, "learning_rate": 1e-2, "schedule": "cosine", "checkpoints": 1, "batch_size": 32,
-        "rnn_hidden": 24, "mlp_hidden": [64, 64], "vae_hidden": [32], "flow_hidden": [128, 128],
+        "rnn_hidden": 24, "mlp_hidden": [64, 64], "vae_hidden": [32], "chunk_hidden": [128, 128],
     }  # fmt: skip
     asked = request(episodes, model, seeds=(0,), changes=changes, selection=Selection(first=2))
     losses = [progress.losses["loss/actor"] for progress in run(asked, tmp_path)]

@@ -11,7 +11,7 @@ import torch
 
 from mart.protocol.errors import Corrupt, InvalidInput, NotFound, Unavailable
 from mart.trainer.data.layout import ObservationLayout
-from mart.trainer.models.architecture import PAPER
+from mart.trainer.models.architecture import PAPER, ModelSpec
 from mart.trainer.models.checkpoint import RECORD, WEIGHTS
 from mart.trainer.models.policies.load import load_policy
 from mart.trainer.train.run_directory import RunDirectory
@@ -21,8 +21,14 @@ from tests.trainer import recorded
 from tests.trainer.conftest import Recorded
 
 LAYOUT = ObservationLayout.of_arms(recorded.TASK, 2)
-MODELS = [*PAPER, "BC", "BC-RNN-GMM", "d-BC-RNN-GMM", "Flow", "d-Flow", "per-arm/joint/per-arm/mlp/gmm"]
-SEPARABLE = {"d-HBC", "d-BC-RNN-GMM", "d-Flow"}
+CHUNKED = ["d-Flow", "rd-Flow", "MIP", "d-Diffusion", "ACT", "none/per-arm/per-arm/act"]
+MODELS = [*PAPER, "BC", "BC-RNN-GMM", "d-BC-RNN-GMM", *CHUNKED, "per-arm/joint/per-arm/mlp/gmm"]
+SEPARABLE = {
+    name
+    for name in MODELS
+    for model in [ModelSpec.parse(name)]
+    if "joint" not in {model.planner, model.actor, model.residual}
+}
 
 
 @pytest.fixture(scope="module")

@@ -1,11 +1,9 @@
-"""Observations as networks take them: mean 0 and deviation 1 over the data."""
+"""Numbers as networks take them: mean 0 and deviation 1 over the data."""
 
 from __future__ import annotations
 
 import torch
 from torch import Tensor, nn
-
-from mart.trainer.data.dataset import Dataset
 
 _LEAST_DEVIATION = 0.02  # of what hardly moves (metres, radians, parts of 1): noise is not blown up
 _FARTHEST = 10.0  # deviations: what was never seen like that is told as "far"
@@ -21,12 +19,16 @@ class Normaliser(nn.Module):
         self.register_buffer("mean", torch.zeros(width))
         self.register_buffer("deviation", torch.ones(width))
 
-    def fit(self, dataset: Dataset) -> None:
-        """Take mean and deviation from all rows of the data."""
-        obs = torch.from_numpy(dataset.observations).double()
-        self.mean.copy_(obs.mean(0))
-        self.deviation.copy_(obs.std(0, correction=0).clamp(min=_LEAST_DEVIATION))
+    def fit(self, rows: Tensor) -> None:
+        """Take mean and deviation from rows, [N, D]."""
+        rows = rows.double()
+        self.mean.copy_(rows.mean(0))
+        self.deviation.copy_(rows.std(0, correction=0).clamp(min=_LEAST_DEVIATION))
 
-    def forward(self, obs: Tensor) -> Tensor:
-        """Normalise observations: [..., D] → [..., D]."""
-        return ((obs - self.mean) / self.deviation).clamp(-_FARTHEST, _FARTHEST)
+    def forward(self, values: Tensor) -> Tensor:
+        """Normalise: [..., D] → [..., D]."""
+        return ((values - self.mean) / self.deviation).clamp(-_FARTHEST, _FARTHEST)
+
+    def restore(self, values: Tensor) -> Tensor:
+        """Return what `forward` normalised: [..., D] → [..., D]."""
+        return values * self.deviation + self.mean

@@ -13,6 +13,7 @@ import torch
 from torch import Tensor
 
 from mart.trainer.data.dataset import Dataset
+from mart.trainer.data.tool_targets import ToolTargets
 
 
 @dataclass(frozen=True)
@@ -32,9 +33,9 @@ class WindowSpec:
         return cls(tuple(range(ticks)), tuple(range(ticks)), ticks)
 
     @classmethod
-    def chunk(cls, ticks: int) -> WindowSpec:
-        """Return the spec of two observations, and the actions of `ticks` ticks from the newer one on."""
-        return cls((-1, 0), tuple(range(ticks)), ticks)
+    def chunk(cls, ticks: int, seen: int = 1) -> WindowSpec:
+        """Return the spec of `ticks` actions, and the observations of the first `seen` of them and one before."""
+        return cls(tuple(range(-1, seen)), tuple(range(ticks)), ticks)
 
 
 @dataclass(frozen=True)
@@ -55,9 +56,19 @@ class Windows:
     """Hold the normalised observations and the actions of all episodes on one device, and gather windows of them."""
 
     def __init__(
-        self, dataset: Dataset, obs: Tensor, weights: Tensor | None, spec: WindowSpec, device: torch.device
+        self,
+        dataset: Dataset,
+        obs: Tensor,
+        weights: Tensor | None,
+        spec: WindowSpec,
+        device: torch.device,
+        *,
+        targets: ToolTargets | None = None,
     ) -> None:
-        """Gather from obs, float32[rows, D], as networks take them, with weights, float32[rows, arms]."""
+        """Gather from obs, float32[rows, D], as networks take them, with weights, float32[rows, arms].
+
+        targets: actions become poses from where the tool is as a window starts; None: they stay as they are.
+        """
         ends = torch.from_numpy(dataset.ends)
         first = torch.from_numpy(np.searchsorted(dataset.ends, dataset.ends, side="left"))
         starts = torch.from_numpy(dataset.starts)
@@ -71,6 +82,9 @@ class Windows:
             torch.tensor(of, device=device) for of in (spec.obs, spec.actions)
         )
         self._goal_tick = spec.goal
+        self._targets = targets
+        if targets is not None:
+            self._tools = targets.poses(torch.from_numpy(dataset.observations)).to(device)
 
     def take(self, which: Tensor) -> WindowBatch:
         """Gather the windows with these numbers. which: int64[S, B], each in [0, count)."""
@@ -79,4 +93,15 @@ class Windows:
         actions = (start + self._action_ticks[:, None]).clamp(max=last - 1)
         goal = (start + self._goal_tick).clamp(max=last)[:, 0]
         weights = None if self._weights is None else self._weights[actions]
-        return WindowBatch(self._obs[obs], self._obs[goal], self._actions[actions], weights)
+        return WindowBatch(self._obs[obs], self._obs[goal], self._done(actions, start), weights)
+
+    def actions(self, most: int = 4096) -> Tensor:
+        """Return the actions of at most so many windows, evenly spread: float32[N, arms * 7]."""
+        which = torch.arange(0, self.count, max(1, self.count // most), device=self.device)
+        return self.take(which[None]).actions.flatten(-2).flatten(0, -2)
+
+    def _done(self, actions: Tensor, start: Tensor) -> Tensor:
+        """Return what was done in these rows, int64[S, T', B], of windows that start at int64[S, 1, B]."""
+        if self._targets is None:
+            return self._actions[actions]
+        return self._targets.absolute(self._actions[actions], self._tools[actions], self._tools[start])

@@ -19,14 +19,16 @@ from pydantic import BaseModel, ConfigDict, model_validator
 from mart.protocol.errors import InvalidInput, NotFound
 
 Span = Literal["none", "joint", "per-arm"]
-Network = Literal["rnn", "mlp", "flow"]
+Network = Literal["rnn", "mlp", "flow", "mip", "diffusion", "act"]
 Head = Literal["l2", "gmm"]
+_CHUNKED: frozenset[Network] = frozenset({"flow", "mip", "diffusion", "act"})
 
 
 class ModelSpec(BaseModel):
     """One model of the family: a point of the grid.
 
-    network: what the actor is; `rnn` an LSTM over ten steps, `mlp` without memory, `flow` a chunk of actions at once.
+    network: what the actor is; `rnn` an LSTM over ten steps, `mlp` without memory. Chunks of actions at once: `flow` by
+    flow matching, `mip` by regression in two steps, `diffusion` by diffusion, `act` by a transformer.
     head: what an rnn or mlp ends in; `l2` the mean action (the paper's objective), `gmm` a mixture of Gaussians.
     """
 
@@ -39,10 +41,15 @@ class ModelSpec(BaseModel):
     head: Head = "l2"
 
     @model_validator(mode="after")
-    def _flow_stands_alone(self) -> Self:
-        if self.network == "flow" and (self.planner, self.residual, self.head) != ("none", "none", "l2"):
-            raise ValueError("a flow model has neither planner nor residual nor another head")
+    def _chunks_have_no_planner(self) -> Self:
+        if self.is_chunked and (self.planner, self.head) != ("none", "l2"):
+            raise ValueError("a model of chunks has neither planner nor another head")
         return self
+
+    @property
+    def is_chunked(self) -> bool:
+        """Whether it says several ticks' actions at once."""
+        return self.network in _CHUNKED
 
     @property
     def name(self) -> str:
@@ -62,7 +69,7 @@ class ModelSpec(BaseModel):
 
         Raises NotFound, naming what there is, and InvalidInput.
         """
-        named = {name.lower(): model for model, name in _NAMES.items()}
+        named = {name.lower(): model for name, model in (PAPER | BASELINES | _ALSO_KNOWN_AS).items()}
         if text.lower() in named:
             return named[text.lower()]
         match = _POINT.fullmatch(text.lower())
@@ -73,14 +80,14 @@ class ModelSpec(BaseModel):
             return cls.model_validate(given)
         except ValueError as error:
             raise InvalidInput(
-                f"The model {text!r} was given, but a flow model has neither planner nor residual nor "
-                "another head; use none/joint/none/flow or none/per-arm/none/flow."
+                f"The model {text!r} was given, but a model of chunks has neither planner nor another head; "
+                f"use none/{match['actor']}/{match['residual']}/{match['network']}."
             ) from error
 
 
 _POINT = re.compile(
     r"(?P<planner>none|joint|per-arm)/(?P<actor>joint|per-arm)/(?P<residual>none|joint|per-arm)"
-    r"(?:/(?P<network>rnn|mlp|flow))?(?:/(?P<head>l2|gmm))?"
+    r"(?:/(?P<network>rnn|mlp|flow|mip|diffusion|act))?(?:/(?P<head>l2|gmm))?"
 )
 
 # The paper's seven first, in the order of its table, then the baselines beside them.
@@ -101,7 +108,17 @@ BASELINES: dict[str, ModelSpec] = {
     "d-BC-RNN-GMM": ModelSpec(planner="none", actor="per-arm", head="gmm"),
     "Flow": ModelSpec(planner="none", actor="joint", network="flow"),
     "d-Flow": ModelSpec(planner="none", actor="per-arm", network="flow"),
+    "r-Flow": ModelSpec(planner="none", actor="per-arm", residual="joint", network="flow"),
+    "rd-Flow": ModelSpec(planner="none", actor="joint", residual="per-arm", network="flow"),
+    "MIP": ModelSpec(planner="none", actor="joint", network="mip"),
+    "d-MIP": ModelSpec(planner="none", actor="per-arm", network="mip"),
+    "Diffusion": ModelSpec(planner="none", actor="joint", network="diffusion"),
+    "d-Diffusion": ModelSpec(planner="none", actor="per-arm", network="diffusion"),
+    "ACT": ModelSpec(planner="none", actor="joint", network="act"),
+    "d-ACT": ModelSpec(planner="none", actor="per-arm", network="act"),
 }
+# What others call the same point; why it is the same: layers/diffusion.py.
+_ALSO_KNOWN_AS: dict[str, ModelSpec] = {"MIMIC-D": BASELINES["d-Diffusion"]}
 _NAMES: dict[ModelSpec, str] = {model: name for name, model in (PAPER | BASELINES).items()}
 
 

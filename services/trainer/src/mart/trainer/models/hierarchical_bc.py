@@ -17,15 +17,14 @@ from collections.abc import Sequence
 import torch
 from torch import Tensor, nn
 
-from mart.protocol.batch_state import ACTION_SIZE
 from mart.trainer.data.layout import ObservationLayout
 from mart.trainer.data.windows import WindowBatch
 from mart.trainer.models.architecture import ModelSpec
 from mart.trainer.models.arm_partition import ArmPartition
+from mart.trainer.models.arm_residual import ArmResidual
 from mart.trainer.models.hyperparameters import Hyperparameters
 from mart.trainer.models.layers.actors import Actor, Memory, Memoryless, Recurrent
 from mart.trainer.models.layers.heads import MeanHead, MixtureHead
-from mart.trainer.models.layers.residual import Residual
 from mart.trainer.models.layers.vae import Planner
 from mart.trainer.models.losses import Losses
 from mart.trainer.models.rng import Rng, weight_generators
@@ -46,10 +45,9 @@ class HierarchicalBC(nn.Module):
         self.model, self.sizes, self.seeds = model, sizes, len(seeds)
         self.partition = ArmPartition(layout, model.actor)
         self.planner_partition = None if model.planner == "none" else ArmPartition(layout, model.planner)
-        self.residual_partition = None if model.residual == "none" else ArmPartition(layout, model.residual)
         self.planner = self._planner(layout, seeds)
         self.actor = self._actor(seeds, dtype)
-        self.residual = self._residual(seeds)
+        self.residual = ArmResidual.of(layout, model.residual, sizes, seeds)
 
     def base_losses(self, batch: WindowBatch, rng: Rng) -> Losses:
         """Return the losses of planner and actor."""
@@ -74,21 +72,9 @@ class HierarchicalBC(nn.Module):
     def residual_losses(self, batch: WindowBatch, rng: Rng) -> Losses:
         """Return the losses of the residual; the base is frozen and acts on reconstructed subgoals."""
         assert self.residual is not None
-        assert self.residual_partition is not None
         with torch.no_grad():
             base = self._sequence(batch, rng)
-        partition = self.residual_partition
-        actions = partition.split(base)
-        delta = self.residual(partition.of(batch.obs), actions)
-        each = ((actions + delta - partition.split(batch.actions)) ** 2).mean(-1)
-        weights = None if batch.weights is None else _mean_weights(partition, batch.weights)
-        length = delta.detach().unflatten(-1, (-1, ACTION_SIZE)).norm(dim=-1)
-        looks = {
-            "base": ((base - batch.actions) ** 2).flatten(1).mean(1),
-            "correction": length.flatten(1).mean(1),
-            "correction_at_bound": (length > 0.95 * self.residual.epsilon).float().flatten(1).mean(1),
-        }
-        return Losses({"residual": _mean(each, weights)}, looks)
+        return self.residual.losses(batch.obs, base, batch.actions, batch.weights)
 
     def start(self, batch: int) -> Memory:
         """Return what the actor remembers before the first tick of a window."""
@@ -108,9 +94,8 @@ class HierarchicalBC(nn.Module):
         inputs = self._inputs(obs[:, None], goal)[:, 0]
         actions, memory = self.actor.step(inputs, memory, *self._draws(obs.shape[1], rng))
         merged = self.partition.merge(actions)
-        if self.residual is not None and self.residual_partition is not None:
-            partition = self.residual_partition
-            merged = merged + partition.merge(self.residual(partition.of(obs), partition.split(merged)))
+        if self.residual is not None:
+            merged = self.residual.corrected(obs, merged)
         return merged.clamp(-1, 1), memory
 
     def _sequence(self, batch: WindowBatch, rng: Rng) -> Tensor:
@@ -186,18 +171,6 @@ class HierarchicalBC(nn.Module):
             else MixtureHead(body.features, partition.action_size, sizes.gmm_modes, own)
         )
         return Actor(body, head)
-
-    def _residual(self, seeds: Sequence[int]) -> Residual | None:
-        if self.residual_partition is None:
-            return None
-        sizes, partition = self.sizes, self.residual_partition
-        return Residual(
-            partition.stacked(len(seeds)),
-            weight_generators(seeds, partition.units, "residual"),
-            arms=partition.arms,
-            hidden=sizes.residual_hidden,
-            epsilon=sizes.residual_epsilon,
-        )
 
 
 def _equal_by_name(layout: ObservationLayout, partition: ArmPartition) -> Tensor:

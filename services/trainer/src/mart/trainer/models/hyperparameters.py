@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+_RENAMED = {
+    "flow_hidden": "chunk_hidden",
+    "flow_chunk": "chunk",
+    "flow_execute": "chunk_execute",
+    "flow_steps": "chunk_steps",
+}
 
 
 class Hyperparameters(BaseModel):
@@ -46,8 +53,37 @@ class Hyperparameters(BaseModel):
     residual_hidden: tuple[int, ...] = (256, 256)
     residual_epsilon: float = Field(0.05, ge=0)  # bound of an arm's correction, in units of its action
 
-    # Flow
-    flow_hidden: tuple[int, ...] = (512, 512, 512)
-    flow_chunk: int = Field(16, ge=1)  # actions that are predicted at once
-    flow_execute: int = Field(8, ge=1)  # how many of them are done before the next chunk
-    flow_steps: int = Field(10, ge=1)  # of Euler's method
+    # Chunks: of flow, mip and diffusion, which are perceptrons, and of act
+    chunk: int = Field(16, ge=1)  # actions that are predicted at once
+    chunk_execute: int = Field(8, ge=1)  # how many of them are done before the next chunk
+    normalise_actions: bool = False  # to mean 0 and deviation 1; decision 0093: worse
+    action_target: Literal["delta", "absolute"] = (
+        "delta"  # steps as recorded, or poses from where a chunk begins
+    )
+    chunk_ensemble: float | None = Field(
+        None, ge=0
+    )  # a chunk every tick, averaged, each weighing exp(-this) of the one before
+    chunk_hidden: tuple[int, ...] = (512, 512, 512)
+    chunk_steps: int = Field(10, ge=1)  # of Euler's method: flow and diffusion
+    act_width: int = Field(256, ge=1)
+    act_heads: int = Field(8, ge=1)
+    act_layers: int = Field(4, ge=1)  # of each of its three transformers
+    act_latent: int = Field(32, ge=1)
+    act_kl_weight: float = Field(10.0, ge=0)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _renamed(cls, given: Any) -> Any:
+        """Read the names that checkpoints and runs of 0.1.0 have."""
+        return {_RENAMED.get(name, name): value for name, value in dict(given).items()}
+
+    @model_validator(mode="after")
+    def _heads_part_the_width(self) -> Hyperparameters:
+        if self.act_width % self.act_heads:
+            raise ValueError(f"act_width {self.act_width} must be a multiple of act_heads {self.act_heads}")
+        return self
+
+    @property
+    def executed(self) -> int:
+        """How many actions of a chunk are done."""
+        return min(self.chunk, self.chunk_execute)

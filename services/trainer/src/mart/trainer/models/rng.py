@@ -8,6 +8,7 @@ counter-based (Philox: Salmon et al., "Parallel random numbers: as easy as 1, 2,
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -28,6 +29,23 @@ class Rng(Protocol):
     def normal(self, units: int, batch: int, size: int) -> Tensor:
         """Draw float32[M, batch, size], standard normal."""
         ...
+
+
+@dataclass(frozen=True)
+class Draws:
+    """What one batch may draw: a row for each of its windows or worlds, of each of the M models."""
+
+    rng: Rng
+    units: int
+    batch: int
+
+    def uniform(self) -> Tensor:
+        """Draw float32[M, batch], uniform in [0, 1)."""
+        return self.rng.uniform(self.units, self.batch)
+
+    def normal(self, size: int) -> Tensor:
+        """Draw float32[M, batch, size], standard normal."""
+        return self.rng.normal(self.units, self.batch, size)
 
 
 class UpdateRng:

@@ -21,10 +21,9 @@ from mart.trainer.models.hyperparameters import Hyperparameters
 from mart.trainer.train.run_directory import RunDirectory
 
 _STATE = "state.safetensors"
-_SHARED = (
-    "normaliser."  # by all seeds; every other weight has a model axis, a seed's models beside each other
-)
-_BASE = ("model.planner.", "model.actor.", _SHARED)
+# Shared by all seeds; every other weight has a model axis, a seed's models beside each other.
+_SHARED = ("normaliser.", "model.scale.")
+_RESIDUAL = "model.residual."
 
 
 def write_checkpoint(
@@ -90,7 +89,7 @@ def read_base(
     return {
         name: found[0][name] if name.startswith(_SHARED) else torch.cat([own[name] for own in found])
         for name in found[0]
-        if name.startswith(_BASE)
+        if not name.startswith(_RESIDUAL)
     }
 
 

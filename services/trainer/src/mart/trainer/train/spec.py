@@ -59,7 +59,7 @@ class TrainingSpec(BaseModel):
     def times_seen(self, ticks: int) -> float:
         """Return how often each of so many recorded ticks is learned from, on average: what long tasks want more of."""
         sizes = self.hyperparameters
-        actions = sizes.flow_chunk if self.model_spec.network == "flow" else sizes.window
+        actions = sizes.chunk if self.model_spec.is_chunked else sizes.window
         return sizes.updates * sizes.batch_size * actions / ticks
 
     @property

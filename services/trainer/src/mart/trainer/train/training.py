@@ -24,8 +24,9 @@ from mart.runtime.atomic_file import PUBLIC, write_atomically
 from mart.runtime.settings import Settings
 from mart.trainer.data.dataset import DataDigest, Dataset, load_dataset
 from mart.trainer.data.windows import Windows
+from mart.trainer.models.chunk_policy_net import ChunkPolicyNet
 from mart.trainer.models.devices import find_device, product_dtype
-from mart.trainer.models.networks import Networks, window_spec
+from mart.trainer.models.networks import Networks, tool_targets, window_spec
 from mart.trainer.train.metrics import MetricsWriter
 from mart.trainer.train.progress import TrainingProgress
 from mart.trainer.train.resume_state import read_state, write_state
@@ -98,7 +99,7 @@ def _training_loop(spec: TrainingSpec, dataset: Dataset, device: torch.device) -
     dtype = product_dtype(device, sizes.precision)
     networks = Networks(model, layout, sizes, spec.seeds, dtype)
     if sizes.normalise:
-        networks.normaliser.fit(dataset)
+        networks.normaliser.fit(torch.from_numpy(dataset.observations))
     if spec.base is not None:
         if model.residual == "none":
             raise InvalidInput(f"A base was given, but {model.name} has no residual to put on it.")
@@ -107,7 +108,12 @@ def _training_loop(spec: TrainingSpec, dataset: Dataset, device: torch.device) -
         assert all(name.startswith("model.residual.") for name in missing)
     networks.to(device)
     obs = networks.normaliser(torch.from_numpy(dataset.observations).to(device))
-    windows = Windows(dataset, obs, _weights(dataset, spec), window_spec(model, sizes), device)
+    targets = tool_targets(model, sizes, dataset.digest.task, layout, dataset.digest.arm_kinds)
+    windows = Windows(
+        dataset, obs, _weights(dataset, spec), window_spec(model, sizes), device, targets=targets
+    )
+    if isinstance(networks.model, ChunkPolicyNet) and networks.model.scale is not None and spec.base is None:
+        networks.model.scale.fit(windows.actions())
     phases = training_phases(networks, sizes, has_base=spec.base is not None)
     return TrainingLoop(networks, windows, phases, sizes, seeds=spec.seeds, dtype=dtype)
 

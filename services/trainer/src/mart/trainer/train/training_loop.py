@@ -15,7 +15,6 @@ from torch import Tensor
 
 from mart.protocol.errors import Corrupt
 from mart.trainer.data.windows import WindowBatch, Windows
-from mart.trainer.models.hierarchical_bc import HierarchicalBC
 from mart.trainer.models.hyperparameters import Hyperparameters
 from mart.trainer.models.losses import Losses
 from mart.trainer.models.networks import Networks
@@ -42,7 +41,7 @@ def training_phases(networks: Networks, sizes: Hyperparameters, *, has_base: boo
     residual = {name: weight for name, weight in weights.items() if name.startswith("model.residual.")}
     base = {name: weight for name, weight in weights.items() if name not in residual}
     found = [] if has_base else [Phase("base", sizes.updates, base, model.base_losses)]
-    if isinstance(model, HierarchicalBC) and residual:
+    if residual:
         found.append(Phase("residual", sizes.residual_updates, residual, model.residual_losses))
     return found
 

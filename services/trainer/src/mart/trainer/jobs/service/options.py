@@ -26,6 +26,12 @@ _MAX_DATA_SETS = 200
 _NO_DATA = ("runs", "policies", "logs", "secrets", "certificates", "cache")
 _DAY = re.compile(r"\d{4}-\d{2}-\d{2}")
 _WORDS = {"none": "nobody", "joint": "one network for all arms", "per-arm": "one network an arm"}
+_CHUNKS = {
+    "flow": "flow matching",
+    "mip": "regression in two steps",
+    "diffusion": "diffusion",
+    "act": "a transformer",
+}
 _DEFAULT_MODEL = "r-HBC"
 
 
@@ -98,6 +104,8 @@ def _tasks(files: Iterable[str]) -> list[str]:
 
 def _model(name: str, model: ModelSpec) -> TrainerReply.Choices.Model:
     about = f"{_WORDS[model.actor]} acts".capitalize()
+    if model.network in _CHUNKS:
+        about += f" in chunks, by {_CHUNKS[model.network]}"
     if model.planner != "none":
         about += f", {_WORDS[model.planner]} plans"
     if model.residual != "none":

@@ -32,7 +32,7 @@ def load_policy(checkpoint: Path, device: str = "cpu") -> TrainedPolicy:
             f"{checkpoint} holds weights that are not those of its {record.name}; train again."
         ) from error
     networks.to(where).eval()
-    kind = ChunkedPolicy if record.model.network == "flow" else HierarchicalPolicy
+    kind = ChunkedPolicy if record.model.is_chunked else HierarchicalPolicy
     return kind(record, networks, where)
 
 
