@@ -66,6 +66,25 @@ def test_the_residual_learns_alone(model: ModelSpec) -> None:
     assert (losses.diagnostics["correction"] == 0).all()
 
 
+def test_a_residual_learns_on_the_subgoal_that_is_asked_for() -> None:
+    model = ModelSpec.parse("r-HBC")
+    batch, errors = batch_of(model, 1), {}
+    for subgoal in ("posterior", "prior", "true"):
+        sizes = SIZES.model_copy(update={"residual_subgoal": subgoal})
+        nets = Networks(model, LAYOUT, sizes, [1]).model
+        assert isinstance(nets, HierarchicalBC)
+        looks = nets.residual_losses(batch, UpdateRng([1], 0, CPU)).diagnostics
+        errors[subgoal] = float(looks["base"])
+    assert len(set(errors.values())) == 3
+    told = nets.actor.loss(
+        torch.cat(
+            (nets.partition.of(batch.obs), nets.partition.of(batch.goal)[:, None].expand(-1, 4, -1, -1)), -1
+        ),
+        nets.partition.split(batch.actions),
+    )
+    assert errors["true"] == pytest.approx(float(told.mean()), rel=1e-5)
+
+
 @pytest.mark.parametrize("model", GRID, ids=_point)
 def test_stacked_or_alone_losses_and_gradients_are_the_same(model: ModelSpec) -> None:
     seeds, together = [3, 5, 8], batch_of(model, 3)
