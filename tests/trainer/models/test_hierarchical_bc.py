@@ -76,6 +76,19 @@ def test_the_residual_learns_alone(model: ModelSpec) -> None:
     assert (losses.diagnostics["correction"] == 0).all()
 
 
+@pytest.mark.parametrize(("subgoal", "is_told"), [("posterior", False), ("prior", False), ("true", True)])
+def test_a_residual_learns_on_the_subgoal_that_is_asked_for(subgoal: str, is_told: bool) -> None:
+    model = ModelSpec.parse("r-HBC")
+    nets = Networks(model, LAYOUT, SIZES.model_copy(update={"residual_subgoal": subgoal}), [1]).model
+    assert isinstance(nets, HierarchicalBC)
+    batch = batch_of(model, 1)
+    error = nets.residual_losses(batch, UpdateRng([1], 0, CPU)).diagnostics["base"].item()
+    goal = nets.partition.of(batch.goal)[:, None].expand(-1, batch.obs.shape[1], -1, -1)
+    inputs = torch.cat((nets.partition.of(batch.obs), goal), -1)
+    told = nets.actor.loss(inputs, nets.partition.split(batch.actions)).mean().item()
+    assert (error == pytest.approx(told, rel=1e-5)) == is_told
+
+
 @pytest.mark.parametrize("model", GRID, ids=_point)
 def test_stacked_or_alone_losses_and_gradients_are_the_same(model: ModelSpec) -> None:
     seeds, together = [3, 5, 8], batch_of(model, 3)

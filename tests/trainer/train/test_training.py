@@ -55,13 +55,22 @@ def same(one: dict[str, Tensor], other: dict[str, Tensor]) -> bool:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "model", ["r-HBC", "rd-HBC", "r-Flow", "d-MIP", "d-Diffusion", "none/joint/per-arm/act"]
+    ("model", "changes"),
+    [
+        ("r-HBC", {"weight_decay": 0.01}),
+        ("rd-HBC", {"one_arm_share": 0.5, "observation_noise": 0.1, "residual_subgoal": "prior"}),
+        ("none/joint/joint/mlp/gmm", {}),
+        ("r-Flow", {"normalise_actions": True}),
+        ("d-MIP", {"normalise_actions": True}),
+        ("d-Diffusion", {}),
+        ("none/joint/per-arm/act", {}),
+    ],
 )
 @pytest.mark.parametrize("ema", [None, 0.9])
 def test_stopped_and_resumed_is_the_same_bit_for_bit(
-    episodes: Recorded, tmp_path: Path, model: str, ema: float | None
+    episodes: Recorded, tmp_path: Path, model: str, changes: dict[str, object], ema: float | None
 ) -> None:
-    asked = request(episodes, model, changes={"ema": ema, "schedule": "cosine", "normalise_actions": True})
+    asked = request(episodes, model, changes=changes | {"ema": ema, "schedule": "cosine"})
     whole = run(asked, tmp_path / "whole")
     for stop_after in (
         7,
@@ -190,6 +199,9 @@ def test_what_cannot_be_asked_is_refused(episodes: Recorded, tmp_path: Path) -> 
         run(request(episodes, changes={"batch_size": 0}), tmp_path / "d")
     with pytest.raises(InvalidInput):
         run(request(episodes, changes={"bach_size": 3}), tmp_path / "e")
+    for model in ("Flow", "BC-RNN-GMM"):
+        with pytest.raises(InvalidInput, match="one_arm_share"):
+            run(request(episodes, model, changes={"one_arm_share": 0.5}), tmp_path / "g")
     with pytest.raises(Unavailable):
         run(request(episodes, device=f"cuda:{torch.cuda.device_count() + 3}"), tmp_path / "f")
 

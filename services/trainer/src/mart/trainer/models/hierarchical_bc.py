@@ -13,10 +13,12 @@ intention, it would learn to act against what is intended (decision 0024).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import torch
 from torch import Tensor, nn
 
+from mart.protocol.batch_state import ACTION_SIZE
 from mart.trainer.data.layout import ObservationLayout
 from mart.trainer.data.windows import WindowBatch
 from mart.trainer.models.architecture import ModelSpec
@@ -27,6 +29,7 @@ from mart.trainer.models.layers.actors import Actor, Memory, Memoryless, Recurre
 from mart.trainer.models.layers.heads import MeanHead, MixtureHead
 from mart.trainer.models.layers.vae import Planner
 from mart.trainer.models.losses import Losses
+from mart.trainer.models.one_arm import OneArmWindows, for_one_arm, seen_by_arm
 from mart.trainer.models.rng import Rng, weight_generators
 
 
@@ -45,6 +48,8 @@ class HierarchicalBC(nn.Module):
         self.model, self.sizes, self.seeds = model, sizes, len(seeds)
         self.partition = ArmPartition(layout, model.actor)
         self.planner_partition = None if model.planner == "none" else ArmPartition(layout, model.planner)
+        self._seen: Tensor
+        self.register_buffer("_seen", seen_by_arm(layout), persistent=False)
         self.planner = self._planner(layout, seeds)
         self.actor = self._actor(seeds, dtype)
         self.residual = ArmResidual.of(layout, model.residual, sizes, seeds)
@@ -52,19 +57,24 @@ class HierarchicalBC(nn.Module):
     def base_losses(self, batch: WindowBatch, rng: Rng) -> Losses:
         """Return the losses of planner and actor."""
         losses, looks = {}, {}
+        batch, windows = self._shown(batch, rng)
         goal = None
         if self.planner is not None and self.planner_partition is not None:
             partition = self.planner_partition
             obs, goal = partition.of(batch.obs[:, 0]), partition.of(batch.goal)
-            plan = self.planner.loss(
-                obs, goal, rng.normal(partition.units, obs.shape[1], self.planner.latent)
-            )
+            noise = rng.normal(partition.units, obs.shape[1], self.planner.latent)
+            told = None if windows is None else partition.of(windows.told)
+            plan = self.planner.loss(obs, goal, noise, told)
             each = plan.reconstruction + self.sizes.kl_weight * plan.divergence
+            if windows is not None:
+                each = each * _mean_weights(partition, windows.counted)
             weights = None if batch.weights is None else _mean_weights(partition, batch.weights[:, 0])
             losses["planner"] = _mean(each, weights)
             looks = {"reconstruction": plan.reconstruction.mean(1), "divergence": plan.divergence.mean(1)}
             goal = self._routed(goal)
-        each = self.actor.loss(self._inputs(batch.obs, goal), self.partition.split(batch.actions))
+        actions = self.partition.split(batch.actions)
+        counted = None if windows is None else self._counted(windows.counted).expand_as(actions)
+        each = self.actor.loss(self._inputs(batch.obs, goal), actions, counted)
         weights = None if batch.weights is None else _mean_weights(self.partition, batch.weights)
         losses["actor"] = _mean(each, weights)
         return Losses(losses, {name: value.detach() for name, value in looks.items()})
@@ -72,6 +82,7 @@ class HierarchicalBC(nn.Module):
     def residual_losses(self, batch: WindowBatch, rng: Rng) -> Losses:
         """Return the losses of the residual; the base is frozen and acts on reconstructed subgoals."""
         assert self.residual is not None
+        batch = _noisy(batch, self.sizes.observation_noise, rng)
         with torch.no_grad():
             base = self._sequence(batch, rng)
         return self.residual.losses(batch.obs, base, batch.actions, batch.weights)
@@ -101,16 +112,38 @@ class HierarchicalBC(nn.Module):
     def _sequence(self, batch: WindowBatch, rng: Rng) -> Tensor:
         """Return what the base does over a window, on the way that was demonstrated: [S, T, B, arms, 7]."""
         ticks, size = batch.obs.shape[1:3]
-        inputs = self._inputs(batch.obs, self._posterior_subgoal(batch, rng))
+        inputs = self._inputs(batch.obs, self._subgoal(batch, rng))
         return self.partition.merge(self.actor.sequence(inputs, *self._draws(ticks * size, rng)))
 
-    def _posterior_subgoal(self, batch: WindowBatch, rng: Rng) -> Tensor | None:
-        """Return the demonstrated subgoal, encoded and decoded by the planner, as the actor takes it: [M, B, G]."""
+    def _subgoal(self, batch: WindowBatch, rng: Rng) -> Tensor | None:
+        """Return what a residual's base acts on while it learns, as the actor takes it: [M, B, G].
+
+        That is the demonstrated subgoal, encoded and decoded by the planner, unless the sizes say another one.
+        """
         if self.planner is None or self.planner_partition is None:
             return None
         partition, obs = self.planner_partition, batch.obs[:, 0]
+        if self.sizes.residual_subgoal == "prior":
+            return self.plan(obs, rng)
+        if self.sizes.residual_subgoal == "true":
+            return self._routed(partition.of(batch.goal))
         drawn = rng.normal(partition.units, obs.shape[1], self.planner.latent)
         return self._routed(self.planner.reconstruct(partition.of(obs), partition.of(batch.goal), drawn))
+
+    def _shown(self, batch: WindowBatch, rng: Rng) -> tuple[WindowBatch, OneArmWindows | None]:
+        """Return the windows as they are learned from: with noise, and some of them for one arm alone."""
+        sizes = self.sizes
+        batch = _noisy(batch, sizes.observation_noise, rng)
+        if sizes.one_arm_share == 0:
+            return batch, None
+        windows = for_one_arm(
+            batch.obs, batch.goal, self._seen, rng, share=sizes.one_arm_share, hiding=sizes.one_arm_hides
+        )
+        return replace(batch, obs=windows.obs, goal=windows.goal), windows
+
+    def _counted(self, counted: Tensor) -> Tensor:
+        """Return how much each number of an action counts: [S, B, arms] → [M, 1, B, A]."""
+        return self.partition.per_unit(counted).repeat_interleave(ACTION_SIZE, -1)[:, None]
 
     def _draws(self, batch: int, rng: Rng) -> tuple[Tensor, Tensor]:
         return rng.uniform(self.partition.units, batch), rng.normal(
@@ -191,3 +224,11 @@ def _mean_weights(partition: ArmPartition, weights: Tensor) -> Tensor:
 def _mean(each: Tensor, weights: Tensor | None) -> Tensor:
     """Average over all but the models, weighted: [M, ...] → [M]."""
     return (each if weights is None else each * weights).flatten(1).mean(1)
+
+
+def _noisy(batch: WindowBatch, deviations: float, rng: Rng) -> WindowBatch:
+    """Return windows whose observations, but not the goal, are beside what was seen: by one amount in all ticks."""
+    if deviations == 0:
+        return batch
+    noise = rng.normal(1, *batch.goal.shape[1:])
+    return replace(batch, obs=batch.obs + deviations * noise[:, None])

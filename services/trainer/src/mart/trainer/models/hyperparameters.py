@@ -13,6 +13,8 @@ _RENAMED = {
     "flow_steps": "chunk_steps",
 }
 
+Hiding = Literal["swap", "drop", "blur"]
+
 
 class Hyperparameters(BaseModel):
     """Everything that decides a training but the data, the model and the seed."""
@@ -29,10 +31,16 @@ class Hyperparameters(BaseModel):
     precision: Literal["auto", "float32", "bfloat16"] = (
         "auto"  # of matrix products; auto: what is faster here
     )
+    weight_decay: float = Field(0.0, ge=0)  # of AdamW; 0: Adam
     ema: float | None = Field(None, gt=0, lt=1)  # decay of the average of weights that acts, if any
 
     # Observations
     normalise: bool = True  # to mean 0 and deviation 1 over the data; robomimic's published runs do not
+    observation_noise: float = Field(0.0, ge=0)  # while learning, in deviations; the same for a whole window
+
+    # One arm alone: how a joint planner and actor learn not to rely on what other arms happen to do (one_arm.py)
+    one_arm_share: float = Field(0.0, ge=0, le=1)  # of the windows
+    one_arm_hides: Hiding = "swap"  # what is done to all that the arm does not see
 
     # Sequences: the subgoal is what is seen `window` ticks ahead, and the LSTM begins anew as often
     window: int = Field(10, ge=1)
@@ -52,6 +60,7 @@ class Hyperparameters(BaseModel):
     # Residual
     residual_hidden: tuple[int, ...] = (256, 256)
     residual_epsilon: float = Field(0.05, ge=0)  # bound of an arm's correction, in units of its action
+    residual_subgoal: Literal["posterior", "prior", "true"] = "posterior"  # its base's, while it learns
 
     # Chunks: of flow, mip and diffusion, which are perceptrons, and of act
     chunk: int = Field(16, ge=1)  # actions that are predicted at once

@@ -67,9 +67,16 @@ class TrainingSpec(BaseModel):
         """The preset's with the changes. Raises NotFound for its name, InvalidInput for a change."""
         values = preset(self.preset).model_dump() | dict(self.changes)
         try:
-            return Hyperparameters.model_validate(values)
+            sizes = Hyperparameters.model_validate(values)
         except ValidationError as error:
             fault = error.errors()[0]
             raise InvalidInput(
                 f"The hyperparameter {fault['loc'][0]} = {fault['input']!r} was given: {fault['msg']}."
             ) from error
+        model = self.model_spec
+        if sizes.one_arm_share > 0 and (model.is_chunked or model.head != "l2"):
+            raise InvalidInput(
+                f"one_arm_share = {sizes.one_arm_share:g} was given, but {model.name} learns all arms' actions "
+                "as one; leave it 0, or use a model that ends in the mean action, such as BC-RNN or HBC."
+            )
+        return sizes

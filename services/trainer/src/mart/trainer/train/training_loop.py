@@ -153,8 +153,11 @@ class TrainingLoop:
         weights = self.phase.weights
         for name, weight in self.networks.named_parameters():
             weight.requires_grad_(name in weights)
-        # Adam as robomimic uses it: no decay of weights, no clipping of gradients.
-        self._optimizer = torch.optim.Adam(weights.values(), self._sizes.learning_rate, fused=True)
+        # Adam as robomimic uses it, unless weights are to decay: no clipping of gradients.
+        sizes = self._sizes
+        self._optimizer = torch.optim.AdamW(
+            weights.values(), sizes.learning_rate, weight_decay=sizes.weight_decay, fused=True
+        )
         self._ema = None if self._sizes.ema is None else EMA(weights, self._sizes.ema)
 
     def _leave(self, phase: Phase) -> None:

@@ -22,9 +22,13 @@ class Actor(nn.Module):
         super().__init__()
         self.body, self.head = body, head
 
-    def loss(self, inputs: Tensor, actions: Tensor) -> Tensor:
-        """Return the loss of each action. inputs: [M, T, B, I], actions: [M, T, B, A] → [M, T, B]."""
-        flat = self.head.loss(self.body(inputs).flatten(1, 2), actions.flatten(1, 2))
+    def loss(self, inputs: Tensor, actions: Tensor, counted: Tensor | None = None) -> Tensor:
+        """Return the loss of each action. inputs: [M, T, B, I], actions: [M, T, B, A] → [M, T, B].
+
+        counted: [M, T, B, A], how much each number of an action counts; 1 each.
+        """
+        weights = None if counted is None else counted.flatten(1, 2)
+        flat = self.head.loss(self.body(inputs).flatten(1, 2), actions.flatten(1, 2), weights)
         return flat.unflatten(1, inputs.shape[1:3])
 
     def sequence(self, inputs: Tensor, choice: Tensor, noise: Tensor) -> Tensor:

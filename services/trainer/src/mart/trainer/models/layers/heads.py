@@ -24,9 +24,10 @@ class MeanHead(nn.Module):
         """Return the mean action: [M, B, F] → [M, B, A]."""
         return torch.tanh(self.out(features).float())
 
-    def loss(self, features: Tensor, action: Tensor) -> Tensor:
-        """Return the squared error, averaged over the action's numbers: [M, B]."""
-        return ((self(features) - action) ** 2).mean(-1)
+    def loss(self, features: Tensor, action: Tensor, counted: Tensor | None = None) -> Tensor:
+        """Return the squared error, averaged over the action's numbers: [M, B]. counted: [M, B, A], of each; 1 each."""
+        errors = (self(features) - action) ** 2
+        return (errors if counted is None else errors * counted).mean(-1)
 
     def act(self, features: Tensor, choice: Tensor, noise: Tensor) -> Tensor:
         """Return the mean action, [M, B, A]; nothing is drawn."""
@@ -49,8 +50,9 @@ class MixtureHead(nn.Module):
         means, spreads = rest.unflatten(-1, (self.modes, 2 * self.size)).chunk(2, dim=-1)
         return Mixture(logits, torch.tanh(means), softplus(spreads) + _LEAST_DEVIATION)
 
-    def loss(self, features: Tensor, action: Tensor) -> Tensor:
-        """Return the negative log likelihood: [M, B]."""
+    def loss(self, features: Tensor, action: Tensor, counted: Tensor | None = None) -> Tensor:
+        """Return the negative log likelihood: [M, B]. It is of the whole action: parts cannot count alone."""
+        assert counted is None
         return -self(features).log_prob(action)
 
     def act(self, features: Tensor, choice: Tensor, noise: Tensor) -> Tensor:

@@ -25,6 +25,7 @@ from mart.trainer.models.layers.mixture import Mixture, log_normal
 from mart.trainer.models.layers.stack import MLP, Generators, full
 
 _LOG_VARIANCE = (-8.0, 30.0)  # robomimic's clamp
+_NO_WEIGHT = 1e-8
 
 
 @dataclass(frozen=True)
@@ -59,13 +60,20 @@ class Planner(nn.Module):
         self.decoder = MLP(torch.cat((code, real), 1), hidden, real, generators)
         self.prior = MLP(real, hidden, full(models, modes * (1 + 2 * latent)), generators)
 
-    def loss(self, obs: Tensor, goal: Tensor, noise: Tensor) -> PlannerLoss:
-        """Return the losses. obs, goal: [M, B, D]. noise: [M, B, latent], standard normal."""
+    def loss(self, obs: Tensor, goal: Tensor, noise: Tensor, told: Tensor | None = None) -> PlannerLoss:
+        """Return the losses. obs, goal: [M, B, D]. noise: [M, B, latent], standard normal.
+
+        told: bool[M, B, D], the columns of the goal that are to be reconstructed; all of them.
+        """
         mean, deviation = self._posterior(obs, goal)
         z = mean + deviation * noise
         error = self.decode(z, obs) - goal
         divergence = log_normal(z, mean, deviation).sum(-1) - self.prior_of(obs).log_prob(z)
-        return PlannerLoss((self.weights[:, None] * error * error).sum(-1), divergence)
+        weights = self.weights[:, None]
+        if told is not None:
+            weights = weights * told
+            weights = weights / weights.sum(-1, keepdim=True).clamp(min=_NO_WEIGHT)
+        return PlannerLoss((weights * error * error).sum(-1), divergence)
 
     def prior_of(self, obs: Tensor) -> Mixture:
         """Return the prior p(z | o). obs: [M, B, D]."""
