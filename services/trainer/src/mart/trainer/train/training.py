@@ -23,7 +23,7 @@ from mart.protocol.messages import operator_from_word
 from mart.runtime.atomic_file import PUBLIC, write_atomically
 from mart.runtime.settings import Settings
 from mart.trainer.data.dataset import DataDigest, Dataset, load_dataset
-from mart.trainer.data.windows import Windows
+from mart.trainer.data.windows import Windows, WindowSpec
 from mart.trainer.models.devices import find_device, product_dtype
 from mart.trainer.models.networks import Networks, window_spec
 from mart.trainer.train.metrics import MetricsWriter
@@ -56,7 +56,9 @@ def train(
     device = find_device(spec.device)
     with _claimed(run, spec):
         cache = Settings().data_dir / "cache" / "episodes"
-        dataset = load_dataset(spec.data, spec.selection, cache, spec.dataset, spec.control_hz)
+        dataset = load_dataset(
+            spec.data, spec.selection, cache, spec.dataset, spec.control_hz, held_out=spec.held_out
+        )
         loop = _training_loop(spec, dataset, device)
         _note(run, spec, dataset)
         kept = read_state(run)
@@ -81,6 +83,7 @@ def _go(
             metrics.add(loop.update())
             if loop.updates not in checkpoint_steps and loop.updates % every:
                 continue
+            metrics.add_held_out(loop.held_out_losses())
             progress = _report(metrics, loop, phase)
             if loop.updates in checkpoint_steps:
                 save()
@@ -106,10 +109,19 @@ def _training_loop(spec: TrainingSpec, dataset: Dataset, device: torch.device) -
         missing, _ = networks.load_state_dict(base, strict=False)
         assert all(name.startswith("model.residual.") for name in missing)
     networks.to(device)
-    obs = networks.normaliser(torch.from_numpy(dataset.observations).to(device))
-    windows = Windows(dataset, obs, _weights(dataset, spec), window_spec(model, sizes), device)
     phases = training_phases(networks, sizes, has_base=spec.base is not None)
-    return TrainingLoop(networks, windows, phases, sizes, seeds=spec.seeds, dtype=dtype)
+    windows = _windows(dataset, networks, _weights(dataset, spec), window_spec(model, sizes), device)
+    held_out = dataset.held_out and _windows(
+        dataset.held_out, networks, None, window_spec(model, sizes), device
+    )
+    return TrainingLoop(networks, windows, phases, sizes, seeds=spec.seeds, dtype=dtype, held_out=held_out)
+
+
+def _windows(
+    dataset: Dataset, networks: Networks, weights: Tensor | None, spec: WindowSpec, device: torch.device
+) -> Windows:
+    obs = networks.normaliser(torch.from_numpy(dataset.observations).to(device))
+    return Windows(dataset, obs, weights, spec, device)
 
 
 def _weights(dataset: Dataset, spec: TrainingSpec) -> Tensor | None:
