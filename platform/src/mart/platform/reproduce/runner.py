@@ -12,7 +12,7 @@ from pathlib import Path
 
 from mart.platform.reproduce.fingerprints import Fingerprints
 from mart.platform.reproduce.schedule import StepState, duration, ready, remaining, state_of
-from mart.platform.reproduce.step_process import StepProcess
+from mart.platform.reproduce.step_process import RunningStep, StepProcess
 from mart.platform.reproduce.versions import versions
 from mart.protocol import clock
 from mart.protocol.errors import Conflict, Unavailable
@@ -42,7 +42,8 @@ class Runner:
     """Run steps in `folder`, `jobs` at a time; what is done already, from the same inputs, is not done again.
 
     redo: set aside what was made from other inputs or by other commands, and make it anew; else it is left and told.
-    least_free: bytes on the disk with which nothing more is begun. tell: a line of progress.
+    least_free: bytes on the disk with which nothing more is begun. tell: a line of progress. start, free: how a step is
+    started, and how many bytes a folder's disk has left.
     """
 
     folder: Path
@@ -51,11 +52,12 @@ class Runner:
     jobs: int = 1
     redo: bool = False
     least_free: int = GIGABYTE
+    start: Callable[[Path, PlannedStep, int], RunningStep] = StepProcess.start
     free: Callable[[Path], int] = lambda folder: shutil.disk_usage(folder).free
     _records: dict[str, StepRecord] = field(default_factory=dict)
     _states: dict[str, StepState] = field(default_factory=dict)
     _why: dict[str, str] = field(default_factory=dict)
-    _running: dict[str, StepProcess] = field(default_factory=dict)
+    _running: dict[str, RunningStep] = field(default_factory=dict)
 
     def run(self, stop: threading.Event) -> Outcome:
         """Run until nothing can be begun any more, or `stop` is set. A failed step is told; the others go on.
@@ -153,7 +155,7 @@ class Runner:
         before = self._records.get(step.name)
         if step.kind == "collect" and (self.folder / step.result).exists():
             self.tell(f"{step.name} was interrupted; what it had is in {self._set_aside(step)}")
-        attempts = tuple(map(self._closed, before.attempts)) if before else ()
+        attempts = tuple(self._closed(step, attempt) for attempt in before.attempts) if before else ()
         record = StepRecord(
             step=step,
             status="running",
@@ -162,13 +164,17 @@ class Runner:
             versions=dict(versions()),
         )
         self._write(record)
-        self._running[step.name] = StepProcess.start(self.folder, step, self.jobs)
+        self._running[step.name] = self.start(self.folder, step, self.jobs)
         self._states[step.name] = StepState.RUNNING
         self._progress(f"{step.name} …")
 
-    def _closed(self, attempt: StepAttempt) -> StepAttempt:
-        """Return an attempt that a kill has left open, ended when its record was written last."""
-        return attempt if attempt.ended_ns else attempt.model_copy(update={"ended_ns": attempt.began_ns})
+    def _closed(self, step: PlannedStep, attempt: StepAttempt) -> StepAttempt:
+        """Return an attempt; one that a kill has left open as ended when its log was written last."""
+        if attempt.ended_ns is not None:
+            return attempt
+        log = self.folder / LOGS / f"{step.name}.log"
+        last_ns = log.stat().st_mtime_ns if log.is_file() else attempt.began_ns
+        return attempt.model_copy(update={"ended_ns": max(last_ns, attempt.began_ns)})
 
     def _end(self, name: str, *, interrupted: bool) -> None:
         process = self._running.pop(name)

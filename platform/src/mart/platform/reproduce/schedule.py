@@ -65,14 +65,13 @@ class Remaining:
     unknown: int
 
     def in_words(self) -> str:
-        """Return "6 steps left, about 40 min", and what that leaves out."""
+        """Return "6 left: about 40 min", and what that leaves out."""
         if not self.steps:
             return "nothing left"
-        known = (
-            f"about {duration(self.wall_s)}" if self.steps > self.unknown else "for how long is not known yet"
-        )
-        more = f", and {self.unknown} of which none has run yet" if 0 < self.unknown < self.steps else ""
-        return f"{self.steps} steps left, {known}{more}"
+        if self.steps == self.unknown:
+            return f"{self.steps} left, for how long is not known yet"
+        more = f" and {self.unknown} of a kind that has not run yet" if self.unknown else ""
+        return f"{self.steps} left: about {duration(self.wall_s)}{more}"
 
 
 def remaining(

@@ -8,7 +8,7 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, Protocol
 
 from mart.runtime.atomic_file import PUBLIC, write_atomically
 from mart.runtime.child_process import MART, start_child, stop_child
@@ -17,6 +17,25 @@ from mart.runtime.step_record import LOGS, PlannedStep
 _STOP_TIMEOUT_S = 60.0  # a training writes what it needs to go on
 _IN_FOLDER = "import os, sys; os.chdir(sys.argv[1]); os.execv(sys.argv[2], sys.argv[2:])"
 _TAIL_BYTES = 4096
+
+
+class RunningStep(Protocol):
+    """A step that was started."""
+
+    step: PlannedStep
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has ended."""
+        ...
+
+    def stop(self) -> None:
+        """Ask it to end, and wait for it."""
+        ...
+
+    def finish(self) -> tuple[int, str]:
+        """Return, after its end, its exit code and its last words where it did not succeed."""
+        ...
 
 
 @dataclass

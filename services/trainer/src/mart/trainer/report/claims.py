@@ -28,7 +28,12 @@ CLAIMS = (
         "A residual raises its base: r-HBC over d-HBC, rd-HBC over HBC.",
         (("r-HBC", "d-HBC"), ("rd-HBC", "HBC")),
     ),
-    Claim("apart", "Arms that have nothing to do with one another are best left apart.", (("d-HBC", "HBC"),), (paper.CUBES,)),
+    Claim(
+        "apart",
+        "Arms that have nothing to do with one another are best left apart.",
+        (("d-HBC", "HBC"),),
+        (paper.CUBES,),
+    ),
     Claim(
         "together",
         "Arms that coordinate for long are best planned together.",
@@ -41,7 +46,7 @@ CLAIMS = (
         "Taking only the planner or only the actor apart is no better than doing both or neither.",
         (("d-HBC", "dh-HBC"), ("d-HBC", "dl-HBC")),
     ),
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True)

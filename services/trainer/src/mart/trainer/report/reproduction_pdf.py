@@ -103,8 +103,8 @@ def _table_page(found: Reproduction, table: ReproducedTable) -> Figure:
     figure.text(
         _MARGIN,
         0.06,
-        f"{summary(found)}\nFirst line: best checkpoint, mean ± deviation over seeds. fresh: in worlds that had no part in "
-        "choosing, 95 % interval over seeds and worlds.",
+        f"{summary(found)}\nFirst line: best checkpoint, mean ± deviation over seeds. fresh: in worlds that had no "
+        "part in choosing, 95 % interval over seeds and worlds.",
         color=QUIET,
         fontsize=9,
     )
