@@ -86,7 +86,7 @@ class StepProcess:
 def _start(
     folder: Path, step: PlannedStep, log: IO[bytes], output: IO[bytes], environment: dict[str, str]
 ) -> subprocess.Popen[bytes]:
-    command = (sys.executable, "-c", _IN_FOLDER, folder, MART, *step.command)
+    command: tuple[str | Path, ...] = (sys.executable, "-c", _IN_FOLDER, folder, MART, *step.command)
     return start_child(command, log, environment, output=output)
 
 

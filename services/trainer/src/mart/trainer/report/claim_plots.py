@@ -65,7 +65,7 @@ def draw_held_out(axes: Axes, curves: Sequence[HeldOutCurve]) -> None:
 
 def draw_coordination(axes: Axes, rows: Sequence[Mapping[str, Any]]) -> None:
     """Draw Table I: what uncoordinated and coordinated subtasks cost, two rows for each task, hollow the paper's."""
-    labels = []
+    labels: list[str] = []
     for row in rows:
         for kind in ("uncoordinated", "coordinated"):
             at, found = len(labels), row["degradation"][kind]

@@ -164,7 +164,8 @@ def compare(run_a: Path, run_b: Path, as_json: bool) -> None:
     runs = [RunDirectory(path) for path in (run_a, run_b)]
     for run in runs:
         run.spec  # noqa: B018 - raises NotFound where it is none
-    found = compare_evaluations(*(best_scores(read_evaluations(run.evaluations)) for run in runs))
+    first, second = (best_scores(read_evaluations(run.evaluations)) for run in runs)
+    found = compare_evaluations(first, second)
     print_result(as_plain_data(found), in_lines(found), as_json)
 
 

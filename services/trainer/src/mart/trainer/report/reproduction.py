@@ -24,6 +24,10 @@ TITLES = {
 REPORTED: Mapping[str, paper.Results] = {"table2": paper.EXPERIENCED, "table3": paper.USER_STUDY}
 
 
+_DOING = {"collect": "collecting", "train": "training", "eval": "judging", "table": "counting"}
+_ENDED = {"failed": "failed", "running": "is under way, or was killed", "interrupted": "was interrupted"}
+
+
 @dataclass(frozen=True)
 class MissingCell:
     """A cell that was asked for and is not there, or not whole, and why."""
@@ -151,9 +155,10 @@ def _why(step: PlannedStep, steps: Mapping[str, PlannedStep], records: Mapping[s
     """Say what keeps a step from being done: itself, or the first of what it needs."""
     record = records.get(step.name)
     if record is not None and record.status != "done":
-        return f"{step.name}: {record.status}" + (f", {record.why}" if record.why else "")
+        why = f": {record.why}" if record.why else ""
+        return f"{_DOING[step.kind]} {_ENDED[record.status]}{why} (logs/{step.name}.log)"
     for name in step.after:
         needed = records.get(name)
         if needed is None or needed.status != "done":
             return _why(steps[name], steps, records) if name in steps else f"{name} has not begun"
-    return f"{step.name} has not begun"
+    return f"{_DOING[step.kind]} has not begun"

@@ -11,7 +11,7 @@ from mart.trainer.report import claim_plots, paper, plots
 from mart.trainer.report.claims import TestedClaim
 from mart.trainer.report.figures import as_svg, single_panel
 from mart.trainer.report.html import render_page
-from mart.trainer.report.reproduction import REPORTED, MissingCell, ReproducedTable, Reproduction
+from mart.trainer.report.reproduction import REPORTED, TITLES, MissingCell, ReproducedTable, Reproduction
 from mart.trainer.report.results import Results
 
 
@@ -42,7 +42,7 @@ def summary(found: Reproduction) -> str:
 def missing_in_words(cell: MissingCell) -> str:
     """Return which cell is missing and why."""
     where = ", ".join(filter(None, (cell.model, paper.TITLES.get(cell.task, cell.task))))
-    return f"{cell.table.replace('table', 'Table ')}: {where} – {cell.why}"
+    return f"{TITLES[cell.table].partition(':')[0]}: {where} – {cell.why}"
 
 
 def versions_of(records: Mapping[str, StepRecord]) -> list[str]:
@@ -114,12 +114,12 @@ def claim_row(one: TestedClaim) -> list[str]:
     return [
         f"{found.first} over {found.second}",
         paper.TITLES.get(one.task, one.task),
-        f"{100 * found.difference.value:+.1f} ({100 * low:+.0f} to {100 * high:+.0f})",
+        f"{_signed(found.difference.value, 1)} ({_signed(low)} to {_signed(high)})",
         p_in_words(found.p_value),
         p_in_words(found.mcnemar_p),
         f"{found.only_first} : {found.only_second}",
         f"{found.seeds} × {found.worlds}",
-        "–" if one.reported is None else f"{100 * one.reported:+.1f}",
+        "–" if one.reported is None else _signed(one.reported, 1),
     ]
 
 
@@ -198,6 +198,10 @@ def _coordination(found: Reproduction) -> str:
     with single_panel(7.2, 0.9 + 0.9 * len(found.coordination)) as (figure, axes):
         claim_plots.draw_coordination(axes, found.coordination)
         return as_svg(figure, "Episodes lost in uncoordinated and in coordinated subtasks")
+
+
+def _signed(share: float, digits: int = 0) -> str:
+    return f"{100 * share:+.{digits}f}".replace("-", "−")
 
 
 def _span(seeds: Sequence[int]) -> str:

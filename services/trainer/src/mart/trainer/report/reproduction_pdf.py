@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 from mart.trainer.report import claim_plots, paper, plots
 from mart.trainer.report.figures import LINE, QUIET, STYLE
@@ -48,22 +50,20 @@ def _pages(found: Reproduction) -> Iterator[Figure]:
                 f"{row[0]}, {row[1]}: {row[2]} points, p {row[3]} over seeds and worlds, {row[4]} of these policies"
                 for row in map(claim_row, listed)
             ]
-            yield _drawn(
-                listed[0].claim.sentence, [lambda axes, own=listed: claim_plots.draw_claim(axes, own)], words
-            )
+            yield _drawn(listed[0].claim.sentence, [partial(claim_plots.draw_claim, tested=listed)], words)
         if table.results is not None:
             results = table.results
             yield _drawn(
                 f"{table.title}: what choosing adds",
-                [lambda axes, own=results: claim_plots.draw_selection(axes, own)],
+                [partial(claim_plots.draw_selection, results=results)],
                 ["A dot a cell. On the dotted line, choosing among equal checkpoints explains all of it."],
             )
             for task in results.tasks:
                 yield _drawn(
                     paper.TITLES.get(task, task),
                     [
-                        lambda axes, own=results, name=task: plots.draw_success(axes, own, name),
-                        lambda axes, own=results, name=task: plots.draw_learning(axes, own, name),
+                        partial(plots.draw_success, results=results, task=task),
+                        partial(plots.draw_learning, results=results, task=task),
                     ],
                     [
                         "Filled: ours in fresh worlds, 95 % interval. Bar: ours, best checkpoint. Hollow: the paper."
@@ -72,7 +72,7 @@ def _pages(found: Reproduction) -> Iterator[Figure]:
     if found.coordination:
         yield _drawn(
             "Table I: what coordination costs operators",
-            [lambda axes: claim_plots.draw_coordination(axes, found.coordination)],
+            [partial(claim_plots.draw_coordination, rows=found.coordination)],
             ["Filled: ours, 95 % interval over episodes. Hollow: the paper."],
         )
     yield from _text("Missing, or not whole", [missing_in_words(cell) for cell in found.missing])
@@ -91,7 +91,7 @@ def _table_page(found: Reproduction, table: ReproducedTable) -> Figure:
         colLabels=[paper.TITLES.get(task, task) for task in tasks],
         loc="center",
         cellLoc="left",
-        bbox=[0.09, 0.0, 0.91, 1.0],
+        bbox=Bbox.from_bounds(0.09, 0.0, 0.91, 1.0),
     )
     drawn.auto_set_font_size(value=False)
     drawn.set_fontsize(9)

@@ -111,9 +111,9 @@ def _training_loop(spec: TrainingSpec, dataset: Dataset, device: torch.device) -
     networks.to(device)
     phases = training_phases(networks, sizes, has_base=spec.base is not None)
     windows = _windows(dataset, networks, _weights(dataset, spec), window_spec(model, sizes), device)
-    held_out = dataset.held_out and _windows(
-        dataset.held_out, networks, None, window_spec(model, sizes), device
-    )
+    held_out = None
+    if dataset.held_out is not None:
+        held_out = _windows(dataset.held_out, networks, None, window_spec(model, sizes), device)
     return TrainingLoop(networks, windows, phases, sizes, seeds=spec.seeds, dtype=dtype, held_out=held_out)
 
 
