@@ -33,7 +33,8 @@ def make_up(folder: Path, rates: Rates, table: str = "table2", seeds: int = 3, f
                 result=run, table=table, task=task, model=model, seeds=tuple(range(seeds)),
             )  # fmt: skip
             judge = PlannedStep(
-                name=f"judged/{table}/{task}/{model}", kind="eval", command=("eval", "--checkpoint", run), inputs=(run,),
+                name=f"judged/{table}/{task}/{model}", kind="eval", command=("eval", "--checkpoint", run),
+                inputs=(run,),
                 result=f"{run}/evaluations.jsonl", after=(run,), table=table, task=task, model=model, seeds=(0,),
             )  # fmt: skip
             steps += [train, judge]
@@ -69,12 +70,22 @@ def _evaluations(task: str, model: str, rate: float, seeds: int) -> list[Evaluat
         own = np.clip(rate + random.normal(0.0, 0.03), 0.0, 1.0)
         chosen = [
             _evaluation(
-                task, model, seed, updates, Purpose.SELECTION, 30, own * (0.7 + 0.3 * updates / 2000), random
+                task,
+                model,
+                seed,
+                updates,
+                purpose=Purpose.SELECTION,
+                number=30,
+                rate=own * (0.7 + 0.3 * updates / 2000),
+                random=random,
             )
             for updates in CHECKPOINTS
         ]
-        best = best_evaluation(chosen)
-        found += [*chosen, _evaluation(task, model, seed, best.updates, Purpose.SCORE, 100, own, random)]
+        best = best_evaluation(chosen).updates
+        score = _evaluation(
+            task, model, seed, best, purpose=Purpose.SCORE, number=100, rate=own, random=random
+        )
+        found += [*chosen, score]
     return found
 
 
@@ -83,6 +94,7 @@ def _evaluation(
     model: str,
     seed: int,
     updates: int,
+    *,
     purpose: Purpose,
     number: int,
     rate: float,

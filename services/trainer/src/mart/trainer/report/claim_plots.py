@@ -8,13 +8,13 @@ from typing import Any
 from matplotlib.axes import Axes
 
 from mart.trainer.report import paper
-from mart.trainer.report.claims import TestedClaim
+from mart.trainer.report.claims import ComparedClaim
 from mart.trainer.report.figures import ACCENT, LINE, LINES, QUIET, draw_bar, label_rows
 from mart.trainer.report.reproduction import HeldOutCurve
 from mart.trainer.report.results import Results
 
 
-def draw_claim(axes: Axes, tested: Sequence[TestedClaim]) -> None:
+def draw_claim(axes: Axes, tested: Sequence[ComparedClaim]) -> None:
     """Draw the differences of a claim's pairs, a row each: a dot with its 95 % interval, hollow the paper's."""
     for row, one in enumerate(tested):
         if one.reported is not None:
@@ -27,7 +27,7 @@ def draw_claim(axes: Axes, tested: Sequence[TestedClaim]) -> None:
     axes.set_xlabel("difference in success, percentage points")
 
 
-def claim_label(one: TestedClaim) -> str:
+def claim_label(one: ComparedClaim) -> str:
     """Return what a row of a claim is of: the pair and the task."""
     return f"{one.comparison.first} over {one.comparison.second}\n{paper.TITLES.get(one.task, one.task)}"
 

@@ -50,7 +50,7 @@ CLAIMS = (
 
 
 @dataclass(frozen=True)
-class TestedClaim:
+class ComparedClaim:
     """A pair of a claim on one task. reported: the paper's difference of best checkpoints, as a share; None without."""
 
     claim: Claim
@@ -59,14 +59,14 @@ class TestedClaim:
     reported: float | None
 
 
-def tested_claims(
+def compare_claims(
     tasks: Sequence[str],
     evaluations: Mapping[tuple[str, str], Sequence[Evaluation]],
     reported: paper.Results,
-) -> list[TestedClaim]:
+) -> list[ComparedClaim]:
     """Compare what there is of each claim's pairs. evaluations: by task and model, of one run each."""
     return [
-        TestedClaim(claim, task, comparison, _reported(reported, task, better, worse))
+        ComparedClaim(claim, task, comparison, _reported(reported, task, better, worse))
         for claim in CLAIMS
         for better, worse in claim.pairs
         for task in tasks

@@ -12,7 +12,7 @@ from mart.protocol.errors import NotFound
 from mart.runtime.step_record import Plan, PlannedStep, StepRecord, read_plan, read_records
 from mart.trainer.evaluate.evaluation import Evaluation, read_evaluations
 from mart.trainer.report import paper
-from mart.trainer.report.claims import TestedClaim, tested_claims
+from mart.trainer.report.claims import ComparedClaim, compare_claims
 from mart.trainer.report.results import Results, read_results
 from mart.trainer.train.metrics import read_held_out
 
@@ -53,7 +53,7 @@ class ReproducedTable:
 
     name: str
     results: Results | None
-    claims: Sequence[TestedClaim]
+    claims: Sequence[ComparedClaim]
     curves: Sequence[HeldOutCurve]
 
     @property
@@ -116,7 +116,7 @@ def _table(folder: Path, name: str) -> ReproducedTable:
         for path in sorted(runs.rglob("metrics.jsonl"))
         if (points := read_held_out(path))
     ]
-    return ReproducedTable(name, results, tested_claims(tasks, evaluations, REPORTED[name]), curves)
+    return ReproducedTable(name, results, compare_claims(tasks, evaluations, REPORTED[name]), curves)
 
 
 def _coordination(folder: Path, records: Mapping[str, StepRecord]) -> Sequence[Mapping[str, Any]]:

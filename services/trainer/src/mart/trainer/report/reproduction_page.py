@@ -8,7 +8,7 @@ from typing import Any
 
 from mart.runtime.step_record import StepRecord
 from mart.trainer.report import claim_plots, paper, plots
-from mart.trainer.report.claims import TestedClaim
+from mart.trainer.report.claims import ComparedClaim
 from mart.trainer.report.figures import as_svg, single_panel
 from mart.trainer.report.html import render_page
 from mart.trainer.report.reproduction import REPORTED, TITLES, MissingCell, ReproducedTable, Reproduction
@@ -108,7 +108,7 @@ def p_in_words(p_value: float) -> str:
     return "< 0.001" if p_value < 0.001 else f"{p_value:.3f}" if p_value < 0.1 else f"{p_value:.2f}"
 
 
-def claim_row(one: TestedClaim) -> list[str]:
+def claim_row(one: ComparedClaim) -> list[str]:
     """Return a tested claim as a row: pair, task, difference, p-values, pairs, the paper's difference."""
     found, (low, high) = one.comparison, one.comparison.interval
     return [
@@ -174,7 +174,7 @@ def _held_out(curves: Sequence[Any], task: str) -> str:
         return as_svg(figure, f"Held-out loss over training on {task}")
 
 
-def _claim(tested: Sequence[TestedClaim]) -> dict[str, Any]:
+def _claim(tested: Sequence[ComparedClaim]) -> dict[str, Any]:
     with single_panel(7.2, 0.9 + 0.5 * len(tested)) as (figure, axes):
         claim_plots.draw_claim(axes, tested)
         return {
