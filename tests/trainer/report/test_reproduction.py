@@ -105,3 +105,17 @@ def test_what_cannot_be_reported_is_said(half: Path, tmp_path: Path) -> None:
 )
 def test_p_values_claim_no_more_digits_than_they_have(p: float, words: str) -> None:
     assert p_in_words(p) == words
+
+
+def test_runs_of_other_arms_or_rates_are_not_compared(half: Path) -> None:
+    runs = [half / "runs" / "table2" / CUBES / model for model in ("HBC", "d-HBC")]
+    for run, control_hz in zip(runs, (20.0, 30.0), strict=True):
+        (run / "run.json").write_text(json.dumps({"model": run.name, "data": ["/d"]}))
+        (run / "data.json").write_text(json.dumps({"task": CUBES, "control_hz": control_hz}))
+    try:
+        result = CliRunner().invoke(cli, ["report", "compare", *map(str, runs)])
+    finally:
+        for run in runs:
+            (run / "data.json").unlink()
+    assert isinstance(result.exception, InvalidInput)
+    assert "30 Hz" in str(result.exception)

@@ -158,12 +158,12 @@ def compare(run_a: Path, run_b: Path, as_json: bool) -> None:
     from mart.trainer.evaluate.comparison import compare_evaluations
     from mart.trainer.evaluate.evaluation import read_evaluations
     from mart.trainer.evaluate.success_rates import best_scores
+    from mart.trainer.report.comparable_runs import require_comparable
     from mart.trainer.report.comparison_words import as_plain_data, in_lines
     from mart.trainer.train.run_directory import RunDirectory
 
     runs = [RunDirectory(path) for path in (run_a, run_b)]
-    for run in runs:
-        run.spec  # noqa: B018 - raises NotFound where it is none
+    require_comparable(runs)
     first, second = (best_scores(read_evaluations(run.evaluations)) for run in runs)
     found = compare_evaluations(first, second)
     print_result(as_plain_data(found), in_lines(found), as_json)
