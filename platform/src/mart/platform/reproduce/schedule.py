@@ -10,7 +10,7 @@ from mart.runtime.step_record import PlannedStep, StepRecord
 
 
 class StepState(StrEnum):
-    """Where a step stands. changed: what it was made from, or how, is not what it would be now."""
+    """Say where a step stands. changed: what it was made from, or how, is not what it would be now."""
 
     TODO = "to do"
     RUNNING = "running"
