@@ -12,6 +12,7 @@ from mart.operators import ToolTarget
 from mart.protocol.errors import NotFound
 from mart.protocol.pose import Pose
 from mart.sim.experts import Expert, get_skill, skill_names
+from mart.sim.experts.skill import LEVELS
 from mart.sim.world import World
 
 TASK = "two_arm_multi_cube_lifting"
@@ -60,7 +61,7 @@ def perform(world: World, seed: int, skill: str, late_ticks: int = 0, most_ticks
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("skill", skill_names())
+@pytest.mark.parametrize("skill", LEVELS)
 def test_experts_succeed_even_when_they_see_late(worlds: dict[int, World], skill: str) -> None:
     assert [perform(worlds[2], seed, skill, late_ticks=4).success for seed in range(5)] == [True] * 5
 
@@ -71,7 +72,7 @@ def test_three_experts_share_a_world(worlds: dict[int, World]) -> None:
 
 @pytest.mark.slow
 def test_experts_succeed_and_better_skill_is_faster(worlds: dict[int, World]) -> None:
-    ended = [[perform(worlds[2], seed, skill) for seed in range(5)] for skill in skill_names()]
+    ended = [[perform(worlds[2], seed, skill) for seed in range(5)] for skill in LEVELS]
     assert all(one.success for of_skill in ended for one in of_skill)
     means = [np.mean([one.ticks for one in of_skill]) for of_skill in ended]
     assert means[0] * 1.2 < means[1]

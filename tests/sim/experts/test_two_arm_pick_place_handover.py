@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from mart.protocol.pose import Pose
+from mart.sim.experts import get_skill
 from mart.sim.experts.expert import Expert
 from mart.sim.experts.perception import upright
-from mart.sim.experts.skill import get_skill
 from mart.sim.world import TaskProgress, World
 from tests.sim.tasks.driving import drive, pose_of, put, tool_over, tools
 

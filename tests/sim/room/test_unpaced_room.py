@@ -21,7 +21,7 @@ from mart.protocol.messages import (
 )
 from mart.runtime.bus.base import Handler
 from mart.runtime.bus.memory import MemoryBus, MemoryNetwork
-from mart.sim.experts import get_skill
+from mart.runtime.skill_option import parse_people
 from mart.sim.room.bus_publisher import OrderedPublisher
 from mart.sim.room.episode_state_machine import COUNTDOWN_S, ENDED_S, Terms
 from mart.sim.room.room import Room
@@ -45,7 +45,7 @@ class RoomHarness:
             "room-1", world, SavedRoom(seed=5), publisher, lambda _: None, now_s=0.0, terms=terms
         )
         self.unpaced = UnpacedRoom(self.room, publisher, self.time, on_turn=lambda: None)
-        self.unpaced.seat_scripts(world.task, get_skill(skill), seed=5)
+        self.unpaced.seat_scripts(world.task, parse_people(skill, 2), seed=5)
 
     def play(self, number: int) -> list[State]:
         """One episode; the states that are recorded of it."""

@@ -17,12 +17,12 @@ from mart.runtime.camera_option import cameras_option
 from mart.runtime.cli import cli, json_option, print_result
 from mart.runtime.rate_option import room_rate_option
 from mart.runtime.room_file import real_room_option
+from mart.runtime.skill_option import SKILL_HELP, require_people
 from mart.runtime.task_option import task_option
 
 if TYPE_CHECKING:
     from mart.platform.run.running import Platform
 
-_SKILLS = click.Choice(["expert", "average", "novice"])
 _TIME_LIMIT = click.FloatRange(0.0, 3600.0, min_open=True)
 _TASK_OPTION = task_option(DEFAULT_TASK)
 _CONTROL_HZ_OPTION = click.option(
@@ -200,7 +200,13 @@ def demo(*, task: str, episodes: int, seed: int, control_hz: float, out: Path, a
     help="Who drives each arm, separated by commas: script, or policy:PATH with the folder of a checkpoint.  "
     "[default: script for every arm]",
 )
-@click.option("--skill", default="expert", show_default=True, type=_SKILLS, help="Of the scripted experts.")
+@click.option(
+    "--skill",
+    default="expert",
+    show_default=True,
+    callback=require_people,
+    help=f"Of the scripts: {SKILL_HELP}",
+)
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0, 2**32 - 1))
 @click.option(
     "--time-limit", type=_TIME_LIMIT, help="Of an episode, seconds simulated.  [default: the task's trial]"
@@ -237,9 +243,11 @@ def collect(
     )
     from mart.platform.collect.operators import parse_operators
     from mart.platform.collect.printing import print_collected
-    from mart.protocol.tasks import arm_kinds_of
+    from mart.protocol.tasks import arm_kinds_of, get_task
+    from mart.runtime.skill_option import parse_people
 
     arm_kinds_of(task, None, arm_kinds)
+    parse_people(skill, len(get_task(task).arms))  # or InvalidInput, before anything starts
     seated = parse_operators(task, operators)
     spec = CollectionSpec(
         task, episodes, skill, seed, control_hz, out, seated, time_limit, arm_kinds=arm_kinds

@@ -282,14 +282,16 @@ class SeatRequest(_message.Message):
         holder_id: str
         def __init__(self, arm: _Optional[str] = ..., holder_id: _Optional[str] = ...) -> None: ...
     class Assign(_message.Message):
-        __slots__ = ("arm", "operator", "policy")
+        __slots__ = ("arm", "operator", "policy", "name")
         ARM_FIELD_NUMBER: _ClassVar[int]
         OPERATOR_FIELD_NUMBER: _ClassVar[int]
         POLICY_FIELD_NUMBER: _ClassVar[int]
+        NAME_FIELD_NUMBER: _ClassVar[int]
         arm: str
         operator: _command_pb2.Operator
         policy: str
-        def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., policy: _Optional[str] = ...) -> None: ...
+        name: str
+        def __init__(self, arm: _Optional[str] = ..., operator: _Optional[_Union[_command_pb2.Operator, str]] = ..., policy: _Optional[str] = ..., name: _Optional[str] = ...) -> None: ...
     class HandBack(_message.Message):
         __slots__ = ("arm", "holder_id")
         ARM_FIELD_NUMBER: _ClassVar[int]

@@ -32,20 +32,21 @@ def start_child(
     environment: Mapping[str, str],
     *,
     piped: bool = False,
+    output: IO[bytes] | None = None,
     death_signal: signal.Signals = signal.SIGKILL,
 ) -> subprocess.Popen[bytes]:
     """Start a command that dies with this process, in a process group of its own.
 
     environment: goes on top of ours. log: takes its output; where it is `piped`, standard input and output are pipes
-    and only errors go there. death_signal: what it is sent when this process dies; one that has something to put in
-    order gets SIGTERM.
+    and only errors go there. output: takes standard output in place of the log. death_signal: what it is sent when this
+    process dies; one that has something to put in order gets SIGTERM.
     """
     bound = [sys.executable, "-m", __name__, str(os.getpid()), str(int(death_signal)), *map(str, command)]
     return subprocess.Popen(  # noqa: S603 - our own command, from our own environment
         bound,
         env={**os.environ, **environment},
         stdin=subprocess.PIPE if piped else subprocess.DEVNULL,
-        stdout=subprocess.PIPE if piped else log,
+        stdout=subprocess.PIPE if piped else output or log,
         stderr=log,
         start_new_session=True,
     )

@@ -32,7 +32,7 @@ json_option = click.option(
 _PURPOSES = {
     "A session": ("run", "tasks", "arms", "driver", "stop", "doctor", "rooms", "ar-phone", "demo"),
     "Episodes": ("collect", "multiply", "episodes", "datasets"),
-    "Policies": ("train", "eval", "report", "jobs", "operate"),
+    "Policies": ("train", "eval", "report", "reproduce", "jobs", "operate"),
     "Services, which `mart run` starts": (
         *("router", "sim", "replica", "experts", "gateway", "phone", "recorder", "catalogue", "web"),
         *("trainer", "policies", "camera", "alive", "certificates"),

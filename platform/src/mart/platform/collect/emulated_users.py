@@ -21,8 +21,10 @@ from mart.platform.run.running import Platform
 from mart.protocol import clock
 from mart.protocol.errors import Forbidden, Unavailable
 from mart.protocol.messages import OPERATOR_POLICY, RoomStatus
+from mart.protocol.tasks import get_task
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.child_process import MART, start_child, stop_child
+from mart.runtime.skill_option import parse_people
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -41,7 +43,11 @@ class EmulatedUser:
 
 @dataclass(frozen=True)
 class EmulatedUsers:
-    """Seat emulated people. `skill` and `seed` are the scripts'; each one's seed is this plus the seat's number."""
+    """Seat emulated people.
+
+    skill: of all, or one for each of the task's arms (`mart.runtime.skill_option`). seed: each one's is this plus the
+    seat's number.
+    """
 
     platform: Platform
     skill: str
@@ -81,7 +87,9 @@ class EmulatedUsers:
     @contextlib.contextmanager
     def _person(self, number: int, arm: str) -> Iterator[EmulatedUser]:
         platform, room = self.platform, self.platform.options.room
-        name = _NAMES[number % len(_NAMES)]
+        task = get_task(platform.options.task)
+        person = parse_people(self.skill, len(task.arms))[task.arm_names.index(arm)]
+        name = person.name or _NAMES[number % len(_NAMES)]
         with contextlib.ExitStack() as stack:
             web_client = stack.enter_context(
                 contextlib.closing(WebClient(platform.url, platform.certificate))
@@ -101,7 +109,7 @@ class EmulatedUsers:
                 arm,
                 "--intent",
                 "--skill",
-                self.skill,
+                person.skill,
                 "--seed",
                 seed,
             ]

@@ -15,6 +15,7 @@ from mart.runtime.camera_option import cameras_option
 from mart.runtime.cli import json_option, print_result
 from mart.runtime.progress import progress
 from mart.runtime.rate_option import room_rate_option
+from mart.runtime.skill_option import SKILL_HELP, SKILLS
 from mart.runtime.task_option import task_option
 from mart.sim.settings import ExpertsSettings, ReplicaSettings, SimSettings
 
@@ -49,7 +50,7 @@ def _given(**options: Any) -> dict[str, Any]:
     "--course-required", is_flag=True, default=None, help="Only who has passed the practice course records."
 )
 @click.option("--lockstep", is_flag=True, default=None, help="Scripts drive every arm, as fast as possible.")
-@click.option("--skill", help="Of the scripts that drive here, kept in the files: expert, average or novice.")
+@click.option("--skill", help=f"Of the scripts that drive here, kept in the files: {SKILL_HELP}")
 def sim(*, cameras: Mapping[str, str], **options: Any) -> None:
     """Run a room: one shared world that advances when every operator has given a new command."""
     from mart.sim.room.serving import serve_room
@@ -65,7 +66,7 @@ def sim(*, cameras: Mapping[str, str], **options: Any) -> None:
 @click.option("--room", help="Only this room.  [default: every room]")
 @click.option("--arm", help="Only this arm.  [default: every arm]")
 @click.option("--intent", is_flag=True, default=None, help="Lead an emulated phone, whoever holds the seat.")
-@click.option("--skill", help="expert, average or novice.  [default: expert]")
+@click.option("--skill", help=f"{', '.join(SKILLS)}.  [default: expert]")
 @click.option("--seed", type=int, help="Decides timing and tremor.  [default: 0]")
 def experts(**options: Any) -> None:
     """Drive every seat that is set to script, each from what its arm's operator sees."""

@@ -10,6 +10,7 @@ from pydantic import Field, field_validator
 from mart.protocol.control_rate import MAX_CONTROL_HZ, MIN_CONTROL_HZ
 from mart.runtime.rate_option import AUTO
 from mart.runtime.settings import Settings
+from mart.runtime.skill_option import SKILL_HELP, SKILLS
 
 DEFAULT_TASK = "two_arm_multi_cube_lifting"
 
@@ -57,7 +58,7 @@ class SimSettings(_WorldSettings):
     )
     lockstep: bool = Field(False, description="Scripts drive every arm, as fast as the machine allows.")
     skill: str | None = Field(
-        None, description="Of the scripts that drive here, told in files: expert, average or novice."
+        None, description=f"Of the scripts that drive here, told in files: {SKILL_HELP}"
     )
 
     quality: Literal["fast", "full"] = Field(
@@ -88,7 +89,7 @@ class ExpertsSettings(Settings):
     room: str | None = Field(None, description="Only this room; default: every room.")
     arm: str | None = Field(None, description="Only this arm; default: every arm.")
     intent: bool = Field(False, description="Publish intents for an emulated phone instead of commands.")
-    skill: str = Field("expert", description="expert, average or novice.")
+    skill: str = Field("expert", description=f"{', '.join(SKILLS)}.")
     seed: int = Field(0, ge=0, description="Decides timing and tremor.")
 
     @property

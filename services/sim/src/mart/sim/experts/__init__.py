@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from mart.sim.experts.expert import Expert
+from mart.sim.experts.people import get_skill, skill_names
 from mart.sim.experts.scripted_operator import ScriptedOperator
-from mart.sim.experts.skill import Skill, get_skill, skill_names
+from mart.sim.experts.skill import Skill
 
 __all__ = ["Expert", "ScriptedOperator", "Skill", "get_skill", "skill_names"]

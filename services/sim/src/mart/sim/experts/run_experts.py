@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mart.sim.experts.expert import Expert
-from mart.sim.experts.skill import get_skill
+from mart.sim.experts.people import get_skill
 from mart.sim.world import TaskProgress, World
 
 

@@ -13,6 +13,7 @@ from mart.protocol.messages import CUE_COME_CLOSER, CUE_GO, CUE_LET_GO, Cue
 from mart.protocol.tasks import Task
 from mart.sim.experts.expert import Expert
 from mart.sim.experts.skill import Skill
+from mart.sim.experts.tempers import practised
 
 
 class ScriptedOperator(Operator):
@@ -36,7 +37,7 @@ class ScriptedOperator(Operator):
     def begin(self, episode: int) -> None:
         """Start a new expert that was told nothing; see `Operator.begin`."""
         random = np.random.default_rng((self._seed, self._index, episode))
-        self._expert = Expert(self._task, self._arm, self._skill, random)
+        self._expert = Expert(self._task, self._arm, practised(self._skill, episode), random)
         self._forget()
 
     def on_cue(self, cue: Cue, arm: str) -> None:

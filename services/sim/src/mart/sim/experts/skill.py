@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mart.protocol.errors import NotFound
-
 
 @dataclass(frozen=True, kw_only=True)
 class Skill:
@@ -33,7 +31,7 @@ class Skill:
     pause_s: float
 
 
-_SKILLS = {
+LEVELS = {
     skill.name: skill
     for skill in (
         Skill(
@@ -89,15 +87,3 @@ _SKILLS = {
         ),
     )
 }
-
-
-def skill_names() -> tuple[str, ...]:
-    """Return the names of the skills, the best first."""
-    return tuple(_SKILLS)
-
-
-def get_skill(name: str) -> Skill:
-    """Return the skill of this name; raises NotFound with the names that exist."""
-    if name not in _SKILLS:
-        raise NotFound.named("skill", name, _SKILLS)
-    return _SKILLS[name]

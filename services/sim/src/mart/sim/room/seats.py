@@ -127,7 +127,8 @@ class SeatTable:
             case "release":
                 return self.release(request.release.arm, request.release.holder_id)
             case "assign":
-                return self.assign(request.assign.arm, request.assign.operator, request.assign.policy)
+                wanted = request.assign
+                return self.assign(wanted.arm, wanted.operator, wanted.policy, name=wanted.name)
             case "hand_back":
                 return self.hand_back(request.hand_back.arm, request.hand_back.holder_id)
             case "free":
@@ -174,8 +175,8 @@ class SeatTable:
         self._require_holder(seat, holder_id)
         return self._change(seat, NOBODY)
 
-    def assign(self, arm: str, operator: Operator, policy: str = "") -> SeatHolder:
-        """Set a seat that no human holds to script, hold or a promoted policy.
+    def assign(self, arm: str, operator: Operator, policy: str = "", *, name: str = "") -> SeatHolder:
+        """Set a seat that no human holds to script, hold or a promoted policy. name: of a script, for files.
 
         Raises SeatTaken, InvalidInput or NotFound.
         """
@@ -192,7 +193,9 @@ class SeatTable:
             raise InvalidInput(
                 f"{policy[:80]!r} cannot name a promoted policy; use 1 to 64 lower-case letters, digits, '-' or '_'."
             )
-        driver = SeatOperator(operator, name=policy, policy=policy)
+        if name:
+            require_name(name)
+        driver = SeatOperator(operator, name=policy or name, policy=policy)
         return seat if seat.driver == driver else self._change(seat, driver)
 
     def free(self, arm: str) -> SeatHolder:

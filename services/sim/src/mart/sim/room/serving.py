@@ -20,9 +20,9 @@ from mart.protocol.vocabulary import OperatorKind, ServiceKind
 from mart.runtime.bus import Bus, Closable
 from mart.runtime.decoding_subscriber import DecodingSubscriber
 from mart.runtime.service import announced, connected
+from mart.runtime.skill_option import parse_people
 from mart.runtime.throttled_log import ThrottledLog
 from mart.runtime.watchdog import Watchdog
-from mart.sim.experts import Skill, get_skill
 from mart.sim.room import saved_room
 from mart.sim.room.automatic_rate import AutomaticRate
 from mart.sim.room.bus_drivers import BusDrivers
@@ -64,7 +64,6 @@ def serve_room(settings: SimSettings) -> None:
         episodes=settings.episodes or 0,
         lockstep=settings.lockstep,
     )
-    skill = get_skill(settings.skill) if settings.skill else None
     world = World.build(
         settings.task, settings.control_hz or DEFAULT_CONTROL_HZ, settings.arms, kinds=_arm_kinds(settings)
     )
@@ -74,7 +73,7 @@ def serve_room(settings: SimSettings) -> None:
     if settings.drivers:
         serve_driven(settings, world)
     elif settings.lockstep:
-        serve_unpaced(settings, world, skill or get_skill(DEFAULT_SKILL))
+        serve_unpaced(settings, world, settings.skill or DEFAULT_SKILL)
     else:
         serve_world(settings, world)
 
@@ -146,13 +145,14 @@ def serve_world(settings: SimSettings, world: World, drivers: BusDrivers | None 
             executor.run(service.stop)
 
 
-def serve_unpaced(settings: SimSettings, world: World, skill: Skill) -> None:
-    """Serve the same room on simulated time, with its scripts."""
+def serve_unpaced(settings: SimSettings, world: World, skill: str) -> None:
+    """Serve the same room on simulated time, with its scripts. skill: of all of them, or one for each arm."""
+    people = parse_people(skill, len(world.arms))
     with connected(settings, ServiceKind.SIM, settings.room) as service, contextlib.ExitStack() as opened:
         work_queue, garbled, time = WorkQueue(), Counter[str](), SimulatedTime()
         publisher = OrderedPublisher(service.bus, settings.room, world.arms)
         opened.enter_context(contextlib.closing(publisher))
-        terms = Terms(lockstep=True, skill=skill.name, time_limit_s=settings.time_limit_s)
+        terms = Terms(lockstep=True, skill=skill, time_limit_s=settings.time_limit_s)
         room = Room(
             settings.room,
             world,
@@ -176,7 +176,7 @@ def serve_unpaced(settings: SimSettings, world: World, skill: Skill) -> None:
         opened.enter_context(contextlib.closing(server))
         watchdog = Watchdog(f"The room {settings.room}")
         unpaced = UnpacedRoom(room, publisher, time, on_turn=watchdog.feed)
-        unpaced.seat_scripts(world.task, skill, settings.seed or 0)
+        unpaced.seat_scripts(world.task, people, settings.seed or 0)
         opened.enter_context(announced(service))
         gc.freeze()
         with watchdog:

@@ -11,15 +11,16 @@ from __future__ import annotations
 import logging
 import threading
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from mart.operators.commander import SeatCommander
 from mart.operators.driver import REPEAT_S
 from mart.protocol import clock, codec
 from mart.protocol.messages import OPERATOR_SCRIPT, SeatRequest, raise_error
 from mart.protocol.tasks import Task
+from mart.runtime.skill_option import ScriptedPerson
 from mart.runtime.throttled_log import ThrottledLog
-from mart.sim.experts import ScriptedOperator, Skill
+from mart.sim.experts import ScriptedOperator, get_skill
 from mart.sim.room.bus_publisher import OrderedPublisher
 from mart.sim.room.room import Room
 from mart.sim.room.room_publisher import STATUS_S
@@ -53,13 +54,13 @@ class UnpacedRoom:
         self._commanders: list[SeatCommander] = []
         self._act_s = time.now_s()
 
-    def seat_scripts(self, task: Task, skill: Skill, seed: int) -> None:
-        """Put a script of this skill on every seat."""
-        for arm in task.arm_names:
-            assign = SeatRequest.Assign(arm=arm, operator=OPERATOR_SCRIPT)
+    def seat_scripts(self, task: Task, people: Sequence[ScriptedPerson], seed: int) -> None:
+        """Put a script on every seat: one person for each of the task's arms. Raises NotFound for an unknown skill."""
+        for arm, person in zip(task.arm_names, people, strict=True):
+            assign = SeatRequest.Assign(arm=arm, operator=OPERATOR_SCRIPT, name=person.name)
             reply = self._room.answer_seat(SeatRequest(assign=assign), self._time.now_s())
             raise_error(reply.error)
-            operator = ScriptedOperator(task, arm, skill, seed)
+            operator = ScriptedOperator(task, arm, get_skill(person.skill), seed)
             commander = SeatCommander(operator, task, (arm,), OPERATOR_SCRIPT)
             commander.seat({arm: reply.seat.epoch})
             self._commanders.append(commander)

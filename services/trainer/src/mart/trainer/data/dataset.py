@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import logging
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -32,7 +32,7 @@ class UsedEpisode(BaseModel):
     """One episode that was learned from.
 
     ticks: at the data set's rate, of what is left. recorded_hz: None where it was not noted. edits: what people changed
-    of it, as labels say it.
+    of it, as labels say it. held_out: it was not learned from, only measured on.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -45,6 +45,7 @@ class UsedEpisode(BaseModel):
     operators: tuple[str, ...]
     recorded_hz: float | None = None
     edits: str = ""
+    held_out: bool = False
 
 
 class DataDigest(BaseModel):
@@ -72,6 +73,7 @@ class Dataset:
 
     observations: float32[rows, layout.width], actions: float32[rows, arms, 7], sources: int8[rows, arms],
     ends: int64[rows], the row of the last state of the same episode, or of the same segment where it was edited.
+    held_out: episodes that are not among these, to measure on; None where nothing is held out.
     """
 
     digest: DataDigest
@@ -80,6 +82,7 @@ class Dataset:
     actions: NDArray[np.float32]
     sources: NDArray[np.int8]
     ends: NDArray[np.int64]
+    held_out: Dataset | None = None
 
     @property
     def starts(self) -> NDArray[np.int64]:
@@ -93,12 +96,15 @@ def load_dataset(
     cache: Path | None = None,
     dataset: DataSetName | None = None,
     control_hz: float | None = None,
+    *,
+    held_out: float = 0.0,
 ) -> Dataset:
     """Read what `selection` takes of the episode files in `paths`.
 
     cache: a folder of episodes that were read before; None reads every file.
     dataset: whose files `paths` are; what of it is dropped, discarded or missing is left out and said.
     control_hz: the rate to learn at, at most that of every episode (`mart.episodes.resampling`); None: their own.
+    held_out: share of the episodes, by their hashes, that is not learned from; at least one where it is above 0.
     A file that cannot be read is left out, and the log says so.
     Raises NotFound, Corrupt or InvalidInput: missing paths, nothing but damaged files, several tasks or numbers of
     arms, several rates where none was asked for, missing arms or observations, NaN, or nothing left to learn from.
@@ -113,20 +119,43 @@ def load_dataset(
     task, recorded_hz = _facts(chosen[0])
     read = _read(chosen, task, control_hz, selection.skip_idle_s, cache)
     chosen = [one.episode for one in read]
+    kept_back = hashes_held_out([one.sha256 for one in read], held_out)
+    learned = [one for one in read if one.sha256 not in kept_back]
     digest = DataDigest(
         task=task.name,
         control_hz=control_hz or recorded_hz,
         arms=task.arm_names,
         arm_kinds=task.arm_kinds,
         selection=selection,
-        episodes=tuple(map(_used, read)),
-        ticks=sum(one.ticks for one in read),
+        episodes=tuple(_used(one, held_out=one.sha256 in kept_back) for one in read),
+        ticks=sum(one.ticks for one in learned),
         sha256=hashlib.sha256(
             "".join(f"{one.sha256}{one.episode.edits}" for one in read).encode()
         ).hexdigest(),
         dataset=account(dataset, given, found, chosen, selection) if dataset else None,
     )
-    return join(digest, ObservationLayout.of(task), [segment for one in read for segment in one.segments])
+    layout = ObservationLayout.of(task)
+    data = join(digest, layout, [segment for one in learned for segment in one.segments])
+    if not kept_back:
+        return data
+    unseen = [segment for one in read if one.sha256 in kept_back for segment in one.segments]
+    return replace(data, held_out=join(digest, layout, unseen))
+
+
+def hashes_held_out(hashes: Sequence[str], share: float) -> frozenset[str]:
+    """Return which of these episodes are held out: by their hashes, so that order and folders do not matter.
+
+    Raises InvalidInput where an episode cannot be spared.
+    """
+    if share == 0.0:
+        return frozenset()
+    different = sorted(set(hashes))
+    if len(different) < 2:
+        raise InvalidInput(
+            f"Of {len(different)} episodes none can be held out; give two or more, or --held-out 0."
+        )
+    count = min(max(1, round(share * len(different))), len(different) - 1)
+    return frozenset(different[:count])
 
 
 @dataclass(frozen=True)
@@ -188,7 +217,7 @@ def _facts(first: LabelledEpisode) -> tuple[Task, float]:
     return first.recorded_task(), first.control_hz
 
 
-def _used(read: _ReadEpisode) -> UsedEpisode:
+def _used(read: _ReadEpisode, *, held_out: bool) -> UsedEpisode:
     one = read.episode
     return UsedEpisode(
         path=str(one.file_path),
@@ -199,6 +228,7 @@ def _used(read: _ReadEpisode) -> UsedEpisode:
         operators=tuple(sorted({f"{shift.operator} {shift.name}".rstrip() for shift in one.shifts})),
         recorded_hz=one.control_hz,
         edits=str(one.edits),
+        held_out=held_out,
     )
 
 

@@ -31,9 +31,7 @@ def success_rates(evaluations: Iterable[Evaluation]) -> SuccessRates | None:
     chosen = [best_evaluation(own) for own in _by_seed(found, Purpose.SELECTION)]
     if not chosen:
         return None
-    keys = {(choice.seed, choice.updates) for choice in chosen}
-    scored = [own[-1] for own in _by_seed([f for f in found if (f.seed, f.updates) in keys], Purpose.SCORE)]
-    rates = [score.rate for score in scored]
+    rates = [score.rate for score in best_scores(found)]
     return SuccessRates(
         seeds=tuple(choice.seed for choice in chosen),
         episodes=len(chosen[0].played),
@@ -41,6 +39,14 @@ def success_rates(evaluations: Iterable[Evaluation]) -> SuccessRates | None:
         honest=Spread.of([rate.value for rate in rates]) if rates else None,
         pooled=Rate(sum(rate.hits for rate in rates), sum(rate.trials for rate in rates)) if rates else None,
     )
+
+
+def best_scores(evaluations: Iterable[Evaluation]) -> list[Evaluation]:
+    """Return the newest score in fresh worlds of each seed's best checkpoint, of the seeds that have one."""
+    found = list(evaluations)
+    chosen = [best_evaluation(own) for own in _by_seed(found, Purpose.SELECTION)]
+    keys = {(choice.seed, choice.updates) for choice in chosen}
+    return [own[-1] for own in _by_seed([f for f in found if (f.seed, f.updates) in keys], Purpose.SCORE)]
 
 
 def _by_seed(evaluations: Sequence[Evaluation], purpose: Purpose) -> list[list[Evaluation]]:

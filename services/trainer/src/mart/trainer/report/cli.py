@@ -12,6 +12,8 @@ from mart.runtime.cli import json_option, print_result
 if TYPE_CHECKING:
     from mart.trainer.report import paper
 
+_MISSING_TOLD = 8
+
 _folder = click.argument("folder", type=click.Path(path_type=Path, exists=True, file_okay=False))
 _page = click.option(
     "--html", type=click.Path(path_type=Path, dir_okay=False), help="Also write a page here."
@@ -121,6 +123,50 @@ def quality(paths: tuple[Path, ...], task: str, by: str, out: Path | None, as_js
         save(out, quality_page(found))
         text += f"\n\nThe page is {out}."
     print_result(measured.as_json(found, by), text, as_json)
+
+
+@report.command("paper")
+@_folder
+@json_option
+def reproduction(folder: Path, as_json: bool) -> None:
+    """The report of `mart reproduce` in FOLDER, however far that has come: HTML, PDF and CSV in FOLDER/report."""
+    from mart.trainer.report.html import save
+    from mart.trainer.report.reproduction import read_reproduction
+    from mart.trainer.report.reproduction_page import missing_in_words, reproduction_page, summary
+    from mart.trainer.report.reproduction_pdf import write_pdf
+    from mart.trainer.report.reproduction_tables import write_tables
+
+    found = read_reproduction(folder)
+    out = folder / "report"
+    save(out / "index.html", reproduction_page(found))
+    write_pdf(out / "report.pdf", found)
+    paths = [out / "index.html", out / "report.pdf", *write_tables(out, found)]
+    missing = [missing_in_words(cell) for cell in found.missing]
+    text = [summary(found), *missing[:_MISSING_TOLD]]
+    if len(missing) > _MISSING_TOLD:
+        text.append(f"… and {len(missing) - _MISSING_TOLD} more; the page lists all.")
+    text.append(f"The report is {paths[0]}, and report.pdf and three tables beside it.")
+    print_result({"missing": missing, "files": [str(path) for path in paths]}, "\n".join(text), as_json)
+
+
+@report.command()
+@click.argument("run_a", type=click.Path(path_type=Path, exists=True, file_okay=False))
+@click.argument("run_b", type=click.Path(path_type=Path, exists=True, file_okay=False))
+@json_option
+def compare(run_a: Path, run_b: Path, as_json: bool) -> None:
+    """Two judged runs of one task, pair by pair: the same seeds in the same fresh worlds."""
+    from mart.trainer.evaluate.comparison import compare_evaluations
+    from mart.trainer.evaluate.evaluation import read_evaluations
+    from mart.trainer.evaluate.success_rates import best_scores
+    from mart.trainer.report.comparable_runs import require_comparable
+    from mart.trainer.report.comparison_words import as_plain_data, in_lines
+    from mart.trainer.train.run_directory import RunDirectory
+
+    runs = [RunDirectory(path) for path in (run_a, run_b)]
+    require_comparable(runs)
+    first, second = (best_scores(read_evaluations(run.evaluations)) for run in runs)
+    found = compare_evaluations(first, second)
+    print_result(as_plain_data(found), in_lines(found), as_json)
 
 
 def _table(title: str, folder: Path, reported: paper.Results, html: Path | None, *, as_json: bool) -> None:

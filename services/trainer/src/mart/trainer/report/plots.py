@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import io
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from pathlib import Path
+from collections.abc import Sequence
 from typing import Any
 
 import matplotlib as mpl
@@ -17,52 +14,67 @@ from mart.episodes.quality.outliers import JUDGED
 from mart.protocol.tasks import Arm
 from mart.trainer.report.coupling import Coupling
 from mart.trainer.report.dependence import BINS
+from mart.trainer.report.figures import (
+    ACCENT,
+    LINE,
+    LINES,
+    QUIET,
+    STYLE,
+    as_svg,
+    draw_bar,
+    label_rows,
+    single_panel,
+    stacked_panels,
+)
 from mart.trainer.report.results import Results
 
-_QUIET, _LINE, _ACCENT = "#6b7280", "#d8dbe0", "#0072B2"  # as in calm.mplstyle and the pages
-_STYLE = Path(__file__).with_name("calm.mplstyle")
 _MIDDLES = [100 * (i + 0.5) / BINS for i in range(BINS)]  # of the parts of an episode, in per cent
 _MARKERS = {"circle": "o", "square": "s", "triangle": "^", "diamond": "D"}  # of an arm's symbol
-# Of lines that differ in kind: Okabe and Ito's colours, each with a dash of its own.
-_LINES = (
-    ("#0072B2", "-"), ("#D55E00", "-"), ("#009E73", "-"), ("#CC79A7", "-"), ("#0072B2", "--"), ("#D55E00", "--"),
-    ("#009E73", "--"), ("#CC79A7", "--"),
-)  # fmt: skip
 
 
 def success(results: Results, task: str) -> str:
     """Draw ours in fresh worlds with its interval, ours by the paper's protocol, and the paper's; a row a model."""
+    with single_panel(5.4, 0.9 + 0.36 * len(results.models(task))) as (figure, axes):
+        draw_success(axes, results, task)
+        return as_svg(figure, f"Success of each model on {task}")
+
+
+def draw_success(axes: Axes, results: Results, task: str) -> None:
+    """Draw what `success` does into axes."""
     models = results.models(task)
-    with _figure(5.4, 0.9 + 0.36 * len(models)) as (figure, axes):
-        for row, model in enumerate(models):
-            judged, reported = results.cells[task][model].rates, results.paper(model, task)
-            if reported is not None:
-                _bar(axes, row + 0.16, reported.mean, (reported.deviation, reported.deviation), filled=False)
-            axes.plot(100 * judged.paper.mean, row, "|", color=_ACCENT, markersize=10, markeredgewidth=1.5)
-            if judged.honest is not None and judged.pooled is not None:
-                low, high = judged.pooled.interval
-                mean = judged.pooled.value
-                _bar(axes, row, 100 * mean, (100 * (mean - low), 100 * (high - mean)), filled=True)
-        _rows(axes, models)
-        axes.set_xlim(-3, 103)
-        axes.set_xlabel("success, %")
-        return _svg(figure, f"Success of each model on {task}")
+    for row, model in enumerate(models):
+        cell, reported = results.cells[task][model], results.paper(model, task)
+        judged, interval = cell.rates, cell.fresh_interval
+        if reported is not None:
+            draw_bar(axes, row + 0.16, reported.mean, (reported.deviation, reported.deviation), filled=False)
+        axes.plot(100 * judged.paper.mean, row, "|", color=ACCENT, markersize=10, markeredgewidth=1.5)
+        if judged.pooled is not None and interval is not None:
+            mean = judged.pooled.value
+            draw_bar(
+                axes, row, 100 * mean, (100 * (mean - interval[0]), 100 * (interval[1] - mean)), filled=True
+            )
+    label_rows(axes, models)
+    axes.set_xlim(-3, 103)
+    axes.set_xlabel("success, %")
 
 
 def learning(results: Results, task: str) -> str:
     """Draw the success of checkpoints over training, a line a model."""
-    with _figure(5.4, 3.2) as (figure, axes):
-        for (color, dash), model in zip(_LINES, results.models(task), strict=False):
-            curve = results.cells[task][model].learning_curve
-            axes.plot(
-                [u for u, _ in curve], [100 * rate for _, rate in curve], dash, color=color, label=model
-            )
-        axes.set_ylim(-3, 103)
-        axes.set_xlabel("updates")
-        axes.set_ylabel("success, %")
-        axes.grid(axis="y")
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-        return _svg(figure, f"Success over training on {task}")
+    with single_panel(5.4, 3.2) as (figure, axes):
+        draw_learning(axes, results, task)
+        return as_svg(figure, f"Success over training on {task}")
+
+
+def draw_learning(axes: Axes, results: Results, task: str) -> None:
+    """Draw what `learning` does into axes."""
+    for (color, dash), model in zip(LINES, results.models(task), strict=False):
+        curve = results.cells[task][model].learning_curve
+        axes.plot([u for u, _ in curve], [100 * rate for _, rate in curve], dash, color=color, label=model)
+    axes.set_ylim(-3, 103)
+    axes.set_xlabel("updates")
+    axes.set_ylabel("success, %")
+    axes.grid(axis="y")
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
 def dependences(coupling: Coupling, limits_percent: tuple[float, float]) -> str:
@@ -71,14 +83,14 @@ def dependences(coupling: Coupling, limits_percent: tuple[float, float]) -> str:
     Equal limits compare tasks.
     """
     used = coupling.reliance
-    with _panels(7.2, (3.0, 2.0) if used else (3.2,)) as (figure, panels):
+    with stacked_panels(7.2, (3.0, 2.0) if used else (3.2,)) as (figure, panels):
         need = panels[0]
         for arm, own in coupling.found.items():
             need.fill_between(
                 _MIDDLES, 100 * own.low, 100 * own.high, color=arm.color, alpha=0.12, linewidth=0
             )
             need.plot(_MIDDLES, 100 * own.score, label=arm.name, **_line(arm))
-        need.axhline(0, color=_LINE, linewidth=1, zorder=0)
+        need.axhline(0, color=LINE, linewidth=1, zorder=0)
         need.set_ylim(*limits_percent)
         need.set_ylabel("error that knowing\nthe others removes, %")
         need.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
@@ -91,7 +103,7 @@ def dependences(coupling: Coupling, limits_percent: tuple[float, float]) -> str:
             panel.set_ylabel("what the model\ntakes from them, %")
         panels[-1].set_xlim(0, 100)
         panels[-1].set_xlabel("share of the episode, %")
-        return _svg(figure, f"Dependence on the other arms over an episode of {coupling.task.title}")
+        return as_svg(figure, f"Dependence on the other arms over an episode of {coupling.task.title}")
 
 
 def ranges(groups: Sequence[ComparedGroup], task: str) -> str:
@@ -99,7 +111,7 @@ def ranges(groups: Sequence[ComparedGroup], task: str) -> str:
     names = [name for name in COMPARED if _varies(groups, name)] or [*COMPARED[:1]]
     columns = 4
     down = -(-len(names) // columns)
-    with mpl.rc_context(fname=_STYLE):
+    with mpl.rc_context(fname=STYLE):
         figure = Figure(figsize=(10.8, down * (0.9 + 0.3 * len(groups))), layout="constrained")
         panels = figure.subplots(down, columns, sharey=True, squeeze=False).flat
         for panel, name in zip(panels, names, strict=False):
@@ -108,12 +120,12 @@ def ranges(groups: Sequence[ComparedGroup], task: str) -> str:
                 if name in group.ranges:
                     found = group.ranges[name]
                     reach = (scale * (found.median - found.low), scale * (found.high - found.median))
-                    _bar(panel, row, scale * found.median, reach, filled=True)
-            _rows(panel, [group.name for group in groups])
+                    draw_bar(panel, row, scale * found.median, reach, filled=True)
+            label_rows(panel, [group.name for group in groups])
             panel.set_xlabel(judged_name(name))
         for panel in figure.axes[len(names) :]:
             panel.set_visible(False)
-        return _svg(figure, f"Measures of {task}, a row for each group; the table below has the numbers")
+        return as_svg(figure, f"Measures of {task}, a row for each group; the table below has the numbers")
 
 
 def _varies(groups: Sequence[ComparedGroup], name: str) -> bool:
@@ -133,7 +145,7 @@ def _line(arm: Arm) -> dict[str, Any]:
 
 def _event(axes: Axes, name: str, at: float, *, solid: bool) -> None:
     """Draw an upright line with its name on top."""
-    axes.axvline(at, color=_QUIET, linewidth=0.8, linestyle="-" if solid else (0, (1, 3)))
+    axes.axvline(at, color=QUIET, linewidth=0.8, linestyle="-" if solid else (0, (1, 3)))
     axes.annotate(
         name,
         (at, 1.0),
@@ -142,46 +154,5 @@ def _event(axes: Axes, name: str, at: float, *, solid: bool) -> None:
         textcoords="offset points",
         rotation=30,
         fontsize=9,
-        color=_QUIET,
+        color=QUIET,
     )
-
-
-def _bar(axes: Axes, row: float, value: float, reach: tuple[float, float], *, filled: bool) -> None:
-    """Draw a dot and how far it may be off, below and above: filled for ours, hollow for the paper's."""
-    color = _ACCENT if filled else _QUIET
-    axes.plot([value - reach[0], value + reach[1]], [row, row], color=color, linewidth=1.2)
-    axes.plot(value, row, "o", color=color, markerfacecolor=color if filled else "white", markersize=6)
-
-
-def _rows(axes: Axes, labels: Sequence[str]) -> None:
-    axes.set_yticks(range(len(labels)), labels)
-    axes.set_ylim(len(labels) - 0.4, -0.6)
-    axes.spines["left"].set_visible(False)
-    axes.grid(axis="x")
-    axes.set_axisbelow(True)
-
-
-@contextmanager
-def _figure(width_in: float, height_in: float) -> Iterator[tuple[Figure, Axes]]:
-    with _panels(width_in, (height_in,)) as (figure, (axes,)):
-        yield figure, axes
-
-
-@contextmanager
-def _panels(width_in: float, heights_in: Sequence[float]) -> Iterator[tuple[Figure, list[Axes]]]:
-    """Give panels, one above the other, with the same x."""
-    with mpl.rc_context(fname=_STYLE):
-        figure = Figure(figsize=(width_in, sum(heights_in)), layout="constrained")
-        panels = figure.subplots(
-            len(heights_in), sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights_in}
-        )
-        yield figure, list(panels[:, 0])
-
-
-def _svg(figure: Figure, label: str) -> str:
-    """Return the figure for use inside a page, with a name for those who do not see it."""
-    stream = io.StringIO()
-    figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
-    text = stream.getvalue()
-    svg = text[text.index("<svg") :]
-    return svg.replace("<svg", f'<svg role="img" aria-label="{label}"', 1)

@@ -8,9 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mart.protocol.errors import NotFound
+from mart.trainer.evaluate.comparison import successes_by_world
+from mart.trainer.evaluate.crossed import rate_interval
 from mart.trainer.evaluate.evaluation import Evaluation, read_evaluations
+from mart.trainer.evaluate.selection_bias import expected_best
 from mart.trainer.evaluate.statistics import Spread
-from mart.trainer.evaluate.success_rates import SuccessRates, success_rates
+from mart.trainer.evaluate.success_rates import SuccessRates, best_scores, success_rates
 from mart.trainer.evaluate.world_seeds import Purpose
 from mart.trainer.report import paper
 
@@ -30,6 +33,20 @@ class Cell:
             if found.purpose is Purpose.SELECTION:
                 rates[found.updates].append(found.rate.value)
         return [(updates, sum(own) / len(own)) for updates, own in sorted(rates.items())]
+
+    @property
+    def fresh_interval(self) -> tuple[float, float] | None:
+        """The 95 % interval of the rate in fresh worlds, over seeds and worlds; None before there are scores."""
+        table = successes_by_world(best_scores(self.evaluations), Purpose.SCORE)
+        return None if table is None else rate_interval(table)
+
+    @property
+    def selection_bias(self) -> float | None:
+        """What choosing the best of equal checkpoints, each as good as the fresh rate, would add to it on average."""
+        if self.rates.pooled is None:
+            return None
+        rate, checkpoints = self.rates.pooled.value, len(self.learning_curve)
+        return expected_best(rate, checkpoints, self.rates.episodes) - rate
 
     @property
     def failures(self) -> dict[str, float]:

@@ -79,6 +79,13 @@ _paths = click.Path(path_type=Path, exists=True)
     metavar="SOURCE=W",
     help="How much ticks driven by a source count, e.g. human=3.",
 )
+@click.option(
+    "--held-out",
+    default=0.0,
+    show_default=True,
+    type=click.FloatRange(0.0, 0.5),
+    help="Share of the episodes that is measured on and not learned from.",
+)
 @control_hz_option
 @skip_idle_option
 @click.option("--device", default="cpu", show_default=True, help="cpu, cuda, cuda:N or auto.")
@@ -148,6 +155,7 @@ def _spec(options: dict[str, Any]) -> TrainingSpec:
             weights={name: _value(text) for name, text in _pairs(options["weight"])},
             base=options["base"].resolve() if options["base"] else None,
             device=options["device"],
+            held_out=options["held_out"],
             control_hz=options["control_hz"],
         )
     except ValidationError as error:
@@ -211,7 +219,8 @@ def _result(run: RunDirectory) -> dict[str, Any]:
         "run": str(run.path),
         "model": run.spec.model_spec.name,
         "task": data["task"],
-        "episodes": len(data["episodes"]),
+        "episodes": sum(not one.get("held_out") for one in data["episodes"]),
+        "held_out": sum(one.get("held_out", False) for one in data["episodes"]),
         "ticks": data["ticks"],
         "control_hz": data["control_hz"],
         "times_seen": round(run.spec.times_seen(data["ticks"]), 1),
@@ -236,7 +245,8 @@ def _words(result: dict[str, Any]) -> str:
     ticks = (
         f"{result['ticks']} ticks of {result['control_hz']:g} Hz, each seen {result['times_seen']:g} times"
     )
-    learned = f"from {result['episodes']} episodes ({ticks}){_of_dataset(result['dataset'])}"
+    apart = f", {result['held_out']} more held out" if result["held_out"] else ""
+    learned = f"from {result['episodes']} episodes ({ticks}){apart}{_of_dataset(result['dataset'])}"
     then = "Judge them: mart eval --checkpoint" if result["complete"] else "Go on: mart train --resume"
     lines = [
         f"{result['model']} for {result['task']}, {learned}, {len(result['checkpoints'])} checkpoints",

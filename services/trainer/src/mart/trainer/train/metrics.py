@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from types import TracebackType
 from typing import Self
 
@@ -20,7 +21,8 @@ from mart.trainer.train.run_directory import RunDirectory
 class MetricsWriter:
     """Write means over the updates since the last line.
 
-    A line: updates, updates_in_all, updates_per_s, stage, at_ns, loss, loss/NAME of its parts, other diagnostics.
+    A line: updates, updates_in_all, updates_per_s, stage, at_ns, loss, loss/NAME of its parts, other diagnostics,
+    held_out/NAME of the parts where episodes are held out.
     """
 
     def __init__(self, run: RunDirectory, seeds: tuple[int, ...], updates: int, updates_in_all: int) -> None:
@@ -48,6 +50,12 @@ class MetricsWriter:
         for name, value in named.items():
             self._sums[name] = self._sums[name] + value if name in self._sums else value
             self._counts[name] = self._counts.get(name, 0) + 1
+
+    def add_held_out(self, losses: Losses | None) -> None:
+        """Add the losses on episodes that are not learned from, as `held_out/NAME`; None adds nothing."""
+        if losses is not None:
+            held_out = {f"held_out/{name}": loss.detach() for name, loss in losses.terms.items()}
+            self.add(Losses({}, held_out))
 
     def write(self, updates: int, phase: str) -> dict[str, float]:
         """Write a line and return its numbers, whose losses may not be finite: the caller looks."""
@@ -88,3 +96,13 @@ def _forget_after(run: RunDirectory, updates: int) -> None:
         )
         kept = "".join(json.dumps(row) + "\n" for row in rows)
         write_atomically(run.metrics, kept.encode(), PUBLIC)
+
+
+def read_held_out(path: Path) -> list[tuple[int, float]]:
+    """Return (updates, loss on held-out episodes, its parts added) of the base, from a run's `metrics.jsonl`."""
+    points = []
+    for _, row in read_json_lines(path):
+        held_out = [value for name, value in (row or {}).items() if name.startswith("held_out/")]
+        if row is not None and held_out and row["stage"] == "base":
+            points.append((int(row["updates"]), float(sum(held_out))))
+    return points

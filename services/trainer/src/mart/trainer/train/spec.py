@@ -27,6 +27,7 @@ class TrainingSpec(BaseModel):
     changes: single hyperparameters that differ from the preset's.
     weights: how much a tick counts by who drove the arm in it; 1 where it is not named, 0 leaves it out.
     base: a run whose models a residual corrects, instead of training a base first.
+    held_out: share of the episodes that is not learned from, only measured on while training.
     control_hz: the rate to learn at, at most that of every episode; None: the one rate that all of them have.
     """
 
@@ -42,6 +43,7 @@ class TrainingSpec(BaseModel):
     weights: Mapping[OperatorKind, float] = Field(default_factory=dict)
     base: Path | None = None
     device: str = "cpu"
+    held_out: float = Field(0.0, ge=0.0, le=0.5)
     control_hz: float | None = Field(None, ge=MIN_CONTROL_HZ, le=MAX_CONTROL_HZ)
 
     @field_validator("seeds")

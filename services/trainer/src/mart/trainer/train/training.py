@@ -57,7 +57,9 @@ def train(
     device = find_device(spec.device)
     with _claimed(run, spec):
         cache = Settings().data_dir / "cache" / "episodes"
-        dataset = load_dataset(spec.data, spec.selection, cache, spec.dataset, spec.control_hz)
+        dataset = load_dataset(
+            spec.data, spec.selection, cache, spec.dataset, spec.control_hz, held_out=spec.held_out
+        )
         loop = _training_loop(spec, dataset, device)
         _note(run, spec, dataset)
         kept = read_state(run)
@@ -82,6 +84,7 @@ def _go(
             metrics.add(loop.update())
             if loop.updates not in checkpoint_steps and loop.updates % every:
                 continue
+            metrics.add_held_out(loop.held_out_losses())
             progress = _report(metrics, loop, phase)
             if loop.updates in checkpoint_steps:
                 save()
@@ -107,15 +110,19 @@ def _training_loop(spec: TrainingSpec, dataset: Dataset, device: torch.device) -
         missing, _ = networks.load_state_dict(base, strict=False)
         assert all(name.startswith("model.residual.") for name in missing)
     networks.to(device)
-    obs = networks.normaliser(torch.from_numpy(dataset.observations).to(device))
-    targets = tool_targets(model, sizes, dataset.digest.task, layout, dataset.digest.arm_kinds)
-    windows = Windows(
-        dataset, obs, _weights(dataset, spec), window_spec(model, sizes), device, targets=targets
-    )
+    phases = training_phases(networks, sizes, has_base=spec.base is not None)
+    windows = _windows(dataset, networks, _weights(dataset, spec), device)
     if isinstance(networks.model, ChunkPolicyNet) and networks.model.scale is not None and spec.base is None:
         networks.model.scale.fit(windows.actions())
-    phases = training_phases(networks, sizes, has_base=spec.base is not None)
-    return TrainingLoop(networks, windows, phases, sizes, seeds=spec.seeds, dtype=dtype)
+    held_out = None if dataset.held_out is None else _windows(dataset.held_out, networks, None, device)
+    return TrainingLoop(networks, windows, phases, sizes, seeds=spec.seeds, dtype=dtype, held_out=held_out)
+
+
+def _windows(dataset: Dataset, networks: Networks, weights: Tensor | None, device: torch.device) -> Windows:
+    model, sizes = networks.model.model, networks.model.sizes
+    obs = networks.normaliser(torch.from_numpy(dataset.observations).to(device))
+    targets = tool_targets(model, sizes, dataset.digest.task, dataset.layout, dataset.digest.arm_kinds)
+    return Windows(dataset, obs, weights, window_spec(model, sizes), device, targets=targets)
 
 
 def _weights(dataset: Dataset, spec: TrainingSpec) -> Tensor | None:

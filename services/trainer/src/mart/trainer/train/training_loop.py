@@ -21,6 +21,8 @@ from mart.trainer.models.networks import Networks
 from mart.trainer.models.rng import Rng, UpdateRng
 from mart.trainer.train.ema import EMA
 
+_HELD_OUT_DRAW = 2**62  # no update has this number
+
 
 @dataclass(frozen=True)
 class Phase:
@@ -64,11 +66,16 @@ class TrainingLoop:
         *,
         seeds: Sequence[int],
         dtype: torch.dtype,
+        held_out: Windows | None = None,
     ) -> None:
-        """Start or continue a training. dtype: of matrix products. The networks' device is the windows'."""
+        """Start or continue a training. dtype: of matrix products. The networks' device is the windows'.
+
+        held_out: windows that are not learned from, to measure the losses on.
+        """
         self.networks, self.seeds, self.updates = networks, tuple(seeds), 0
         self.updates_in_all = sum(phase.updates for phase in phases)
         self._windows, self._phases, self._sizes, self._dtype = windows, list(phases), sizes, dtype
+        self._held_out = held_out
         self._enter()
 
     @property
@@ -106,6 +113,17 @@ class TrainingLoop:
         if done + 1 == phase.updates:
             self._leave(phase)
         return losses
+
+    @torch.no_grad()
+    def held_out_losses(self) -> Losses | None:
+        """Return the present phase's losses on what is not learned from, always on the same draw of it, or None."""
+        if self._held_out is None:
+            return None
+        device = self._held_out.device
+        rng = UpdateRng(self.seeds, _HELD_OUT_DRAW, device)
+        batch = self._held_out.take(rng.integers(self._held_out.count, self._sizes.batch_size))
+        with torch.autocast(device.type, self._dtype, enabled=self._dtype != torch.float32):
+            return self.phase.losses(batch, rng)
 
     def acting(self) -> dict[str, Tensor]:
         """Return the weights that act, by name: the averages, where weights are averaged."""
