@@ -111,15 +111,17 @@ def _training_loop(spec: TrainingSpec, dataset: Dataset, device: torch.device) -
         assert all(name.startswith("model.residual.") for name in missing)
     networks.to(device)
     phases = training_phases(networks, sizes, has_base=spec.base is not None)
-    windows = _windows(dataset, networks, _weights(dataset, spec), device)
+    windows = _windows(spec, dataset, networks, _weights(dataset, spec), device)
     if isinstance(networks.model, ChunkPolicyNet) and networks.model.scale is not None and spec.base is None:
         networks.model.scale.fit(windows.actions())
-    held_out = None if dataset.held_out is None else _windows(dataset.held_out, networks, None, device)
+    held_out = None if dataset.held_out is None else _windows(spec, dataset.held_out, networks, None, device)
     return TrainingLoop(networks, windows, phases, sizes, seeds=spec.seeds, dtype=dtype, held_out=held_out)
 
 
-def _windows(dataset: Dataset, networks: Networks, weights: Tensor | None, device: torch.device) -> Windows:
-    model, sizes = networks.model.model, networks.model.sizes
+def _windows(
+    spec: TrainingSpec, dataset: Dataset, networks: Networks, weights: Tensor | None, device: torch.device
+) -> Windows:
+    model, sizes = spec.model_spec, spec.hyperparameters
     obs = networks.normaliser(torch.from_numpy(dataset.observations).to(device))
     targets = tool_targets(model, sizes, dataset.digest.task, dataset.layout, dataset.digest.arm_kinds)
     return Windows(dataset, obs, weights, window_spec(model, sizes), device, targets=targets)
