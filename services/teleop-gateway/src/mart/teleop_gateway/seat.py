@@ -17,6 +17,7 @@ import contextlib
 import logging
 
 from mart.protocol import keys
+from mart.protocol.messages import Event
 from mart.protocol.queryables import SCENE
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
@@ -25,6 +26,7 @@ from mart.runtime.serving import AsyncRequestAnswerer
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.room_feed import RoomFeed
 from mart.teleop_gateway.seat_events import SeatEvents
+from mart.teleop_gateway.seat_metrics import SeatMetrics
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.settings import GatewaySettings
 from mart.teleop_gateway.video.camera_feed import CameraFeed
@@ -60,6 +62,7 @@ class Seat:
         """
         self._bus, self._address = bus, address
         self._latency, self._events = MotionToPhoton(address.arm), SeatEvents(bus, address)
+        self._metrics = SeatMetrics(address)
         self._ice = IceWatch(settings)
         self._peers = Peers(bus, self._ice.usable)
         self._input = SeatInput(
@@ -126,7 +129,7 @@ class Seat:
                         self._broadcaster.run(),
                         self._voice.run(),
                         self._cameras.run(),
-                        report_latency(self._latency, self._events.latency),
+                        report_latency(self._latency, self._tell_latency),
                         self._ice.run(),
                         self._report_no_picture(),
                         self._report_picture_cost(),
@@ -150,6 +153,16 @@ class Seat:
             await asyncio.sleep(_PICTURE_COST_EVERY_S)
             if picture_s := self._views.picture_s():
                 self._events.picture_cost(picture_s)
+            self._metrics.drawn(
+                rate_hz=self._views.frames_per_s(),
+                picture_s=picture_s,
+                failed=bool(self._views.failure()),
+                peers=len(list(self._peers)),
+            )
+
+    def _tell_latency(self, measured: Event.Latency) -> None:
+        self._events.latency(measured)
+        self._metrics.latency(measured)
 
     def _send_poses(self, message: PoseMessage) -> None:
         self._peers.put_poses(message.data)

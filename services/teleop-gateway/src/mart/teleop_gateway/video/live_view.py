@@ -22,6 +22,7 @@ from mart.protocol.messages import State
 from mart.render import Image
 from mart.runtime.rate_limit import RateLimit
 from mart.runtime.watchdog import end_process, start_vital_thread
+from mart.teleop_gateway.seat_metrics import ENCODE, RENDER
 from mart.teleop_gateway.video.adaptive_resolution import AdaptiveResolution, at_full_size
 from mart.teleop_gateway.video.encoder import RECORDED, EncodedPicture, Stream
 from mart.teleop_gateway.video.motion_to_photon import PictureStamps
@@ -200,8 +201,10 @@ class LiveView:
                     continue
                 drawn, rendered_ns = undrawn, clock.wall_ns()
                 self._times_s.append(clock.monotonic_s())
+                RENDER.observe(clock.monotonic_s() - begun_s)
             if drawn is not None and not self._resting:
-                self._encode(pipeline, drawn, rendered_ns)
+                with ENCODE.time():
+                    self._encode(pipeline, drawn, rendered_ns)
             if undrawn is not None:
                 now_s = clock.monotonic_s()
                 self._took_s.append(at_full_size(clock.thread_cpu_s() - begun_cpu_s, size))
