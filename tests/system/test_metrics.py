@@ -39,7 +39,7 @@ Families = dict[str, Any]
 
 @pytest.fixture(scope="module")
 def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
-    """A platform with a trainer, of which a script drives one arm and a person holds the other."""
+    """A platform with a trainer, in whose room a script drives one arm."""
     options = PlatformOptions(
         tmp_path_factory.mktemp("watched"), router=f"tcp/127.0.0.1:{free_port()}", port=free_port()
     )
@@ -47,7 +47,6 @@ def platform(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Platform]:
     with running_platform(options, training_processes(options)) as platform:
         with RoomClient(options.router, options.room) as room:
             room.assign("arm1", OPERATOR_SCRIPT)
-            room.claim("arm0", _HOLDER)
         yield platform
 
 
@@ -81,8 +80,10 @@ def _value(families: Families, name: str, **labels: str) -> float:
 @pytest.mark.timeout(240)
 def test_every_process_shows_its_figures_as_promtool_asks(platform: Platform) -> None:
     folder = platform.options.metrics_dir
-    expected = [process.name for process in training_processes(platform.options)] + ["seat-room-1-arm0"]
-    for name in expected:
+    with RoomClient(platform.options.router, "room-1") as room:
+        room.claim("arm0", _HOLDER)
+    planned = [f"{process.kind}-{process.id}" for process in training_processes(platform.options)]
+    for name in ("seat-room-1-arm0", *planned):
         target = _awaited(folder, name)
         exposition = _scraped(target)
         families = _families(exposition)
@@ -99,8 +100,9 @@ def test_figures_are_those_that_the_room_says_and_a_seat_that_is_left_is_no_targ
 ) -> None:
     folder = platform.options.metrics_dir
     sim = _awaited(folder, "sim-room-1")
-    _awaited(folder, "seat-room-1-arm0")
     with RoomClient(platform.options.router, "room-1") as room:
+        room.claim("arm0", _HOLDER)
+        _awaited(folder, "seat-room-1-arm0")
         # The person says nothing, so the room waits for them: nothing but the script drives.
         silent = room.statuses.wait_for(lambda status: any(w.since_s > 1.0 for w in status.waiting_for))
         families = _families(_scraped(sim))
