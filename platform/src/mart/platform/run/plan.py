@@ -86,7 +86,7 @@ class PlatformOptions:
 
     @property
     def metrics_dir(self) -> Path:
-        """Where the processes tell Prometheus where their /metrics is."""
+        """Return the folder in which the processes tell Prometheus where their /metrics is."""
         return self.run_dir / "metrics"
 
     @property
