@@ -31,7 +31,7 @@ def _declaring_modules() -> list[str]:
 @pytest.fixture(scope="module")
 def declared() -> list[Any]:
     """Everything on the registry once every part has declared its figures."""
-    assert serving.REQUEST
+    assert serving.REQUEST is not None
     for module in _declaring_modules():
         import_module(module)
     return list(metrics.REGISTRY.collect())

@@ -8,6 +8,7 @@ import socket
 import urllib.error
 import urllib.request
 from pathlib import Path
+from typing import Any
 
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
@@ -18,7 +19,7 @@ from mart.runtime.metrics import served_metrics, targets
 from mart.runtime.settings import Settings
 
 
-def _told(folder: Path) -> dict[str, str | list[str]]:
+def _told(folder: Path) -> dict[str, Any]:
     ((target,),) = (json.loads(path.read_text()) for path in folder.glob("*.json"))
     return dict(target)
 

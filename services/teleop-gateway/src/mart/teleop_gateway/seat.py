@@ -26,7 +26,6 @@ from mart.runtime.serving import AsyncRequestAnswerer
 from mart.teleop_gateway.input.seat_input import SeatInput
 from mart.teleop_gateway.room_feed import RoomFeed
 from mart.teleop_gateway.seat_events import SeatEvents
-from mart.teleop_gateway.seat_metrics import SeatMetrics
 from mart.teleop_gateway.served_seats import SeatAddress
 from mart.teleop_gateway.settings import GatewaySettings
 from mart.teleop_gateway.video.camera_feed import CameraFeed
@@ -34,6 +33,7 @@ from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton, report_la
 from mart.teleop_gateway.video.page_drawing import PageDrawing, PoseMessage
 from mart.teleop_gateway.video.picture_relay import PictureRelay
 from mart.teleop_gateway.video.quality import QUALITIES
+from mart.teleop_gateway.video.seat_metrics import SeatMetrics
 from mart.teleop_gateway.video.video_publisher import VideoPublisher
 from mart.teleop_gateway.video.view_manager import ViewManager
 from mart.teleop_gateway.voice.room_voice import RoomVoice
@@ -60,9 +60,8 @@ class Seat:
 
         `secret` is what seat tokens are signed with.
         """
-        self._bus, self._address = bus, address
+        self._bus, self._address, self._metrics = bus, address, SeatMetrics(address)
         self._latency, self._events = MotionToPhoton(address.arm), SeatEvents(bus, address)
-        self._metrics = SeatMetrics(address)
         self._ice = IceWatch(settings)
         self._peers = Peers(bus, self._ice.usable)
         self._input = SeatInput(

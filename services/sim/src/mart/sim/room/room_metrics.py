@@ -63,7 +63,7 @@ CAMERA_DARK = Gauge(
     registry=REGISTRY,
 )
 
-_PHASES = tuple(map(barrier_word, BarrierPhase.values()[1:]))
+_PHASES = tuple(barrier_word(BarrierPhase.Value(name)) for name in BarrierPhase.keys()[1:])
 
 
 class MeteredPublisher:

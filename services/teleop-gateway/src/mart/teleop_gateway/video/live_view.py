@@ -22,13 +22,13 @@ from mart.protocol.messages import State
 from mart.render import Image
 from mart.runtime.rate_limit import RateLimit
 from mart.runtime.watchdog import end_process, start_vital_thread
-from mart.teleop_gateway.seat_metrics import ENCODE, RENDER
 from mart.teleop_gateway.video.adaptive_resolution import AdaptiveResolution, at_full_size
 from mart.teleop_gateway.video.encoder import RECORDED, EncodedPicture, Stream
 from mart.teleop_gateway.video.motion_to_photon import PictureStamps
 from mart.teleop_gateway.video.picture_painter import MakePainter, PicturePainter, UnpaintedPicture
 from mart.teleop_gateway.video.quality import FAST, Quality
 from mart.teleop_gateway.video.render_queue import RenderQueue, RenderQueueClosed
+from mart.teleop_gateway.video.seat_metrics import ENCODE, RENDER
 from mart.teleop_gateway.video.stream_encoders import StreamEncoders
 from mart.teleop_gateway.video.thumbnail import EVERY_S, Thumbnail, ThumbnailMaker
 

@@ -6,9 +6,9 @@ import threading
 from collections.abc import Mapping
 
 from mart.protocol import clock
-from mart.teleop_gateway.seat_metrics import SKIPPED
 from mart.teleop_gateway.video.encoder import Stream
 from mart.teleop_gateway.video.picture_painter import UnpaintedPicture
+from mart.teleop_gateway.video.seat_metrics import SKIPPED
 
 
 class RenderQueue:
