@@ -5,7 +5,15 @@ from __future__ import annotations
 from prometheus_client import Counter, Gauge, Summary
 
 from mart.protocol.enum_words import barrier_word, operator_word
-from mart.protocol.messages import BarrierPhase, Event, RoomStatus, State
+from mart.protocol.messages import (
+    BARRIER_PHASE_PAUSED,
+    BARRIER_PHASE_RUNNING,
+    BARRIER_PHASE_STALLED,
+    BARRIER_PHASE_STOPPED,
+    Event,
+    RoomStatus,
+    State,
+)
 from mart.protocol.vocabulary import OperatorKind
 from mart.runtime.metrics import REGISTRY
 from mart.sim.room.room_publisher import RoomPublisher
@@ -63,7 +71,15 @@ CAMERA_DARK = Gauge(
     registry=REGISTRY,
 )
 
-_PHASES = tuple(barrier_word(BarrierPhase.Value(name)) for name in BarrierPhase.keys()[1:])
+_PHASES = tuple(
+    barrier_word(phase)
+    for phase in (
+        BARRIER_PHASE_RUNNING,
+        BARRIER_PHASE_STALLED,
+        BARRIER_PHASE_PAUSED,
+        BARRIER_PHASE_STOPPED,
+    )
+)
 
 
 class MeteredPublisher:
