@@ -44,7 +44,7 @@ RUN apt-get update \
  && rm -rf /var/lib/apt/lists /var/cache/apt \
  && useradd --system --uid 10001 --home-dir /data mart
 ARG FOLDERS=""
-RUN install -d -o mart -g mart -m 0750 /data /bus ${FOLDERS}
+RUN install -d -o mart -g mart -m 0750 /data /bus /metrics ${FOLDERS}
 COPY --from=build /opt/mart /opt/mart
 ARG SERVICE
 # Parts share few cores: a pool of threads in each would only make them wait for each other. A shader cache has nowhere

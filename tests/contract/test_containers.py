@@ -14,7 +14,11 @@ from mart.platform.run.turn_server import configuration
 from mart.runtime.cli import cli
 from tests.contract.repository import ROOT, projects
 
-_SERVICES: dict[str, dict[str, Any]] = yaml.safe_load((ROOT / "docker-compose.yml").read_text())["services"]
+_CONTAINERS: dict[str, dict[str, Any]] = yaml.safe_load((ROOT / "docker-compose.yml").read_text())["services"]
+_SERVICES = {name: service for name, service in _CONTAINERS.items() if "profiles" not in service}
+_MONITORING = {
+    name: service for name, service in _CONTAINERS.items() if service.get("profiles") == ["monitoring"]
+}
 _BUILDS = {name: service["build"] for name, service in _SERVICES.items() if "build" in service}
 _VARIABLE = re.compile(r"\$\{\w+:-([^}]*)\}")
 
@@ -32,13 +36,14 @@ def test_every_command_parses(name: str) -> None:
     command.make_parser(click.Context(command, parent=context)).parse_args(words[1:])
 
 
-@pytest.mark.parametrize("name", _SERVICES)
+@pytest.mark.parametrize("name", _CONTAINERS)
 def test_every_container_is_confined_and_restarted(name: str) -> None:
-    service = _SERVICES[name]
+    service = _CONTAINERS[name]
     assert service["read_only"]
     assert service["cap_drop"] == ["ALL"]
     assert service["restart"] == "unless-stopped"
-    assert name == "router" or service["depends_on"] == {"router": {"condition": "service_healthy"}}
+    if name in _SERVICES and name != "router":
+        assert service["depends_on"] == {"router": {"condition": "service_healthy"}}
 
 
 @pytest.mark.parametrize("name", _SERVICES)
@@ -52,6 +57,21 @@ def test_only_the_web_service_listens_and_only_on_loopback_unless_asked() -> Non
     listening = {name: service["ports"] for name, service in _SERVICES.items() if "ports" in service}
     assert list(listening) == ["web"]
     assert all(_with_defaults(port).startswith("127.0.0.1:") for port in listening["web"])
+
+
+def test_what_watches_is_pinned_listens_on_loopback_alone_and_is_there_only_when_asked() -> None:
+    assert set(_MONITORING) == set(_CONTAINERS) - set(_SERVICES) == {"prometheus", "grafana"}
+    for service in _MONITORING.values():
+        assert re.fullmatch(r"\S+:v?\d+\.\d+\.\d+", service["image"])
+        assert all(port.startswith("127.0.0.1:") for port in service["ports"])
+
+
+@pytest.mark.parametrize("name", _SERVICES)
+def test_every_container_tells_prometheus_where_its_figures_are_once_a_port_is_given(name: str) -> None:
+    service = _SERVICES[name]
+    assert "metrics:/metrics" in service["volumes"]
+    assert service["environment"]["MART_METRICS_TARGETS_DIR"] == "/metrics"
+    assert service["environment"]["MART_METRICS_PORT"] is None  # as it is outside
 
 
 def test_the_relay_of_containers_is_that_of_mart_run() -> None:

@@ -64,6 +64,11 @@ _CONTROL_HZ_OPTION = click.option(
 @click.option(
     "--secure", is_flag=True, help="Certificates between the services, each with the rights of its kind."
 )
+@click.option(
+    "--metrics",
+    is_flag=True,
+    help="/metrics of every process, for Prometheus; files in run/metrics say where.",
+)
 @json_option
 def run(
     *,
@@ -81,6 +86,7 @@ def run(
     drivers: tuple[str, ...],
     cameras: Mapping[str, str],
     secure: bool,
+    metrics: bool,
     as_json: bool,
 ) -> None:
     """Run the whole platform with one room, until Ctrl-C."""
@@ -111,6 +117,7 @@ def run(
         arm_kinds=arm_kinds,
         drivers=drivers,
         cameras=keep_sources(run_dir, room, cameras),
+        metrics=metrics or settings.metrics_port is not None,
     )
     trains = "trainer" in cli.list_commands(click.get_current_context())  # it is a part that may be left out
     plan = training_processes(options) if trains else processes(options)

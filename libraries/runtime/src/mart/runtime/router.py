@@ -13,10 +13,12 @@ from mart.protocol import keys
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.zenoh_bus import ZenohBus
 from mart.runtime.certificates.identity import is_secured
+from mart.runtime.log_format import configure_logging
+from mart.runtime.metrics import served_metrics
 from mart.runtime.privacy import keep_private
 from mart.runtime.router_notes import noted
 from mart.runtime.secret_file import load_or_create_secret
-from mart.runtime.service import configure_logging, stop_requested
+from mart.runtime.service import stop_requested
 from mart.runtime.settings import Settings
 
 
@@ -47,15 +49,18 @@ def router(listen: str | None, hosts: tuple[str, ...]) -> None:
 
     settings = Settings()
     endpoint = listen or settings.router
-    configure_logging(settings.log_level, ServiceKind.ROUTER)
+    configure_logging(settings.log_level, ServiceKind.ROUTER, "router", settings.log_format)
     keep_private(settings.data_dir)
     if is_secured(endpoint):
-        with stop_requested() as stop:
+        with stop_requested() as stop, served_metrics(settings, ServiceKind.ROUTER, "router"):
             serve_secured_router(endpoint, CertificateStore(settings.bus_certificates_dir), hosts, stop)
         return
     signals = {signal.SIGTERM, signal.SIGINT}
     signal.pthread_sigmask(signal.SIG_BLOCK, signals)  # before Zenoh's threads start, so that they inherit it
-    with admitting_router(endpoint, settings.bus_secret_path) as bus:
+    with (
+        admitting_router(endpoint, settings.bus_secret_path) as bus,
+        served_metrics(settings, ServiceKind.ROUTER, "router"),
+    ):
         token = bus.announce(keys.alive(ServiceKind.ROUTER, "router"))
         signal.sigwait(signals)
         token.close()

@@ -6,7 +6,6 @@ import asyncio
 import contextlib
 import logging
 import signal
-import sys
 import threading
 from collections.abc import Awaitable, Callable, Iterator
 from dataclasses import dataclass
@@ -17,6 +16,8 @@ from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
 from mart.runtime.bus.base import Bus
 from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.log_format import configure_logging, set_log_context
+from mart.runtime.metrics import served_metrics
 from mart.runtime.privacy import keep_private
 from mart.runtime.settings import Settings
 from mart.runtime.stop_signals import stop_signals
@@ -56,10 +57,9 @@ def connected(settings: Settings, kind: ServiceKind, id: str) -> Iterator[Servic
 
     While it waits for its router it holds nothing yet, and ends at once when it is asked to.
     """
-    configure_logging(settings.log_level, kind)
-    keep_private(settings.data_dir)
+    _begin(settings, kind, id)
     bus = ZenohBus.connect(settings.router)
-    with stop_requested() as stop, bus:
+    with stop_requested() as stop, bus, served_metrics(settings, kind, id):
         yield Service(kind, id, bus, stop)
 
 
@@ -105,17 +105,14 @@ def run_async(
             with contextlib.suppress(asyncio.CancelledError):
                 await task
 
-    configure_logging(settings.log_level, kind)
-    keep_private(settings.data_dir)
+    _begin(settings, kind, id)
     bus = ZenohBus.connect(settings.router)
-    asyncio.run(supervise())
+    with served_metrics(settings, kind, id):
+        asyncio.run(supervise())
 
 
-def configure_logging(level: str, name: str) -> None:
-    """Log one line an entry to standard error: time, level, the name of the service, text."""
-    logging.basicConfig(
-        level=level.upper(),
-        stream=sys.stderr,
-        format=f"%(asctime)s %(levelname)-7s {name:<9} %(message)s",
-        force=True,
-    )
+def _begin(settings: Settings, kind: ServiceKind, id: str) -> None:
+    configure_logging(settings.log_level, kind, id, settings.log_format)
+    if kind is ServiceKind.SIM:
+        set_log_context(room=id)
+    keep_private(settings.data_dir)

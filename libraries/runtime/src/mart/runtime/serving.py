@@ -9,9 +9,11 @@ from __future__ import annotations
 import logging
 import queue
 from collections.abc import Awaitable, Callable
+from contextlib import AbstractContextManager
 from typing import Any, Generic, TypeVar
 
 from google.protobuf.message import Message
+from prometheus_client import Counter, Summary
 
 from mart.protocol import clock, codec
 from mart.protocol.errors import MartError, ServiceFault
@@ -19,6 +21,7 @@ from mart.protocol.messages import error_message
 from mart.protocol.queryables import Queryable
 from mart.protocol.received import decode_received
 from mart.runtime.bus.base import Request
+from mart.runtime.metrics import REGISTRY
 from mart.runtime.rate_limit import RateLimit
 
 _log = logging.getLogger(__name__)
@@ -28,6 +31,19 @@ R = TypeVar("R", bound=Message)
 T = TypeVar("T")
 
 OnRefused = Callable[[MartError], None]
+
+REQUEST = Summary(
+    "mart_request_seconds",
+    "What it took to answer a request of the bus.",
+    ("queryable",),
+    registry=REGISTRY,
+)
+FAILED_REQUESTS = Counter(
+    "mart_failed_requests",
+    "Requests of the bus that were answered by an error: refused, or failed at.",
+    ("queryable", "error"),
+    registry=REGISTRY,
+)
 
 
 class RequestAnswerer(Generic[Q, R]):
@@ -45,7 +61,8 @@ class RequestAnswerer(Generic[Q, R]):
     def __call__(self, payload: bytes) -> bytes:
         """Return the encoded reply to an encoded request. Raises nothing."""
         try:
-            return codec.encode(self._handle(self._edge.decode(payload)))
+            with self._edge.timed():
+                return codec.encode(self._handle(self._edge.decode(payload)))
         except Exception as error:  # noqa: BLE001 - told and logged; the next request must be answered
             return self._edge.failed(error)
 
@@ -69,7 +86,8 @@ class AsyncRequestAnswerer(Generic[Q, R]):
     async def __call__(self, payload: bytes) -> bytes:
         """Return the encoded reply to an encoded request. Raises nothing but a cancellation."""
         try:
-            return codec.encode(await self._handle(self._edge.decode(payload)))
+            with self._edge.timed():
+                return codec.encode(await self._handle(self._edge.decode(payload)))
         except Exception as error:  # noqa: BLE001 - told and logged; the next request must be answered
             return self._edge.failed(error)
 
@@ -110,6 +128,11 @@ class _Edge(Generic[Q, R]):
     def __init__(self, queryable: Queryable[Q, R], on_refused: OnRefused | None) -> None:
         self._queryable, self._on_refused = queryable, on_refused
         self._log_limit = RateLimit(1)
+        self._took = REQUEST.labels(queryable.name)
+
+    def timed(self) -> AbstractContextManager[object]:
+        """Measure what the block takes."""
+        return self._took.time()
 
     def decode(self, payload: bytes) -> Q:
         return decode_received(self._queryable.request_type, payload, self._queryable.limit_bytes)
@@ -126,5 +149,6 @@ class _Edge(Generic[Q, R]):
             )
             if self._log_limit.allows(clock.monotonic_s()):
                 _log.error("A request of %s failed", self._queryable.name, exc_info=error)
+        FAILED_REQUESTS.labels(self._queryable.name, type(told).__name__).inc()
         reply: Any = self._queryable.reply_type
         return codec.encode(reply(error=error_message(told)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
@@ -31,6 +31,17 @@ class Settings(BaseSettings):
         None, description="The folder of the certificate to show to a router at tls/HOST:PORT."
     )
     log_level: str = Field("INFO", description="DEBUG, INFO, WARNING or ERROR.")
+    log_format: Literal["text", "json"] = Field("text", description="json: one object a line, for programs.")
+    metrics_port: int | None = Field(
+        None,
+        ge=0,
+        le=65_535,
+        description="Port of /metrics, for Prometheus; 0: any free one. Default: none is shown.",
+    )
+    metrics_host: str = Field("127.0.0.1", description="Address at which /metrics is shown.")
+    metrics_targets_dir: Path | None = Field(
+        None, description="Folder in which each process tells Prometheus where its /metrics is."
+    )
 
     def __init__(self, **options: Any) -> None:
         """Options go before the environment. Raises InvalidInput for a value that is not allowed."""

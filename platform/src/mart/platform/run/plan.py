@@ -67,6 +67,7 @@ class PlatformOptions:
     drivers: tuple[str, ...] = ()  # arms of the first room that `mart driver` processes drive
     # Real cameras of the first room by their ids, and the file that holds what each is captured from; None: elsewhere.
     cameras: Mapping[str, Path | None] = field(default_factory=dict)
+    metrics: bool = False  # every process shows its figures at a port of its own
 
     @property
     def url(self) -> str:
@@ -82,6 +83,11 @@ class PlatformOptions:
     @property
     def run_dir(self) -> Path:
         return self.data_dir / "run" / self.name
+
+    @property
+    def metrics_dir(self) -> Path:
+        """Return the folder in which the processes tell Prometheus where their /metrics is."""
+        return self.run_dir / "metrics"
 
     @property
     def logs_dir(self) -> Path:
@@ -183,7 +189,9 @@ def room(options: PlatformOptions, wanted: RoomsRequest.Open) -> Process:
 
 def environment(options: PlatformOptions) -> dict[str, str]:
     """What every process is started with, on top of this process's own environment."""
+    watched = {"MART_METRICS_PORT": "0", "MART_METRICS_TARGETS_DIR": str(options.metrics_dir.resolve())}
     return {
+        **(watched if options.metrics else {}),
         "MART_ROUTER": options.router,
         "MART_DATA_DIR": str(options.data_dir.resolve()),
         "MART_ARMS_DIR": str(arms_folder().resolve()),

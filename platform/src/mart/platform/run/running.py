@@ -106,6 +106,7 @@ def running_platform(options: PlatformOptions, plan: tuple[Process, ...] | None 
         _require_free(options.host, options.port, "MART's pages", "--port")
         router_host, _, router_port = options.router.rpartition("/")[2].rpartition(":")
         _require_free(router_host, int(router_port), "a Zenoh router", "MART_ROUTER")
+        _forget_targets(options)
         supervisor = Supervisor(options, plan, Path(private) / "supervisor")
         with (
             _supervised(options, supervisor, mark) as supervisord,
@@ -113,6 +114,12 @@ def running_platform(options: PlatformOptions, plan: tuple[Process, ...] | None 
         ):
             _await_alive(bus, options, plan, supervisor)
             yield Platform(options, bus, supervisor)
+
+
+def _forget_targets(options: PlatformOptions) -> None:
+    """Remove what a platform that was killed told Prometheus: another one's processes are elsewhere."""
+    for left in options.metrics_dir.glob("*.json"):
+        left.unlink(missing_ok=True)
 
 
 @contextlib.contextmanager

@@ -115,7 +115,7 @@ def ar_phone(address: str, *, insecure: bool, host: str, port: int) -> None:
     """
     import asyncio
 
-    from mart.runtime.service import configure_logging
+    from mart.runtime.log_format import configure_logging
     from mart.teleop_gateway.arkit.drive import drive_by_app
 
     lobby, _, code = address.partition("/phone#")

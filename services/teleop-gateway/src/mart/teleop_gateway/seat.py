@@ -17,6 +17,7 @@ import contextlib
 import logging
 
 from mart.protocol import keys
+from mart.protocol.messages import Event
 from mart.protocol.queryables import SCENE
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.aio import AsyncBus
@@ -32,6 +33,7 @@ from mart.teleop_gateway.video.motion_to_photon import MotionToPhoton, report_la
 from mart.teleop_gateway.video.page_drawing import PageDrawing, PoseMessage
 from mart.teleop_gateway.video.picture_relay import PictureRelay
 from mart.teleop_gateway.video.quality import QUALITIES
+from mart.teleop_gateway.video.seat_metrics import SeatMetrics
 from mart.teleop_gateway.video.video_publisher import VideoPublisher
 from mart.teleop_gateway.video.view_manager import ViewManager
 from mart.teleop_gateway.voice.room_voice import RoomVoice
@@ -58,7 +60,7 @@ class Seat:
 
         `secret` is what seat tokens are signed with.
         """
-        self._bus, self._address = bus, address
+        self._bus, self._address, self._metrics = bus, address, SeatMetrics(address)
         self._latency, self._events = MotionToPhoton(address.arm), SeatEvents(bus, address)
         self._ice = IceWatch(settings)
         self._peers = Peers(bus, self._ice.usable)
@@ -126,7 +128,7 @@ class Seat:
                         self._broadcaster.run(),
                         self._voice.run(),
                         self._cameras.run(),
-                        report_latency(self._latency, self._events.latency),
+                        report_latency(self._latency, self._tell_latency),
                         self._ice.run(),
                         self._report_no_picture(),
                         self._report_picture_cost(),
@@ -150,6 +152,16 @@ class Seat:
             await asyncio.sleep(_PICTURE_COST_EVERY_S)
             if picture_s := self._views.picture_s():
                 self._events.picture_cost(picture_s)
+            self._metrics.drawn(
+                rate_hz=self._views.frames_per_s(),
+                picture_s=picture_s,
+                failed=bool(self._views.failure()),
+                peers=len(list(self._peers)),
+            )
+
+    def _tell_latency(self, measured: Event.Latency) -> None:
+        self._events.latency(measured)
+        self._metrics.latency(measured)
 
     def _send_poses(self, message: PoseMessage) -> None:
         self._peers.put_poses(message.data)

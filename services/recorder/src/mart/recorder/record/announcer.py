@@ -16,6 +16,7 @@ from mart.protocol.keys import Topic
 from mart.protocol.messages import Event, RecordingReport, outcome_from_word
 from mart.protocol.vocabulary import EpisodeOutcome, Verdict
 from mart.recorder.record.finalize import SavedEpisode
+from mart.recorder.record.recorder_metrics import SAVED
 from mart.runtime.bus import Bus, Publisher
 
 _log = logging.getLogger(__name__)
@@ -36,7 +37,7 @@ class Announcer:
 
     def notice(self, room: str, level: str, text: str) -> None:
         """Tell a room in words. level: info, warning or error."""
-        _log.log(_LEVELS[level], "%s: %s", room, text)
+        _log.log(_LEVELS[level], "%s: %s", room, text, extra={"room": room})
         self._put(room, Event(notice=Event.Notice(level=level, text=text, **{"from": "recorder"})))
 
     def report(self, room: str, boot: int, episode: int, last_tick: int) -> None:
@@ -47,7 +48,9 @@ class Announcer:
     def saved(self, saved: SavedEpisode) -> None:
         """Tell a room that an episode of it has its file."""
         episode, verification = saved.episode, saved.verification
-        _log.info("%s: %s", episode.room, _in_words(saved))
+        about = {"room": episode.room, "episode": episode.number}
+        _log.info("%s: %s", episode.room, _in_words(saved), extra=about)
+        SAVED.labels(verification.verdict.value).inc()
         told = Event.EpisodeSaved(
             number=episode.number,
             path=saved.path.relative_to(self._data_dir).as_posix(),

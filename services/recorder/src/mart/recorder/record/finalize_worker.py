@@ -44,6 +44,11 @@ class FinalizeWorker:
         self._workers = ThreadPoolExecutor(max_workers=2, thread_name_prefix="finalize")
         self._fetchers = ThreadPoolExecutor(max_workers=_MAX_FETCHERS, thread_name_prefix="model")
 
+    @property
+    def unsaved(self) -> int:
+        """How many files it was given that are not complete yet."""
+        return self._unsaved
+
     def fetch_model(self, room: str, boot: int) -> None:
         """Ask for the room's model, so that it is known when an episode begins; one question a room at a time."""
         with self._lock:

@@ -14,6 +14,7 @@ from mart.recorder.record.arrival_decoder import UnusableArrivals
 from mart.recorder.record.finalize import VerifyFile
 from mart.recorder.record.finalize_worker import FinalizeWorker, TidyFolder
 from mart.recorder.record.inbox import Inbox, InboxBatch
+from mart.recorder.record.recorder_metrics import RecorderMetrics
 from mart.recorder.record.room_claim import RoomClaim, claim_room
 from mart.recorder.record.room_models import RoomModels
 from mart.recorder.record.room_recording import RecordingTools, RoomRecording
@@ -58,6 +59,7 @@ class Recorder:
         self._inbox, self._live_rooms = inbox, live_rooms
         self._rooms: dict[str, RoomRecording] = {}
         self._unusable = UnusableArrivals()
+        self._metrics = RecorderMetrics(root)
         self._tellings = KeyedRateLimit(1, _TELL_AGAIN_S)
         self._claim_tries = KeyedRateLimit(1, _CLAIM_AGAIN_S)
 
@@ -75,6 +77,7 @@ class Recorder:
         """Take what has arrived, waiting `timeout_s` at most for something, and do what it is time for."""
         batch = self._inbox.take(timeout_s)
         now_s = clock.monotonic_s()
+        self._metrics.took(batch, clock.wall_ns())
         self._report_losses(batch)
         for arrival in batch.arrivals:
             try:
@@ -86,6 +89,9 @@ class Recorder:
         for room in self._rooms.values():
             room.advance(now_s)
         self._forget()
+        writing = sum(room.is_writing for room in self._rooms.values())
+        unsaved = self._tools.finalizer.unsaved
+        self._metrics.worked(rooms=len(self._rooms), writing=writing, unsaved=unsaved, now_s=now_s)
 
     def close(self) -> None:
         """End what is being recorded and wait until everything is saved."""

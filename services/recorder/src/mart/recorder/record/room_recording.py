@@ -183,7 +183,8 @@ class RoomRecording:
         file = EpisodeWriter(part_path(self._tools.root, episode, self._tracker.facts))
         self._files[episode], self._facts[episode] = file, self._tracker.facts
         self._flushed_s = float("-inf")  # the first state is on the disk at once
-        _log.info("%s: recording episode %d into %s", episode.room, episode.number, file.path)
+        about = {"room": episode.room, "episode": episode.number}
+        _log.info("%s: recording episode %d into %s", episode.room, episode.number, file.path, extra=about)
         if self._tools.models.known(self._room, episode.boot) is None:
             self._tools.finalizer.fetch_model(self._room, episode.boot)  # the first answer may have been lost
         free = shutil.disk_usage(self._tools.root).free

@@ -16,6 +16,7 @@ from mart.episodes.reader import EpisodeFile
 from mart.protocol import clock
 from mart.protocol.errors import MartError
 from mart.recorder.record.finalize import SavedEpisode, VerifyFile
+from mart.recorder.record.recorder_metrics import VERIFICATIONS
 from mart.recorder.verify.retry_schedule import RetrySchedule
 from mart.recorder.verify.verdict_label import keep_verdict
 
@@ -64,6 +65,7 @@ class PendingVerifications:
             for episode in listed:
                 if episode.verification_pending:
                     self._schedule.add(episode.file_path, clock.monotonic_s())
+            VERIFICATIONS.set(len(self._schedule))
         self._changed.set()
 
     def wake(self) -> None:
@@ -112,6 +114,7 @@ class PendingVerifications:
                 self._schedule.drop(path)
             else:
                 self._schedule.put_off(path, clock.monotonic_s())
+            VERIFICATIONS.set(len(self._schedule))
 
     def _judge(self, path: Path) -> bool:
         file = EpisodeFile.open(path)

@@ -33,6 +33,7 @@ from mart.sim.room.episode_state_machine import Terms
 from mart.sim.room.live_room import LiveRoom, MakeRoom
 from mart.sim.room.rate_watch import RateWatch
 from mart.sim.room.room import Room
+from mart.sim.room.room_metrics import MeteredPublisher
 from mart.sim.room.room_publisher import RoomPublisher
 from mart.sim.room.room_server import RoomServer
 from mart.sim.room.saved_room import SavedRoom
@@ -108,6 +109,7 @@ def serve_world(settings: SimSettings, world: World, drivers: BusDrivers | None 
         publisher: RoomPublisher = opened.enter_context(
             contextlib.closing(BusPublisher(service.bus, settings.room))
         )
+        publisher = MeteredPublisher(publisher, settings.room, world.arms)
         if rate is not None:
             publisher = RateWatch(publisher, rate, clock.monotonic_s)
         if drivers is not None:

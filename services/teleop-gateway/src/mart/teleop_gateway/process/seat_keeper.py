@@ -10,6 +10,7 @@ from mart.protocol import clock, codec, keys
 from mart.protocol.errors import Unavailable
 from mart.protocol.messages import Event
 from mart.runtime.bus.aio import AsyncBus
+from mart.teleop_gateway.process.gateway_metrics import LOST_PROCESSES, SEATS
 from mart.teleop_gateway.process.seat_process_pool import SeatProcess, SeatProcessPool
 from mart.teleop_gateway.served_seats import SeatAddress
 
@@ -40,6 +41,7 @@ class SeatKeeper:
         for seat in seats:
             if seat not in self._kept or self._kept[seat].done():  # done: the machine could start no process
                 self._kept[seat] = self._bus.spawn(self._keep(seat))
+        SEATS.set(len(self._kept))
 
     async def close(self) -> None:
         """Return when every process has ended."""
@@ -87,6 +89,7 @@ class SeatKeeper:
         return await process.ended()
 
     def _tell_loss(self, seat: SeatAddress, status: int) -> None:
+        LOST_PROCESSES.inc()
         _log.warning(
             "The process of %s %s ended with status %d; the next one starts", seat.room, seat.arm, status
         )

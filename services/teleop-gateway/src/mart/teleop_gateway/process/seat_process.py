@@ -14,6 +14,7 @@ import sys
 
 from mart.protocol.vocabulary import ServiceKind
 from mart.runtime.bus.zenoh_bus import ZenohBus
+from mart.runtime.log_format import set_log_context
 from mart.runtime.secret_file import load_or_create_secret
 from mart.runtime.service import AsyncService, run_async
 from mart.teleop_gateway.process.seat_process_protocol import WARM, decode_assignment
@@ -35,6 +36,7 @@ def main() -> None:
 
 def _serve(address: SeatAddress) -> None:
     settings = GatewaySettings()
+    set_log_context(room=address.room, seat=address.arm)
 
     async def run(service: AsyncService) -> None:
         secret = load_or_create_secret(settings.secret_path)

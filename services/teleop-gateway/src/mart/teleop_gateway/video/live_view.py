@@ -28,6 +28,7 @@ from mart.teleop_gateway.video.motion_to_photon import PictureStamps
 from mart.teleop_gateway.video.picture_painter import MakePainter, PicturePainter, UnpaintedPicture
 from mart.teleop_gateway.video.quality import FAST, Quality
 from mart.teleop_gateway.video.render_queue import RenderQueue, RenderQueueClosed
+from mart.teleop_gateway.video.seat_metrics import ENCODE, RENDER
 from mart.teleop_gateway.video.stream_encoders import StreamEncoders
 from mart.teleop_gateway.video.thumbnail import EVERY_S, Thumbnail, ThumbnailMaker
 
@@ -200,8 +201,10 @@ class LiveView:
                     continue
                 drawn, rendered_ns = undrawn, clock.wall_ns()
                 self._times_s.append(clock.monotonic_s())
+                RENDER.observe(clock.monotonic_s() - begun_s)
             if drawn is not None and not self._resting:
-                self._encode(pipeline, drawn, rendered_ns)
+                with ENCODE.time():
+                    self._encode(pipeline, drawn, rendered_ns)
             if undrawn is not None:
                 now_s = clock.monotonic_s()
                 self._took_s.append(at_full_size(clock.thread_cpu_s() - begun_cpu_s, size))

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from mart.protocol import clock
 from mart.teleop_gateway.video.encoder import Stream
 from mart.teleop_gateway.video.picture_painter import UnpaintedPicture
+from mart.teleop_gateway.video.seat_metrics import SKIPPED
 
 
 class RenderQueue:
@@ -23,6 +24,8 @@ class RenderQueue:
     def offer(self, unpainted: UnpaintedPicture) -> None:
         """Put a newer one; one that nobody has taken yet is left out."""
         with self._changed:
+            if self._newest is not None:
+                SKIPPED.inc()
             self._newest = unpainted
             self._changed.notify()
 

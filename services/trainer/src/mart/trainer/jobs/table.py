@@ -101,6 +101,11 @@ class JobTable:
         )
         return [QueuedJob(*row) for row in rows]
 
+    def counts(self) -> dict[JobState, int]:
+        """Return how many jobs are in each state, 0 for those that none is in."""
+        rows = self._connection.execute("SELECT state, count(*) FROM jobs GROUP BY state")
+        return dict.fromkeys(JobState, 0) | {JobState(state): count for state, count in rows}
+
     def set_detail(self, number: int, detail: str) -> None:
         """Say something of a job, and leave all else of it as it is."""
         with self._connection:

@@ -14,7 +14,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from mart.protocol.errors import MartError, Unavailable
-from mart.runtime.service import configure_logging, stop_requested
+from mart.runtime.log_format import configure_logging
+from mart.runtime.service import stop_requested
 from mart.trainer.evaluate.background_evaluator import BackgroundEvaluator
 from mart.trainer.jobs.job import ExitCode
 from mart.trainer.jobs.job_files import load_spec, say_why

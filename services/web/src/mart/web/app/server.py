@@ -33,6 +33,7 @@ from mart.web.app.mdns_announcement import keep_announced
 from mart.web.app.relay_checks import keep_checking
 from mart.web.app.security_middleware import MAX_BODY_BYTES
 from mart.web.app.settings import WebSettings
+from mart.web.app.site_metrics import keep_shown
 from mart.web.clients.missed_saves import MissedSaves
 from mart.web.clients.untold_passes import UntoldPasses
 from mart.web.lobby.bus_feed import LobbyFeed
@@ -96,6 +97,7 @@ async def serve(
             feed.keep_asking(),
             feed.keep_looking(),
             guarded.keep_ending(),
+            keep_shown(lobby, table),
             _missed(state),
             UntoldPasses(lobby, user_sessions, state.rooms).keep_telling(),
             keep_checking(settings, state.relays),

@@ -17,6 +17,7 @@ from mart.trainer.jobs.queue import JobQueue
 from mart.trainer.jobs.service.handlers import TrainerHandlers
 from mart.trainer.jobs.service.request_server import Inbox, RequestServer
 from mart.trainer.jobs.service.settings import TrainerSettings
+from mart.trainer.jobs.service.trainer_metrics import show_jobs
 from mart.trainer.jobs.service.videos import Videos
 from mart.trainer.jobs.table import JobTable
 
@@ -43,6 +44,7 @@ def serve_trainer(settings: TrainerSettings) -> None:
         stack.enter_context(announced(service))
         while not service.stop.is_set():
             jobs.advance(clock.wall_ns())
+            show_jobs(table.counts())
             item = inbox.take(_LONGEST_WAIT_S)
             if isinstance(item, JobEnded):
                 jobs.end(item, clock.wall_ns())
