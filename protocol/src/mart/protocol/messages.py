@@ -281,10 +281,8 @@ def pose_message(pose: Pose) -> PoseMessage:
 
 def pose_from_message(message: PoseMessage) -> Pose:
     """Return the pose. Raises InvalidInput where a number is not finite or the quaternion is not of unit norm."""
-    return Pose(
-        np.array([message.x, message.y, message.z]),
-        np.array([message.qw, message.qx, message.qy, message.qz]),
-    )
+    quaternion_wxyz = np.array([message.qw, message.qx, message.qy, message.qz])
+    return Pose(np.array([message.x, message.y, message.z]), quaternion_wxyz)
 
 
 def is_good(saved: Event.EpisodeSaved) -> bool:
