@@ -9,7 +9,7 @@ from mart.protocol import keys
 from mart.protocol.keys import Topic
 from mart.protocol.queryables import BROADCASTS, QUERYABLES
 
-_ASKED_BY_A_WORD = {keys.model}
+_ASKED_BY_A_WORD = {keys.model, keys.admission}
 
 
 def test_every_topic_is_said_or_asked() -> None:

@@ -75,7 +75,7 @@ def test_what_parts_say_passes(name: str) -> None:
         (_with("RoomStatus", control_hz=math.nan), "control_hz"),
         (_with("RoomStatus", seats__0__name="a" * (MAX_TEXT_CHARACTERS + 1)), "seats.name has"),
         (_with("Command", sequence=2**64 - 1), "sequence is"),
-        (_with("Command", source=5), "source is 5"),
+        (_with("Command", source=6), "source is 6"),
         (State(observations=[{"name": "a", "value": [0.0, math.nan]}]), "value holds"),
         (RoomStatus(seats=[Seat()] * (MAX_LIST_ITEMS + 1)), "items"),
         (Event(cue_given=Event.CueGiven(cue=_enum(99))), "cue_given.cue is 99"),

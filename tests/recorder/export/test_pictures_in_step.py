@@ -1,11 +1,11 @@
-"""The picture of row k shows state k, over a whole minute: another project's decoder, and fresh drawings beside it."""
+"""The picture of row k shows state k, over a whole minute: decoded, and fresh drawings beside it."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
 
-import cv2
+import av
 import h5py
 import numpy as np
 import pyarrow.parquet as pq
@@ -42,15 +42,9 @@ def swinging(world: World, ticks: int) -> list[State]:
 
 
 def decoded(path: Path) -> Pictures:
-    """Read a video as OpenCV does."""
-    video = cv2.VideoCapture(str(path))
-    frames: list[NDArray[np.uint8]] = []
-    while True:
-        found, picture = video.read()
-        if not found:
-            video.release()
-            return np.array(frames, np.float64)
-        frames.append(cv2.cvtColor(picture, cv2.COLOR_BGR2RGB).astype(np.uint8, copy=False))
+    """Read a video as LeRobot does, with FFmpeg; OpenCV brings another one, and both in a process have crashed."""
+    with av.open(str(path)) as video:
+        return np.array([frame.to_ndarray(format="rgb24") for frame in video.decode(video=0)], np.float64)
 
 
 def nearest(seen: Pictures, states: Pictures) -> list[int]:

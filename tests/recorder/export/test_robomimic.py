@@ -139,7 +139,7 @@ def test_what_the_file_is_stands_in_it(folder: Path) -> None:
         sources = json.loads(file["data"].attrs["source"])
         groups = {key: [name.decode() for name in names] for key, names in file["mask"].items()}
     assert environment["env_name"] == recorded.TASK
-    assert sources == {"1": "hold", "2": "human", "3": "policy", "4": "script"}
+    assert sources == {"1": "hold", "2": "human", "3": "policy", "4": "script", "5": "generated"}
     assert environment["env_kwargs"] == {"control_hz": 20.0, "arms": 2}
     assert observations["arm1_gripper"]["arms"] == ["arm1"]
     assert groups["success"] == ["demo_0", "demo_2", "demo_3"]

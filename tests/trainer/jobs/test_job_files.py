@@ -39,6 +39,7 @@ REQUEST = {
     "weights": {"human": 2.0},
     "base": None,
     "device": "cpu",
+    "held_out": 0.0,
     "control_hz": None,
 }
 JUDGING = {
