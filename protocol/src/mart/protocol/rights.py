@@ -54,7 +54,9 @@ class Rights:
 
 
 _ROOM = (keys.EVERY_STATE, keys.EVERY_STATUS, keys.EVERY_EVENT)  # what whoever follows a room hears
-_DRIVE = Rights((keys.EVERY_COMMAND,), _ROOM, (), (keys.EVERY_SEAT, keys.EVERY_EPISODE, keys.EVERY_MODEL))
+_DRIVE = Rights(
+    (keys.EVERY_COMMAND, keys.EVERY_EVENT), _ROOM, (), (keys.EVERY_SEAT, keys.EVERY_EPISODE, keys.EVERY_MODEL)
+)
 
 RIGHTS: dict[BusPart, Rights] = {
     BusPart.PLATFORM: Rights(
